@@ -1,0 +1,22 @@
+// Contract: from what could move and what does move to what is used (paper III-D). Thread 1.
+#pragma once
+
+#include "stillpoint/contracts/frame.hpp"
+#include "stillpoint/contracts/moving_points.hpp"
+#include "stillpoint/contracts/segmentation.hpp"
+#include "stillpoint/contracts/static_weights.hpp"
+#include "stillpoint/export.hpp"
+
+namespace stillpoint {
+
+class STILLPOINT_EXPORT Decision {
+ public:
+  static constexpr const char* kKind = "decision";
+  virtual ~Decision();
+
+  /// Called once per frame, in order. Weight images have the frame's size or are empty.
+  virtual StaticWeights decide(const Frame& frame, const Segmentation& segmentation,
+                               const MovingPoints& moving) = 0;
+};
+
+}  // namespace stillpoint

@@ -1,0 +1,23 @@
+// Contract: recognises places seen before (paper III-A). Thread 4.
+#pragma once
+
+#include <optional>
+#include <stop_token>
+
+#include "stillpoint/contracts/map_correction.hpp"
+#include "stillpoint/contracts/sparse_map.hpp"
+#include "stillpoint/export.hpp"
+
+namespace stillpoint {
+
+class STILLPOINT_EXPORT LoopCloser {
+ public:
+  static constexpr const char* kKind = "loop_closer";
+  virtual ~LoopCloser();
+
+  /// Nothing when `latest` closes no loop or when `stop` is requested.
+  virtual std::optional<MapCorrection> close(const SparseMap& map, KeyFrameId latest,
+                                             std::stop_token stop) = 0;
+};
+
+}  // namespace stillpoint

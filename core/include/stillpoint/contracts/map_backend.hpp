@@ -1,0 +1,37 @@
+// Contract: the dense map (paper III-E). Thread 5.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <span>
+
+#include "stillpoint/contracts/frame.hpp"
+#include "stillpoint/contracts/map_correction.hpp"
+#include "stillpoint/contracts/segmentation.hpp"
+#include "stillpoint/contracts/static_weights.hpp"
+#include "stillpoint/export.hpp"
+
+namespace stillpoint {
+
+/// A key frame with its images.
+struct DenseKeyFrame {
+  KeyFrameId id = kNoId;
+  FramePtr frame;
+  SegmentationPtr segmentation;
+  std::shared_ptr<const StaticWeights> weights;
+  Pose world_from_camera = Pose::Identity();
+};
+
+class STILLPOINT_EXPORT MapBackend {
+ public:
+  static constexpr const char* kKind = "map_backend";
+  virtual ~MapBackend();
+
+  virtual void integrate(const DenseKeyFrame& keyframe) = 0;
+  /// Key frames that were moved by mapping or a loop closure.
+  virtual void move(std::span<const MovedKeyFrame> moved) = 0;
+  /// Writes the map's files into an existing folder.
+  virtual void save(const std::filesystem::path& directory) const = 0;
+};
+
+}  // namespace stillpoint

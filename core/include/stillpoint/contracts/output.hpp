@@ -1,0 +1,69 @@
+// Contract: what a run leaves behind (paper IV). Thread 1.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "stillpoint/contracts/frame.hpp"
+#include "stillpoint/contracts/moving_points.hpp"
+#include "stillpoint/contracts/segmentation.hpp"
+#include "stillpoint/contracts/source.hpp"
+#include "stillpoint/contracts/sparse_map.hpp"
+#include "stillpoint/contracts/static_weights.hpp"
+#include "stillpoint/contracts/tracker.hpp"
+#include "stillpoint/export.hpp"
+
+namespace stillpoint {
+
+/// Time one stage took for one frame or key frame.
+struct StageTime {
+  std::string stage;     ///< "source", "prepare", "moving_check", "track", "map_insert", …
+  double wall_ms = 0.0;  ///< milliseconds of the clock on the wall
+  double cpu_ms = 0.0;   ///< milliseconds of processor time of the stage's own thread
+};
+
+/// Everything the pipeline knows of one frame. References are valid during the call only.
+struct FrameReport {
+  const Frame& frame;
+  const Segmentation& segmentation;
+  const MovingPoints& moving;
+  const StaticWeights& weights;
+  const TrackResult& result;
+  /// Stages of this frame, and those of other threads that ended since the last report.
+  const std::vector<StageTime>& times;
+};
+
+/// One frame's pose, relative to its reference key frame.
+struct TrackedPose {
+  std::uint32_t frame = 0;
+  double time = 0.0;  ///< seconds
+  TrackState state = TrackState::kWaiting;
+  KeyFrameId reference = kNoId;
+  Pose reference_from_camera = Pose::Identity();
+};
+
+struct RunSummary {
+  const SparseMap& map;
+  const std::vector<TrackedPose>& poses;  ///< of all frames processed, in order
+  const SourceReport& source;
+  int dropped_frames = 0;  ///< by `pace: sensor`
+  double wall_seconds = 0.0;
+  double cpu_seconds = 0.0;  ///< of the whole process during the run
+  double recorded_seconds = 0.0;
+  long long seed = 0;
+  std::string mode;     ///< "inline" or "threaded"
+  bool complete = true; ///< false when the run was stopped or failed
+  std::string failure;  ///< the message of the stage that failed, if any
+};
+
+class STILLPOINT_EXPORT Output {
+ public:
+  static constexpr const char* kKind = "output";
+  virtual ~Output();
+
+  virtual void frame(const FrameReport&) {}
+  /// Always called, also after a failure or Ctrl-C: what was computed is saved.
+  virtual void finish(const RunSummary&) {}
+};
+
+}  // namespace stillpoint

@@ -1,0 +1,19 @@
+// Contract: class labels for an image (paper III-B). Thread 2.
+#pragma once
+
+#include "stillpoint/contracts/frame.hpp"
+#include "stillpoint/contracts/segmentation.hpp"
+#include "stillpoint/export.hpp"
+
+namespace stillpoint {
+
+class STILLPOINT_EXPORT Segmenter {
+ public:
+  static constexpr const char* kKind = "segmenter";
+  virtual ~Segmenter();
+
+  /// Labels of the frame's size, or empty labels when this segmenter has none for it.
+  virtual Segmentation segment(const Frame& frame) = 0;
+};
+
+}  // namespace stillpoint

@@ -1,0 +1,57 @@
+// Contract: the camera's pose in the sparse map (paper III-A). Thread 1.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "stillpoint/contracts/frame.hpp"
+#include "stillpoint/contracts/keyframe.hpp"
+#include "stillpoint/contracts/sparse_map.hpp"
+#include "stillpoint/contracts/static_weights.hpp"
+#include "stillpoint/export.hpp"
+
+namespace stillpoint {
+
+enum class TrackState { kWaiting /* no map yet and no start possible */, kTracking, kLost };
+
+/// A feature as tracking used it, for pictures and statistics.
+struct TrackedFeature {
+  cv::Point2f pixel;
+  enum class Use { kUnmatched, kInlier, kOutlier, kMoving } use = Use::kUnmatched;
+};
+
+/// The world pose is world_from_keyframe(reference) * reference_from_camera, so that trajectories
+/// follow when mapping or a loop moves the reference.
+struct TrackResult {
+  TrackState state = TrackState::kWaiting;
+  KeyFrameId reference = kNoId;  ///< valid only while tracking
+  Pose reference_from_camera = Pose::Identity();
+  Pose world_from_camera = Pose::Identity();  ///< at the time of tracking
+  int features = 0;                           ///< extracted
+  int matches = 0;                            ///< with a landmark
+  int inliers = 0;                            ///< of those, fitting the pose
+  std::vector<TrackedFeature> tracked;        ///< per feature
+  std::optional<KeyFrame> keyframe;           ///< to be inserted
+};
+
+struct TrackHints {
+  bool mapping_waiting = false;  ///< a key frame is already waiting for the local mapper
+};
+
+class STILLPOINT_EXPORT Tracker {
+ public:
+  static constexpr const char* kKind = "tracker";
+  virtual ~Tracker();
+
+  /// Everything that needs neither weights nor map; overlaps the network (paper III-D). Always
+  /// followed by track() with the same frame.
+  virtual void prepare(FramePtr frame) = 0;
+
+  /// Never writes the map. A key frame that it returns has the id that the map will give it: ids
+  /// are counted by the tracker, beginning at the id end of the first map it sees. With an empty
+  /// map, the first usable frame becomes the first key frame, at the origin.
+  virtual TrackResult track(FramePtr frame, const StaticWeights& weights, const SparseMap& map,
+                            TrackHints hints) = 0;
+};
+
+}  // namespace stillpoint

@@ -1,0 +1,18 @@
+// The destructors anchor each interface's type information in this library, so that every plugin
+// and the program agree on it.
+#include "stillpoint/sdk.hpp"
+
+namespace stillpoint {
+
+Source::~Source() = default;
+Segmenter::~Segmenter() = default;
+Propagator::~Propagator() = default;
+MovingChecker::~MovingChecker() = default;
+Decision::~Decision() = default;
+Tracker::~Tracker() = default;
+LocalMapper::~LocalMapper() = default;
+LoopCloser::~LoopCloser() = default;
+MapBackend::~MapBackend() = default;
+Output::~Output() = default;
+
+}  // namespace stillpoint

@@ -1,0 +1,58 @@
+# Helpers of the project's own build.
+
+# Warnings and the project's include rules for a target.
+function(stillpoint_compile_options target)
+  target_compile_options(${target} PRIVATE -Wall -Wextra -Wshadow -Wnon-virtual-dtor
+                         -Woverloaded-virtual $<$<BOOL:${STILLPOINT_WARNINGS_AS_ERRORS}>:-Werror>)
+endfunction()
+
+# The headers of OpenCV 4.6 warn under C++20 (arithmetic between enums), hence SYSTEM.
+function(stillpoint_link_opencv target scope)
+  target_include_directories(${target} SYSTEM ${scope} ${OpenCV_INCLUDE_DIRS})
+  target_link_libraries(${target} ${scope} ${ARGN})
+endfunction()
+
+# stillpoint_add_tests(NAME SOURCES… LINK libraries…): one GoogleTest program; its cases become
+# tests of ctest.
+function(stillpoint_add_tests name)
+  if(NOT STILLPOINT_BUILD_TESTS)
+    return()
+  endif()
+  cmake_parse_arguments(ARG "" "" "SOURCES;LINK" ${ARGN})
+  add_executable(${name} ${ARG_SOURCES})
+  stillpoint_compile_options(${name})
+  target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR}/tests)
+  target_compile_definitions(${name} PRIVATE
+    STILLPOINT_SOURCE_DIR="${PROJECT_SOURCE_DIR}" STILLPOINT_BINARY_DIR="${PROJECT_BINARY_DIR}")
+  target_link_libraries(${name} PRIVATE ${ARG_LINK} stillpoint::sdk GTest::gmock GTest::gtest_main)
+  gtest_discover_tests(${name} DISCOVERY_MODE PRE_TEST DISCOVERY_TIMEOUT 60)
+endfunction()
+
+# stillpoint_add_project_plugin(NAME LINK libraries…): a plugin of this project from the sources in
+# the current folder: a static library with everything but plugin.cpp (for tests and tools), the
+# plugin itself, and a test program from *_test.cpp.
+function(stillpoint_add_project_plugin name)
+  cmake_parse_arguments(ARG "" "" "LINK" ${ARGN})
+  file(GLOB sources CONFIGURE_DEPENDS *.cpp)
+  file(GLOB tests CONFIGURE_DEPENDS *_test.cpp)
+  file(GLOB entry CONFIGURE_DEPENDS plugin.cpp)
+  list(REMOVE_ITEM sources ${tests} ${entry})
+
+  add_library(${name}_code STATIC ${sources})
+  stillpoint_compile_options(${name}_code)
+  target_include_directories(${name}_code PUBLIC ${PROJECT_SOURCE_DIR}/plugins)
+  target_link_libraries(${name}_code PUBLIC stillpoint::sdk ${ARG_LINK})
+
+  add_library(stillpoint_${name} MODULE ${entry})
+  stillpoint_compile_options(stillpoint_${name})
+  target_link_libraries(stillpoint_${name} PRIVATE ${name}_code)
+  target_link_options(stillpoint_${name} PRIVATE -Wl,--no-undefined -Wl,--exclude-libs,ALL)
+  set_target_properties(stillpoint_${name} PROPERTIES
+    LIBRARY_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/lib/stillpoint/plugins
+    INSTALL_RPATH "$ORIGIN/../..")
+  install(TARGETS stillpoint_${name} LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/stillpoint/plugins)
+
+  if(tests)
+    stillpoint_add_tests(${name}_test SOURCES ${tests} LINK ${name}_code)
+  endif()
+endfunction()
