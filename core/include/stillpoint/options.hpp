@@ -13,6 +13,7 @@
 #include <initializer_list>
 #include <limits>
 #include <map>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -71,7 +72,7 @@ class STILLPOINT_EXPORT OptionVisitor {
   /// A list of structs. Given in YAML, it replaces the default list.
   template <OptionGroup T>
   void operator()(std::string_view name, std::vector<T>& list, const OptionInfo& info) {
-    list.resize(enter_list(name, list.size(), info));
+    if (const auto size = enter_list(name, list.size(), info)) list.assign(*size, T{});
     for (std::size_t i = 0; i < list.size(); ++i) {
       if (!enter_element(i)) continue;
       list[i].visit(*this);
@@ -126,9 +127,10 @@ class STILLPOINT_EXPORT OptionVisitor {
 
   /// Returns whether to visit the group's fields; only then `leave()` follows.
   virtual bool enter_group(std::string_view name, const OptionInfo& info) = 0;
-  /// Returns the number of elements to visit; `leave()` always follows.
-  virtual std::size_t enter_list(std::string_view name, std::size_t default_size,
-                                 const OptionInfo& info) = 0;
+  /// Returns the number of new elements, or nothing to keep the default list; `leave()` always
+  /// follows.
+  virtual std::optional<std::size_t> enter_list(std::string_view name, std::size_t default_size,
+                                                const OptionInfo& info) = 0;
   /// Like `enter_group`, for one element of the list entered last.
   virtual bool enter_element(std::size_t index) = 0;
   /// Returns the keys to visit, defaults included; `leave()` always follows.

@@ -1,0 +1,111 @@
+// A pipeline file, read, merged with the command line and checked as a whole.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "stillpoint/contracts/camera.hpp"
+#include "stillpoint/error.hpp"
+#include "stillpoint/options.hpp"
+#include "stillpoint/runtime/install_layout.hpp"
+#include "stillpoint/runtime/registry.hpp"
+
+namespace stillpoint {
+
+/// Every fault of a configuration, one line `file:line:column: error: …` each.
+class ConfigError final : public Error {
+ public:
+  explicit ConfigError(const std::string& lines) : Error(Fault::kUsage, lines) {}
+};
+
+/// What the command line says.
+struct PipelineRequest {
+  std::string pipeline;                  ///< a file, or a name from configs/pipelines
+  std::filesystem::path dataset;         ///< replaces source.path; relative to the working folder
+  std::string camera;                    ///< a file, or a name from configs/cameras
+  std::vector<std::string> assignments;  ///< `key.sub=value`
+  /// Searched after the file's own plugins.paths.
+  std::vector<std::filesystem::path> plugin_folders = default_plugin_folders();
+};
+
+/// The `runtime:` section.
+struct RuntimeOptions {
+  enum class Mode { kInline, kThreaded } mode = Mode::kThreaded;
+  enum class Pace { kFree, kSensor } pace = Pace::kFree;
+  int seed = 1;
+  int threads = 1;  ///< of each solver; always 1 inline
+
+  void visit(OptionVisitor& visitor);
+};
+
+/// The `segmentation:` section: how labels meet frames.
+struct SegmentationOptions {
+  enum class Schedule { kWait, kLatest } schedule = Schedule::kWait;
+  int latency = 3;  ///< frames; of `latest` in mode inline, instead of the clock
+
+  void visit(OptionVisitor& visitor);
+};
+
+struct ConfigNode;
+
+/// A stage section whose options have been found valid.
+class StageSpec {
+ public:
+  StageSpec(std::string section, const PluginType& type, std::shared_ptr<const ConfigNode> options);
+
+  const std::string& section() const { return section_; }  ///< "tracker", "outputs[1]", …
+  const std::string& kind() const { return type_.kind; }
+  const std::string& type() const { return type_.type; }
+  const PluginType& plugin() const { return type_; }
+
+  /// See stillpoint::create.
+  template <class Interface>
+  std::shared_ptr<Interface> create(const StageContext& context) const {
+    return stillpoint::create<Interface>(type_, *reader(), context);
+  }
+
+ private:
+  std::unique_ptr<OptionVisitor> reader() const;
+
+  std::string section_;
+  PluginType type_;
+  std::shared_ptr<const ConfigNode> options_;
+};
+
+/// A section left out is an empty optional: the built-in null stage.
+struct PipelineConfig {
+  std::filesystem::path file;
+  std::optional<CameraModel> camera;
+  std::optional<StageSpec> source;  ///< always there
+  std::optional<StageSpec> segmenter;
+  SegmentationOptions segmentation;
+  std::optional<StageSpec> propagator;
+  std::optional<StageSpec> moving_checker;
+  std::optional<StageSpec> decision;
+  std::optional<StageSpec> tracker;
+  std::optional<StageSpec> local_mapper;
+  std::optional<StageSpec> loop_closer;
+  std::optional<StageSpec> map_backend;
+  std::vector<StageSpec> outputs;
+  RuntimeOptions runtime;
+
+  /// The complete file: every option of every stage with its value, paths absolute, nothing
+  /// inherited. Loading it gives the same configuration.
+  std::string effective_yaml;
+};
+
+/// Reads and checks everything; nothing of it runs. Plugins are searched for in the file's
+/// plugins.paths and then in the request's folders, and stay in `registry`.
+/// Throws ConfigError with every fault found, or Error when there is no such file.
+PipelineConfig load_pipeline(const PipelineRequest& request, Registry& registry);
+
+/// A camera by name from configs/cameras, or from a file with a `camera:` section.
+CameraModel load_camera(const std::string& name_or_file);
+
+/// The text of a camera file.
+std::string camera_yaml(CameraModel camera);
+
+}  // namespace stillpoint
