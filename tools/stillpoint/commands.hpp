@@ -1,0 +1,17 @@
+// The subcommands of the program. Each function adds its own to the command line; what it does runs
+// as the subcommand's callback and fails by throwing stillpoint::Error.
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+#include "stillpoint/runtime/pipeline_config.hpp"
+
+namespace stillpoint {
+
+void add_check(CLI::App& app);
+void add_plugins(CLI::App& app);
+
+/// PIPELINE, --dataset, --camera and --set, for every subcommand that reads a pipeline file.
+void add_pipeline_options(CLI::App& command, PipelineRequest& request);
+
+}  // namespace stillpoint

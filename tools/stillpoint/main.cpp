@@ -1,0 +1,55 @@
+// The command line. Exit codes: 0 done, 1 a stage failed, 2 wrong usage or configuration,
+// 3 unusable data.
+#include <exception>
+#include <iostream>
+
+#include "commands.hpp"
+#include "stillpoint/error.hpp"
+
+namespace {
+
+using stillpoint::Error;
+using stillpoint::Fault;
+
+constexpr void (*kCommands[])(CLI::App&) = {
+    stillpoint::add_check,
+    stillpoint::add_plugins,
+};
+
+int run(int argc, char** argv) {
+  CLI::App app{"RGB-D SLAM for scenes in which people and things move", "stillpoint"};
+  app.set_version_flag("--version", "stillpoint " STILLPOINT_VERSION);
+  app.set_help_all_flag("--help-all", "Help of every subcommand");
+  app.require_subcommand(1);
+  app.fallthrough(false);
+  app.footer(
+      "Exit codes: 0 done, 1 a stage failed, 2 wrong usage or configuration, 3 unusable data");
+  app.failure_message([](const CLI::App* command, const CLI::Error& error) {
+    return std::string("error: ") + error.what() + "\nRun '" + command->get_name() +
+           " --help' for help.\n";
+  });
+  for (const auto add : kCommands) add(app);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : static_cast<int>(Fault::kUsage);
+  }
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    return run(argc, argv);
+  } catch (const stillpoint::ConfigError& error) {  // each of its lines says "error:" already
+    std::cerr << error.what() << '\n';
+    return error.exit_code();
+  } catch (const Error& error) {
+    std::cerr << "error: " << error.what() << '\n';
+    return error.exit_code();
+  } catch (const std::exception& error) {
+    std::cerr << "error: " << error.what() << '\n';
+    return static_cast<int>(Fault::kStage);
+  }
+}

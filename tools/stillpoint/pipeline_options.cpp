@@ -1,0 +1,24 @@
+#include "commands.hpp"
+
+namespace stillpoint {
+
+void add_pipeline_options(CLI::App& command, PipelineRequest& request) {
+  command
+      .add_option("pipeline", request.pipeline,
+                  "Pipeline file, or the name of one in configs/pipelines")
+      ->type_name("PIPELINE")
+      ->required();
+  command.add_option("--dataset", request.dataset, "Recording to read; replaces source.path")
+      ->type_name("DIR");
+  command
+      .add_option("--camera", request.camera,
+                  "Camera file, or the name of one in configs/cameras; replaces the camera section")
+      ->type_name("NAME|FILE");
+  command
+      .add_option("--set", request.assignments,
+                  "Change one setting, as in --set tracker.features=2000; may be repeated")
+      ->type_name("KEY.SUB=VALUE")
+      ->allow_extra_args(false);
+}
+
+}  // namespace stillpoint
