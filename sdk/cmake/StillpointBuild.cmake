@@ -1,8 +1,8 @@
 # Helpers of the project's own build.
 
-# Warnings and the project's include rules for a target.
+# Warnings for a target. Designated initialisers may leave out fields that have defaults.
 function(stillpoint_compile_options target)
-  target_compile_options(${target} PRIVATE -Wall -Wextra -Wshadow -Wnon-virtual-dtor
+  target_compile_options(${target} PRIVATE -Wall -Wextra -Wno-missing-field-initializers -Wshadow -Wnon-virtual-dtor
                          -Woverloaded-virtual $<$<BOOL:${STILLPOINT_WARNINGS_AS_ERRORS}>:-Werror>)
 endfunction()
 

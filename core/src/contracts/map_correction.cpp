@@ -1,0 +1,59 @@
+#include "stillpoint/contracts/map_correction.hpp"
+
+#include <unordered_map>
+#include <unordered_set>
+
+namespace stillpoint {
+namespace {
+
+using Poses = std::unordered_map<KeyFrameId, Pose>;
+
+// Poses after the correction, of those key frames that it moves. Parents are older than their
+// children, so one pass in order of id carries the correction on to the newer key frames.
+Poses corrected_poses(const MapCorrection& correction, const SparseMap& map) {
+  Poses moved;
+  for (const MovedKeyFrame& m : correction.moved)
+    if (map.keyframe(m.keyframe)) moved[m.keyframe] = m.world_from_camera;
+  for (KeyFrameId id = correction.keyframe_id_end; id < map.keyframe_id_end(); ++id) {
+    const KeyFrame* keyframe = map.keyframe(id);
+    if (!keyframe || keyframe->parent == kNoId) continue;
+    const auto parent = moved.find(keyframe->parent);
+    if (parent == moved.end()) continue;
+    const Pose parent_from_keyframe =
+        map.keyframe(keyframe->parent)->world_from_camera.inverse() * keyframe->world_from_camera;
+    moved[id] = parent->second * parent_from_keyframe;
+  }
+  return moved;
+}
+
+}  // namespace
+
+SparseMap apply(const MapCorrection& correction, SparseMap map) {
+  MapEdit edit(std::move(map));
+  const Poses moved = corrected_poses(correction, edit.map());
+
+  std::unordered_set<LandmarkId> placed;
+  for (const auto& [id, position] : correction.landmarks) {
+    if (!edit.map().landmark(id)) continue;
+    edit.landmark(id).position_in_world = position;
+    placed.insert(id);
+  }
+  for (LandmarkId id = 0; id < edit.map().landmark_id_end(); ++id) {
+    const Landmark* landmark = edit.map().landmark(id);
+    if (!landmark || placed.contains(id)) continue;
+    const auto reference = moved.find(landmark->reference);
+    if (reference == moved.end()) continue;
+    const Pose old = edit.map().keyframe(landmark->reference)->world_from_camera;
+    edit.landmark(id).position_in_world =
+        reference->second * (old.inverse() * landmark->position_in_world);
+  }
+  for (const auto& [id, pose] : moved) edit.keyframe(id).world_from_camera = pose;
+  for (const auto& [kept, gone] : correction.fused) {
+    const LandmarkId a = edit.map().current_id(kept);
+    const LandmarkId b = edit.map().current_id(gone);
+    if (a != kNoId && b != kNoId && a != b) edit.fuse_landmarks(a, b);
+  }
+  return std::move(edit).finish();
+}
+
+}  // namespace stillpoint
