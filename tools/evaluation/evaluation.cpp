@@ -1,0 +1,51 @@
+#include "evaluation/evaluation.hpp"
+
+#include <utility>
+
+#include "evaluation/format.hpp"
+#include "stillpoint/error.hpp"
+
+namespace stillpoint::evaluation {
+namespace {
+
+constexpr std::size_t kMinPairs = 3;  // fewer positions do not determine an alignment
+
+std::string range_text(const Trajectory& trajectory, double offset) {
+  return fixed(trajectory.start() + offset, 3) + " to " + fixed(trajectory.end() + offset, 3) +
+         " s (" + trajectory.name + ")";
+}
+
+[[noreturn]] void throw_too_few_pairs(const Evaluation& e) {
+  const double offset = e.options.offset;
+  const bool overlap = e.estimate.start() + offset <= e.reference.end() &&
+                       e.reference.start() <= e.estimate.end() + offset;
+  throw Error(Fault::kData,
+              "only " + std::to_string(e.pairs.size()) +
+                  " poses of estimate and reference belong together within " +
+                  fixed(e.options.max_difference, 3) + " s, at least " + std::to_string(kMinPairs) +
+                  " are needed; the reference covers " + range_text(e.reference, 0) +
+                  ", the estimate " + range_text(e.estimate, offset),
+              {},
+              overlap ? "a larger --max-difference or an --offset may help"
+                      : "the two do not overlap in time: check that they belong to one recording, "
+                        "or shift the estimate with --offset");
+}
+
+}  // namespace
+
+Evaluation evaluate(Trajectory reference, Trajectory estimate,
+                    const std::vector<double>& frame_times, const EvaluationOptions& options) {
+  Evaluation e{options, std::move(reference), std::move(estimate), {}, {}, {}, {}, {}, {}};
+  e.pairs = associate(times_of(e.reference), times_of(e.estimate), options.max_difference,
+                      options.offset);
+  if (e.pairs.size() < kMinPairs) throw_too_few_pairs(e);
+  e.rigid = absolute_error(e.reference, e.estimate, e.pairs, AlignmentKind::kRigid);
+  e.similarity = absolute_error(e.reference, e.estimate, e.pairs, AlignmentKind::kSimilarity);
+  e.relative = relative_error(e.reference, e.estimate, options.delta, options.offset);
+  e.span = span_coverage(e.reference, e.estimate, options.offset);
+  if (!frame_times.empty())
+    e.frames = frame_coverage(frame_times, e.estimate, options.max_difference);
+  return e;
+}
+
+}  // namespace stillpoint::evaluation

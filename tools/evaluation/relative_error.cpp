@@ -1,0 +1,57 @@
+#include "evaluation/relative_error.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+#include <vector>
+
+#include "evaluation/association.hpp"
+
+namespace stillpoint::evaluation {
+namespace {
+
+constexpr double kReferenceIntervals = 2;  // a reference pose farther away in time is none
+
+// Pairs (i, j) of estimated poses that are `delta` apart.
+std::vector<TimePair> intervals(const std::vector<double>& times, const Delta& delta) {
+  std::vector<double> axis = times;
+  if (delta.unit == DeltaUnit::kFrames) std::iota(axis.begin(), axis.end(), 0.0);
+  std::vector<TimePair> result;
+  for (std::size_t i = 0; i < axis.size(); ++i) {
+    const std::size_t j = closest(axis, axis[i] + delta.length);
+    if (j + 1 < axis.size()) result.push_back({i, j});
+  }
+  return result;
+}
+
+// As in the script, motions are taken backwards, the earlier pose seen from the later one.
+Pose earlier_from_later(const StampedPose& earlier, const StampedPose& later) {
+  return later.world_from_camera.inverse() * earlier.world_from_camera;
+}
+
+}  // namespace
+
+std::optional<RelativeError> relative_error(const Trajectory& reference, const Trajectory& estimate,
+                                            const Delta& delta, double offset) {
+  const std::vector<double> reference_times = times_of(reference);
+  const std::vector<double> estimate_times = times_of(estimate);
+  const double max_difference = kReferenceIntervals * median_interval(reference);
+  std::vector<double> translations, rotations;
+  for (const auto& [i, j] : intervals(estimate_times, delta)) {
+    const double from_time = estimate_times[i] + offset, to_time = estimate_times[j] + offset;
+    const StampedPose& from = reference.poses[closest(reference_times, from_time)];
+    const StampedPose& to = reference.poses[closest(reference_times, to_time)];
+    if (std::abs(from.time - from_time) > max_difference ||
+        std::abs(to.time - to_time) > max_difference)
+      continue;
+    const Pose error = earlier_from_later(estimate.poses[i], estimate.poses[j]).inverse() *
+                       earlier_from_later(from, to);
+    translations.push_back(error.translation().norm());
+    rotations.push_back(rotation_angle(error) * 180.0 / std::numbers::pi);
+  }
+  if (translations.size() < 2) return std::nullopt;
+  return RelativeError{translations.size(), statistics_of(translations), statistics_of(rotations)};
+}
+
+}  // namespace stillpoint::evaluation

@@ -1,0 +1,42 @@
+// Trajectories in the format of the TUM RGB-D benchmark: one pose per line,
+// `time tx ty tz qx qy qz qw`, in seconds and metres, camera in the world.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "stillpoint/pose_math.hpp"
+
+namespace stillpoint::evaluation {
+
+struct StampedPose {
+  double time;  // seconds
+  Pose world_from_camera;
+};
+
+/// Poses by strictly rising time; at least one.
+struct Trajectory {
+  std::string name;  ///< the file, for messages
+  std::vector<StampedPose> poses;
+  int repeated_stamps = 0;  ///< lines left out because a later one has the same time
+
+  double start() const { return poses.front().time; }
+  double end() const { return poses.back().time; }
+  double duration() const { return end() - start(); }
+};
+
+/// Quaternions are normalised. Of several poses with one time stamp the last one counts, as in the
+/// scripts of the benchmark. Throws Error(kData) with file and line for anything else that is not
+/// as described above.
+Trajectory read_trajectory(const std::filesystem::path& file);
+
+std::vector<double> times_of(const Trajectory& trajectory);
+
+/// Median time in seconds between successive poses; 0 for a single one.
+double median_interval(const Trajectory& trajectory);
+
+/// The first column of a list such as rgb.txt or associations.txt: times in seconds, rising.
+std::vector<double> read_stamps(const std::filesystem::path& file);
+
+}  // namespace stillpoint::evaluation
