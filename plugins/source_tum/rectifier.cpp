@@ -1,0 +1,83 @@
+#include "source_tum/rectifier.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <opencv2/calib3d.hpp>
+#include <opencv2/imgproc.hpp>
+
+namespace stillpoint {
+namespace {
+
+bool is_distorted(const CameraModel& model) {
+  return std::any_of(model.distortion.begin(), model.distortion.end(),
+                     [](double k) { return k != 0.0; });
+}
+
+cv::Rect crop_of(const CameraModel& model) {
+  if (model.crop.size() != 4) return {0, 0, model.width, model.height};
+  return {static_cast<int>(model.crop[0]), static_cast<int>(model.crop[1]),
+          static_cast<int>(model.crop[2]), static_cast<int>(model.crop[3])};
+}
+
+/// Source position (CV_32FC1 x and y) of every pixel of the undistorted and cropped image.
+void undistortion_map(const CameraModel& model, const Camera& camera, cv::Mat& x, cv::Mat& y) {
+  const cv::Matx33d recorded(model.fx, 0, model.cx, 0, model.fy, model.cy, 0, 0, 1);
+  const cv::Matx33d ideal(camera.fx, 0, camera.cx, 0, camera.fy, camera.cy, 0, 0, 1);
+  cv::initUndistortRectifyMap(recorded, model.distortion, cv::noArray(), ideal,
+                              {camera.width, camera.height}, CV_32FC1, x, y);
+}
+
+std::vector<int> nearest_pixels(const cv::Mat& x, const cv::Mat& y, const CameraModel& model) {
+  std::vector<int> indices(x.total());
+  for (std::size_t i = 0; i < indices.size(); ++i) {
+    const int u = cvRound(x.at<float>(static_cast<int>(i)));
+    const int v = cvRound(y.at<float>(static_cast<int>(i)));
+    const bool inside = u >= 0 && v >= 0 && u < model.width && v < model.height;
+    indices[i] = inside ? v * model.width + u : -1;
+  }
+  return indices;
+}
+
+}  // namespace
+
+Rectifier::Rectifier(const CameraModel& model)
+    : crop_(crop_of(model)),
+      camera_(model.undistorted()),
+      depth_factor_(static_cast<float>(model.depth_factor)),
+      min_raw_(std::max(
+          1, static_cast<int>(std::ceil(std::min(model.min_depth * model.depth_factor, 65536.0))))),
+      max_raw_(static_cast<int>(std::min(model.max_depth * model.depth_factor, 65535.0))) {
+  if (!is_distorted(model)) return;
+  cv::Mat x, y;
+  undistortion_map(model, camera_, x, y);
+  cv::convertMaps(x, y, color_map_, color_weights_, CV_16SC2);
+  depth_map_ = nearest_pixels(x.reshape(1, 1), y.reshape(1, 1), model);
+}
+
+cv::Mat Rectifier::color(const cv::Mat& bgr) const {
+  if (color_map_.empty()) return crop_.size() == bgr.size() ? bgr : bgr(crop_).clone();
+  cv::Mat undistorted;
+  cv::remap(bgr, undistorted, color_map_, color_weights_, cv::INTER_LINEAR, cv::BORDER_CONSTANT);
+  return undistorted;
+}
+
+cv::Mat Rectifier::depth(const cv::Mat& raw) const {
+  cv::Mat metres(camera_.height, camera_.width, CV_32FC1);
+  const auto convert = [this](int value) {
+    return value >= min_raw_ && value <= max_raw_ ? static_cast<float>(value) / depth_factor_ : 0.f;
+  };
+  for (int y = 0; y < metres.rows; ++y) {
+    float* out = metres.ptr<float>(y);
+    if (depth_map_.empty()) {
+      const std::uint16_t* in = raw.ptr<std::uint16_t>(y + crop_.y) + crop_.x;
+      for (int x = 0; x < metres.cols; ++x) out[x] = convert(in[x]);
+    } else {
+      const int* from = &depth_map_[static_cast<std::size_t>(y) * metres.cols];
+      const std::uint16_t* in = raw.ptr<std::uint16_t>();
+      for (int x = 0; x < metres.cols; ++x) out[x] = from[x] < 0 ? 0.f : convert(in[from[x]]);
+    }
+  }
+  return metres;
+}
+
+}  // namespace stillpoint

@@ -1,0 +1,52 @@
+// Frames of a recording on disk (TUM RGB-D benchmark, Bonn RGB-D Dynamic).
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "source_tum/image_reader.hpp"
+#include "source_tum/recording.hpp"
+#include "source_tum/rectifier.hpp"
+#include "stillpoint/sdk.hpp"
+
+namespace stillpoint {
+
+/// Images that cannot be used are skipped and reported. Gives up with Error(kData) when the first
+/// ten are all unusable, or more than half.
+class TumSource final : public Source {
+ public:
+  struct Options {
+    std::string path;
+    RecordingOptions pairing;
+    int start = 0;   ///< first pair
+    int end = 0;     ///< one past the last pair, 0 = all
+    int stride = 1;  ///< of the pairs, every how manieth
+    int limit = 0;   ///< most frames, 0 = no limit
+
+    void visit(OptionVisitor& visitor);
+  };
+
+  TumSource(Options options, const StageContext& context);
+
+  std::optional<Frame> next() override;
+  std::optional<std::size_t> size() const override { return recording_.pairs.size(); }
+  SourceReport report() const override { return report_; }
+  std::filesystem::path ground_truth() const override { return recording_.ground_truth; }
+
+ private:
+  Frame load(const ImagePair& pair);
+  void skip(const Error& reason);
+
+  Recording recording_;
+  CameraModel model_;
+  Rectifier rectifier_;
+  std::shared_ptr<const Camera> camera_;
+  std::function<void(LogLevel, std::string_view)> log_;
+  ImageReader reader_;
+  std::size_t position_ = 0;  // in recording_.pairs
+  std::uint32_t given_ = 0;   // frames
+  SourceReport report_;
+};
+
+}  // namespace stillpoint
