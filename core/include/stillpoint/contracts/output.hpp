@@ -1,6 +1,7 @@
 // Contract: what a run leaves behind (paper IV). Thread 1.
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -15,11 +16,12 @@
 
 namespace stillpoint {
 
-/// Time one stage took for one frame or key frame.
+/// Time one stage took for one frame.
 struct StageTime {
-  std::string stage;     ///< "source", "prepare", "moving_check", "track", "map_insert", …
-  double wall_ms = 0.0;  ///< milliseconds of the clock on the wall
-  double cpu_ms = 0.0;   ///< milliseconds of processor time of the stage's own thread
+  std::string stage;        ///< "source", "prepare", "moving_check", "track", "map_insert", …
+  double wall_ms = 0.0;     ///< milliseconds of the clock on the wall
+  double cpu_ms = 0.0;      ///< milliseconds of processor time of the stage's own thread
+  std::uint32_t frame = 0;  ///< index of the frame the work was for
 };
 
 /// Everything the pipeline knows of one frame. References are valid during the call only.
@@ -29,7 +31,8 @@ struct FrameReport {
   const MovingPoints& moving;
   const StaticWeights& weights;
   const TrackResult& result;
-  /// Stages of this frame, and those of other threads that ended since the last report.
+  /// What ended since the last report: stages of this frame, of other threads, and the outputs of
+  /// the frame before.
   const std::vector<StageTime>& times;
 };
 
@@ -46,14 +49,15 @@ struct RunSummary {
   const SparseMap& map;
   const std::vector<TrackedPose>& poses;  ///< of all frames processed, in order
   const SourceReport& source;
-  int dropped_frames = 0;  ///< by `pace: sensor`
+  const std::vector<StageTime>& times;  ///< what ended since the last report
+  int dropped_frames = 0;               ///< by `pace: sensor`
   double wall_seconds = 0.0;
   double cpu_seconds = 0.0;  ///< of the whole process during the run
   double recorded_seconds = 0.0;
   long long seed = 0;
-  std::string mode;     ///< "inline" or "threaded"
-  bool complete = true; ///< false when the run was stopped or failed
-  std::string failure;  ///< the message of the stage that failed, if any
+  std::string mode;      ///< "inline" or "threaded"
+  bool complete = true;  ///< false when the run was stopped or failed
+  std::string failure;   ///< the message of the stage that failed, if any
 };
 
 class STILLPOINT_EXPORT Output {
