@@ -13,6 +13,7 @@ using stillpoint::Fault;
 
 constexpr void (*kCommands[])(CLI::App&) = {
     stillpoint::add_check,
+    stillpoint::add_evaluate,
     stillpoint::add_plugins,
 };
 

@@ -1,0 +1,70 @@
+#include "evaluation/trajectory.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "fixtures.hpp"
+#include "stillpoint/error.hpp"
+
+namespace stillpoint::evaluation {
+namespace {
+
+using testing::HasSubstr;
+
+std::string message_for(const std::string& text) {
+  const TemporaryFile file("bad.txt", text);
+  try {
+    read_trajectory(file.path());
+  } catch (const Error& error) {
+    EXPECT_EQ(error.fault(), Fault::kData);
+    return error.what();
+  }
+  return "no error";
+}
+
+constexpr const char* kGood = "1.5 1 2 3 0 0 0 1\n";
+
+TEST(Trajectory, ReadsCommentsTabsCommasAndWindowsLineEnds) {
+  const TemporaryFile file("good.txt",
+                           "# time tx …\r\n\n 1.5 1 2 3 0 0 0 2\r\n2.5,4,5\t6,0 0 1 1\n");
+  const Trajectory t = read_trajectory(file.path());
+  ASSERT_EQ(t.poses.size(), 2u);
+  EXPECT_EQ(t.start(), 1.5);
+  EXPECT_TRUE(t.poses[0].world_from_camera.linear().isIdentity(1e-15));
+  EXPECT_EQ(t.poses[1].world_from_camera.translation(), Eigen::Vector3d(4, 5, 6));
+  EXPECT_NEAR(rotation_angle(t.poses[1].world_from_camera), M_PI / 2, 1e-12);
+}
+
+TEST(Trajectory, LastOfSeveralPosesWithOneTimeCounts) {
+  const TemporaryFile file("repeated.txt", std::string(kGood) + "1.5 7 2 3 0 0 0 1\n");
+  const Trajectory t = read_trajectory(file.path());
+  ASSERT_EQ(t.poses.size(), 1u);
+  EXPECT_EQ(t.repeated_stamps, 1);
+  EXPECT_EQ(t.poses[0].world_from_camera.translation().x(), 7);
+}
+
+TEST(Trajectory, EveryFaultNamesFileAndLine) {
+  const std::string good = kGood;
+  EXPECT_THAT(message_for(good + "2.5 1 2 3 0 0 0\n"), HasSubstr("bad.txt:2: expected 8 columns"));
+  EXPECT_THAT(message_for(good + "2.5\n"), HasSubstr("bad.txt:2: expected 8 columns, found 1"));
+  EXPECT_THAT(message_for("1 2 x 3 0 0 0 1\n"), HasSubstr("bad.txt:1: 'x' is not a number"));
+  EXPECT_THAT(message_for("1 2 1.5m 3 0 0 0 1\n"), HasSubstr("'1.5m' is not a number"));
+  EXPECT_THAT(message_for(good + "2.5 nan 2 3 0 0 0 1\n"), HasSubstr("bad.txt:2: 'nan' is not a"));
+  EXPECT_THAT(message_for(good + "2.5 1 2 3 0 0 0 0\n"), HasSubstr("bad.txt:2: the quaternion"));
+  EXPECT_THAT(message_for(good + "0.5 1 2 3 0 0 0 1\n"), HasSubstr("bad.txt:2: the time is earl"));
+  EXPECT_THAT(message_for("# only a comment\n"), HasSubstr("bad.txt: the file holds no data line"));
+}
+
+TEST(Trajectory, MissingFileAndFolderAreNamed) {
+  EXPECT_THROW(read_trajectory("no/such/file.txt"), Error);
+  EXPECT_THROW(read_trajectory(STILLPOINT_BINARY_DIR), Error);
+}
+
+TEST(Trajectory, StampsAreTheFirstColumnOfAnyList) {
+  const TemporaryFile file("rgb.txt",
+                           "# color images\n1.5 rgb/a.png 1.6 depth/a.png\n2.5 rgb/b.png\n");
+  EXPECT_THAT(read_stamps(file.path()), testing::ElementsAre(1.5, 2.5));
+}
+
+}  // namespace
+}  // namespace stillpoint::evaluation
