@@ -1,0 +1,116 @@
+#include "source_tum/rectifier.hpp"
+
+#include <gtest/gtest.h>
+
+#include <opencv2/calib3d.hpp>
+#include <opencv2/imgproc.hpp>
+
+namespace stillpoint {
+namespace {
+
+CameraModel fr1() {
+  return {.name = "fr1",
+          .width = 640,
+          .height = 480,
+          .fx = 517.306408,
+          .fy = 516.469215,
+          .cx = 318.643040,
+          .cy = 255.313989,
+          .distortion = {0.262383, -0.953104, -0.005358, 0.002628, 1.163314}};
+}
+
+/// Where the recorded pixel (u, v) lies in the rectified image.
+cv::Point2d rectified_position(const CameraModel& model, double u, double v) {
+  const cv::Matx33d matrix(model.fx, 0, model.cx, 0, model.fy, model.cy, 0, 0, 1);
+  std::vector<cv::Point2d> in{{u, v}}, out;
+  cv::undistortPoints(in, out, matrix, model.distortion, cv::noArray(), matrix,
+                      {cv::TermCriteria::COUNT | cv::TermCriteria::EPS, 50, 1e-12});
+  const cv::Point2d corner =
+      model.crop.empty() ? cv::Point2d() : cv::Point2d(model.crop[0], model.crop[1]);
+  return out[0] - corner;
+}
+
+cv::Point2d centre_of_brightness(const cv::Mat& bgr) {
+  cv::Mat gray;
+  cv::cvtColor(bgr, gray, cv::COLOR_BGR2GRAY);
+  const cv::Moments moments = cv::moments(gray);
+  return {moments.m10 / moments.m00, moments.m01 / moments.m00};
+}
+
+void expect_blobs_land_where_they_should(const CameraModel& model) {
+  const Rectifier rectifier(model);
+  for (const int u : {120, 320, 500})
+    for (const int v : {100, 240, 400}) {
+      cv::Mat spot(480, 640, CV_8UC3, cv::Scalar::all(0));
+      cv::circle(spot, {u, v}, 3, cv::Scalar::all(255), cv::FILLED);
+      const cv::Point2d expected = rectified_position(model, u, v);
+      const cv::Point2d seen = centre_of_brightness(rectifier.color(spot));
+      EXPECT_NEAR(seen.x, expected.x, 0.1) << u << ", " << v;
+      EXPECT_NEAR(seen.y, expected.y, 0.1) << u << ", " << v;
+    }
+}
+
+TEST(Rectifier, MovesColourAsUndistortPointsDoes) { expect_blobs_land_where_they_should(fr1()); }
+
+TEST(Rectifier, CropsAfterUndistorting) {
+  CameraModel model = fr1();
+  model.crop = {20, 30, 560, 420};
+  expect_blobs_land_where_they_should(model);
+  const Rectifier rectifier(model);
+  EXPECT_EQ(rectifier.color(cv::Mat(480, 640, CV_8UC3)).size(), cv::Size(560, 420));
+  EXPECT_EQ(rectifier.depth(cv::Mat(480, 640, CV_16UC1)).size(), cv::Size(560, 420));
+  EXPECT_EQ(rectifier.camera().cx, model.cx - 20);
+}
+
+TEST(Rectifier, TakesTheNearestDepthAndKeepsHoles) {
+  const CameraModel model = fr1();
+  cv::Mat raw(480, 640, CV_16UC1);
+  for (int y = 0; y < 480; ++y)
+    for (int x = 0; x < 640; ++x)
+      raw.at<std::uint16_t>(y, x) = static_cast<std::uint16_t>((x / 8 + y / 8) % 2 ? 5000 : 20000);
+  raw(cv::Rect(300, 200, 40, 40)) = 0;
+  const cv::Mat metres = Rectifier(model).depth(raw);
+  const cv::Matx33d k(model.fx, 0, model.cx, 0, model.fy, model.cy, 0, 0, 1);
+  cv::Mat map_x, map_y;
+  cv::initUndistortRectifyMap(k, model.distortion, cv::noArray(), k, raw.size(), CV_32FC1, map_x,
+                              map_y);
+  for (int y = 0; y < 480; ++y)
+    for (int x = 0; x < 640; ++x) {
+      const cv::Point from(cvRound(map_x.at<float>(y, x)), cvRound(map_y.at<float>(y, x)));
+      const bool inside = cv::Rect(0, 0, 640, 480).contains(from);
+      const float expected =
+          inside ? static_cast<float>(raw.at<std::uint16_t>(from)) / 5000.f : 0.f;
+      ASSERT_EQ(metres.at<float>(y, x), expected) << x << ", " << y;
+    }
+}
+
+TEST(Rectifier, ConvertsEveryDepthValueExactly) {
+  CameraModel model{.width = 256, .height = 256};
+  model.min_depth = 0.5;
+  model.max_depth = 8.0;
+  cv::Mat raw(256, 256, CV_16UC1);
+  for (int i = 0; i < 65536; ++i)
+    raw.at<std::uint16_t>(i / 256, i % 256) = static_cast<std::uint16_t>(i);
+  const cv::Mat metres = Rectifier(model).depth(raw);
+  for (int i = 0; i < 65536; ++i)
+    ASSERT_EQ(metres.at<float>(i / 256, i % 256),
+              i >= 2500 && i <= 40000 ? static_cast<float>(i) / 5000.f : 0.f);
+}
+
+TEST(Rectifier, AcceptsNoLowerLimitAndFactorsBeyondSixteenBits) {
+  CameraModel model{.width = 16, .height = 16, .depth_factor = 100000.0};
+  model.min_depth = 0.0;
+  const cv::Mat metres = Rectifier(model).depth(cv::Mat(16, 16, CV_16UC1, cv::Scalar(65535)));
+  EXPECT_EQ(metres.at<float>(0, 0), 65535.f / 100000.f);
+  EXPECT_EQ(cv::countNonZero(Rectifier(model).depth(cv::Mat::zeros(16, 16, CV_16UC1))), 0);
+}
+
+TEST(Rectifier, LeavesImagesOfAnIdealCameraAlone) {
+  CameraModel model{.distortion = {0, 0, 0, 0, 0}};
+  cv::Mat image(480, 640, CV_8UC3);
+  cv::randu(image, 0, 256);
+  EXPECT_EQ(cv::norm(Rectifier(model).color(image), image, cv::NORM_INF), 0);
+}
+
+}  // namespace
+}  // namespace stillpoint

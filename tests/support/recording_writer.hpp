@@ -1,0 +1,100 @@
+// Writes small recordings in the format of the TUM RGB-D benchmark into a temporary folder.
+#pragma once
+
+#include <unistd.h>
+#include <atomic>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <opencv2/core.hpp>
+#include <opencv2/imgcodecs.hpp>
+#include <string>
+
+namespace stillpoint::testing {
+
+/// A folder of its own under the system's temporary folder, removed at the end.
+class TemporaryFolder {
+ public:
+  TemporaryFolder() {
+    static std::atomic<int> counter = 0;
+    path_ = std::filesystem::temp_directory_path() /
+            ("stillpoint_test_" + std::to_string(getpid()) + "_" + std::to_string(counter++));
+    std::filesystem::create_directories(path_);
+  }
+  ~TemporaryFolder() {
+    std::error_code ignored;
+    std::filesystem::remove_all(path_, ignored);
+  }
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+
+  const std::filesystem::path& path() const { return path_; }
+
+  std::filesystem::path write(const std::string& name, const std::string& text) const {
+    std::filesystem::create_directories((path_ / name).parent_path());
+    std::ofstream(path_ / name, std::ios::binary) << text;
+    return path_ / name;
+  }
+
+ private:
+  std::filesystem::path path_;
+};
+
+/// A time stamp as the benchmark writes it.
+inline std::string stamp_text(double time) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.6f", time);
+  return text;
+}
+
+/// Images go to disk at once; rgb.txt and depth.txt are written by finish() or the destructor.
+class RecordingWriter {
+ public:
+  explicit RecordingWriter(std::filesystem::path folder) : folder_(std::move(folder)) {
+    std::filesystem::create_directories(folder_ / "rgb");
+    std::filesystem::create_directories(folder_ / "depth");
+  }
+  ~RecordingWriter() { finish(); }
+  RecordingWriter(const RecordingWriter&) = delete;
+  RecordingWriter& operator=(const RecordingWriter&) = delete;
+
+  std::filesystem::path color(double time, const cv::Mat& image,
+                              const std::string& extension = ".png") {
+    return add(time, image, "rgb/" + stamp_text(time) + extension, rgb_list_);
+  }
+  std::filesystem::path depth(double time, const cv::Mat& image) {
+    return add(time, image, "depth/" + stamp_text(time) + ".png", depth_list_);
+  }
+  void pair(double time, const cv::Mat& color_image, const cv::Mat& depth_image) {
+    color(time, color_image);
+    depth(time, depth_image);
+  }
+
+  void finish() {
+    if (finished_) return;
+    finished_ = true;
+    std::ofstream(folder_ / "rgb.txt") << "# timestamp filename\n" << rgb_list_;
+    std::ofstream(folder_ / "depth.txt") << "# timestamp filename\n" << depth_list_;
+  }
+
+ private:
+  std::filesystem::path add(double time, const cv::Mat& image, const std::string& name,
+                            std::string& list) {
+    cv::imwrite((folder_ / name).string(), image);
+    list += stamp_text(time) + " " + name + "\n";
+    return folder_ / name;
+  }
+
+  std::filesystem::path folder_;
+  std::string rgb_list_;
+  std::string depth_list_;
+  bool finished_ = false;
+};
+
+/// Cuts a file to `share` of its size.
+inline void truncate_file(const std::filesystem::path& file, double share) {
+  const auto size = static_cast<double>(std::filesystem::file_size(file));
+  std::filesystem::resize_file(file, static_cast<std::uintmax_t>(size * share));
+}
+
+}  // namespace stillpoint::testing
