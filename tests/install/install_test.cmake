@@ -1,0 +1,49 @@
+# Installs into an empty prefix, builds a plugin of one file against it, and calls the installed
+# program from a folder that has nothing to do with the project.
+set(work ${BUILD_DIR}/install_test)
+set(prefix ${work}/prefix)
+set(elsewhere ${work}/elsewhere)
+file(REMOVE_RECURSE ${work})
+file(MAKE_DIRECTORY ${elsewhere})
+
+# run(COMMAND…): from the other folder; fails the test unless the command succeeds. Its output is
+# left in `output`.
+function(run)
+  execute_process(COMMAND ${ARGN} WORKING_DIRECTORY ${elsewhere}
+    RESULT_VARIABLE result OUTPUT_VARIABLE out ERROR_VARIABLE out)
+  if(NOT result EQUAL 0)
+    list(JOIN ARGN " " command)
+    message(FATAL_ERROR "failed (${result}): ${command}\n${out}")
+  endif()
+  set(output "${out}" PARENT_SCOPE)
+endfunction()
+
+function(expect_in_output text)
+  string(FIND "${output}" "${text}" position)
+  if(position EQUAL -1)
+    message(FATAL_ERROR "'${text}' is missing in:\n${output}")
+  endif()
+endfunction()
+
+run(${CMAKE_COMMAND} --install ${BUILD_DIR} --prefix ${prefix})
+set(program ${prefix}/bin/stillpoint)
+
+run(${program} --version)
+expect_in_output("stillpoint ")
+run(${program} evaluate
+  --reference ${SOURCE_DIR}/tests/evaluation/data/square_reference.txt
+  --estimate ${SOURCE_DIR}/tests/evaluation/data/square_estimate.txt)
+expect_in_output("ATE, SE(3)")
+run(${program} plugins list)
+expect_in_output("tum_rgbd")
+
+run(${CMAKE_COMMAND} -S ${SOURCE_DIR}/tests/install/external_plugin -B ${work}/plugin
+  -G ${GENERATOR} -D CMAKE_CXX_COMPILER=${CXX_COMPILER} -D CMAKE_BUILD_TYPE=Release
+  -D CMAKE_PREFIX_PATH=${prefix} -D CMAKE_INSTALL_PREFIX=${prefix})
+run(${CMAKE_COMMAND} --build ${work}/plugin)
+run(${CMAKE_COMMAND} -E env STILLPOINT_PLUGIN_PATH=${work}/plugin ${program} plugins list)
+expect_in_output("depth_change")
+run(${CMAKE_COMMAND} --install ${work}/plugin)
+run(${program} plugins list)
+expect_in_output("depth_change")
+file(REMOVE_RECURSE ${work})

@@ -1,0 +1,103 @@
+// Who may include whom: contracts ← options, plugin ← runtime ← tools; plugins know the SDK and
+// never each other; the evaluation knows nothing of the runtime.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <regex>
+#include <set>
+#include <string>
+#include <vector>
+
+namespace stillpoint {
+namespace {
+
+namespace fs = std::filesystem;
+
+const fs::path kRoot = STILLPOINT_SOURCE_DIR;
+const fs::path kPublic = kRoot / "core/include/stillpoint";
+
+struct Include {
+  fs::path by;
+  std::string header;
+};
+
+bool is_source(const fs::path& file) {
+  return file.extension() == ".hpp" || file.extension() == ".cpp";
+}
+
+std::vector<Include> includes_of(const fs::path& file) {
+  static const std::regex kIncludeLine(R"(\s*#\s*include\s*["<]([^">]+)[">].*)");
+  std::vector<Include> result;
+  std::ifstream stream(file);
+  for (std::string line; std::getline(stream, line);) {
+    std::smatch match;
+    if (std::regex_match(line, match, kIncludeLine)) result.push_back({file, match[1]});
+  }
+  return result;
+}
+
+// Of a file, or of all files below a folder.
+std::vector<Include> includes_below(const fs::path& path) {
+  if (!fs::is_directory(path)) return includes_of(path);
+  std::vector<Include> result;
+  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(path)) {
+    if (!entry.is_regular_file() || !is_source(entry.path())) continue;
+    for (const Include& include : includes_of(entry.path())) result.push_back(include);
+  }
+  return result;
+}
+
+std::set<std::string> folders_in(const fs::path& path) {
+  std::set<std::string> names;
+  for (const fs::directory_entry& entry : fs::directory_iterator(path))
+    if (entry.is_directory()) names.insert(entry.path().filename());
+  return names;
+}
+
+void expect_none_begins(const fs::path& path, const std::vector<std::string>& forbidden) {
+  ASSERT_TRUE(fs::exists(path)) << path;
+  for (const Include& include : includes_below(path))
+    for (const std::string& prefix : forbidden)
+      EXPECT_FALSE(include.header.starts_with(prefix))
+          << fs::relative(include.by, kRoot).string() << " includes " << include.header;
+}
+
+// "evaluation/", "orb_slam/", …: the first part of a header that belongs to a tool or a plugin.
+std::vector<std::string> prefixes_of(const fs::path& parent) {
+  std::vector<std::string> prefixes;
+  for (const std::string& folder : folders_in(parent)) prefixes.push_back(folder + "/");
+  return prefixes;
+}
+
+TEST(DependencyRule, ContractsKnowNeitherOptionsNorPluginsNorRuntime) {
+  for (const fs::path& folder : {kPublic / "contracts", kRoot / "core/src/contracts"})
+    expect_none_begins(folder, {"stillpoint/options", "stillpoint/plugin", "stillpoint/runtime"});
+}
+
+TEST(DependencyRule, SdkHeadersDoNotKnowTheRuntime) {
+  for (const fs::directory_entry& entry : fs::directory_iterator(kPublic))
+    if (entry.is_regular_file()) expect_none_begins(entry.path(), {"stillpoint/runtime"});
+}
+
+TEST(DependencyRule, CoreKnowsNeitherToolsNorPlugins) {
+  expect_none_begins(kRoot / "core", prefixes_of(kRoot / "tools"));
+  expect_none_begins(kRoot / "core", prefixes_of(kRoot / "plugins"));
+}
+
+TEST(DependencyRule, PluginsKnowTheSdkAndNotEachOther) {
+  for (const std::string& plugin : folders_in(kRoot / "plugins")) {
+    std::vector<std::string> forbidden = {"stillpoint/runtime"};
+    for (const std::string& prefix : prefixes_of(kRoot / "plugins"))
+      if (prefix != plugin + "/") forbidden.push_back(prefix);
+    expect_none_begins(kRoot / "plugins" / plugin, forbidden);
+  }
+}
+
+TEST(DependencyRule, LibrariesOfTheToolsDoNotKnowTheRuntime) {
+  for (const std::string& tool : folders_in(kRoot / "tools"))
+    if (tool != "stillpoint") expect_none_begins(kRoot / "tools" / tool, {"stillpoint/runtime"});
+}
+
+}  // namespace
+}  // namespace stillpoint
