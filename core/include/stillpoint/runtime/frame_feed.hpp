@@ -1,0 +1,53 @@
+// Brings frames from the source to tracking.
+#pragma once
+
+#include <cstddef>
+#include <exception>
+#include <thread>
+
+#include "stillpoint/runtime/bounded_queue.hpp"
+#include "stillpoint/runtime/pace_clock.hpp"
+#include "stillpoint/runtime/stage.hpp"
+#include "stillpoint/runtime/worker.hpp"
+
+namespace stillpoint {
+
+/// `inline` and `pace: free`: next() asks the source. Otherwise the source has a thread of its own:
+/// * `free`: it decodes up to two frames ahead, and every frame is used;
+/// * `sensor`: it delivers frames at the rate at which they were recorded. Tracking takes the
+/// newest
+///   one; those it was too busy for are dropped and counted.
+class FrameFeed {
+ public:
+  FrameFeed(Stage<Source> source, const RuntimeOptions& options, PaceClock& clock, StopSignal& stop,
+            TimeLog& times);
+  ~FrameFeed();
+
+  /// Null at the end of the recording or after a stop. Throws StageError when the source failed,
+  /// after the frames that came before.
+  FramePtr next();
+  /// Ends the thread. Only after a stop or when next() gave null.
+  void end();
+
+  /// Only after end().
+  SourceReport report() const { return source_.object().report(); }
+  std::size_t dropped() const { return dropped_; }
+
+ private:
+  FramePtr read();
+  void work();
+  void deliver(FramePtr frame);
+
+  const RuntimeOptions::Pace pace_;
+  PaceClock& clock_;
+  StopSignal& stop_;
+  StageCaller<Source> source_;
+  std::uint32_t frames_read_ = 0;
+  std::size_t dropped_ = 0;
+  double clock_ahead_ = 0.0;    // seconds from the recording's time to that of the clock
+  std::exception_ptr failure_;  // written before the queue is closed, read after
+  BoundedQueue<FramePtr> queue_;
+  std::jthread thread_;  // last: it uses all the others
+};
+
+}  // namespace stillpoint

@@ -1,0 +1,47 @@
+// Where the versions of the sparse map change hands: the only mutex of the mapping system.
+#pragma once
+
+#include <condition_variable>
+#include <memory>
+#include <mutex>
+#include <stop_token>
+#include <utility>
+
+#include "stillpoint/contracts/sparse_map.hpp"
+
+namespace stillpoint {
+
+/// One thread publishes, any thread takes snapshots. A snapshot never changes.
+class MapStore {
+ public:
+  using Snapshot = std::shared_ptr<const SparseMap>;
+
+  Snapshot snapshot() const {
+    const std::lock_guard lock(mutex_);
+    return map_;
+  }
+
+  void publish(SparseMap map) {
+    Snapshot next = std::make_shared<const SparseMap>(std::move(map));
+    {
+      const std::lock_guard lock(mutex_);
+      map_.swap(next);
+      published_ = true;
+    }
+    changed_.notify_all();
+  }  // the last version is freed here, outside the lock, when nobody else holds it
+
+  /// Waits for the first version. False after a stop.
+  bool wait_published(std::stop_token stop) const {
+    std::unique_lock lock(mutex_);
+    return changed_.wait(lock, std::move(stop), [this] { return published_; });
+  }
+
+ private:
+  mutable std::mutex mutex_;
+  mutable std::condition_variable_any changed_;
+  Snapshot map_ = std::make_shared<const SparseMap>();  // guarded by mutex_, like the next
+  bool published_ = false;
+};
+
+}  // namespace stillpoint

@@ -1,0 +1,78 @@
+// Threads 3 to 5: local mapping, loop closing and the dense map around one sparse map.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <mutex>
+#include <stop_token>
+#include <variant>
+#include <vector>
+
+#include "stillpoint/runtime/map_store.hpp"
+#include "stillpoint/runtime/stage.hpp"
+#include "stillpoint/runtime/worker.hpp"
+
+namespace stillpoint {
+
+/// A key frame on its way into the maps.
+struct NewKeyFrame {
+  KeyFrame keyframe;
+  DenseKeyFrame images;  ///< its pose is filled in by local mapping
+};
+
+/// Local mapping is the only writer of the sparse map: the corrections of loop closing come back to
+/// it as items of its queue.
+class MappingSystem {
+ public:
+  MappingSystem(Stage<LocalMapper> local_mapper, Stage<LoopCloser> loop_closer,
+                Stage<MapBackend> map_backend, Mode mode, StopSignal& stop, TimeLog& times);
+  ~MappingSystem() { end(); }
+
+  MapStore::Snapshot snapshot() const { return map_.snapshot(); }
+  /// Waits while too many key frames are waiting, and until the very first one is in the map:
+  /// nothing can be tracked before.
+  void push(NewKeyFrame keyframe);
+  /// Whether a key frame has to wait for local mapping.
+  bool waiting() const { return local_mapping_.waiting(); }
+  /// Finishes what is under way and ends the threads; after a stop, at once.
+  void end();
+  /// Writes the dense map into `directory`, if there is one. Only after end().
+  void save(const std::filesystem::path& directory);
+
+ private:
+  using MappingItem = std::variant<NewKeyFrame, MapCorrection>;
+  using DenseItem = std::variant<DenseKeyFrame, std::vector<MovedKeyFrame>>;
+  struct LoopQuery {
+    KeyFrameId keyframe = kNoId;
+    std::uint32_t frame = 0;
+  };
+
+  void map(NewKeyFrame item);
+  void correct(const MapCorrection& correction);
+  void close_loop(const LoopQuery& query);
+  void map_densely(const DenseItem& item);
+  void send_moved(const SparseMap& before, const SparseMap& after);
+  std::stop_token restart_hurry();
+  void hurry();
+
+  const bool threaded_;
+  StopSignal& stop_;
+  StageCaller<LocalMapper> local_mapper_;
+  StageCaller<LoopCloser> loop_closer_;
+  StageCaller<MapBackend> map_backend_;
+  MapStore map_;
+  std::uint32_t mapped_frame_ = 0;  // given last to local mapping, for messages and times
+  std::uint32_t dense_frame_ = 0;   // given last to the dense map
+
+  std::mutex hurry_mutex_;
+  std::stop_source hurry_;  // guarded by hurry_mutex_; of the adjustment under way
+
+  // Last: their threads use all the others.
+  Worker<MappingItem> local_mapping_;
+  Worker<LoopQuery> loop_closing_;
+  Worker<DenseItem> dense_mapping_;
+  std::stop_callback<std::function<void()>> hurry_on_stop_;
+};
+
+}  // namespace stillpoint

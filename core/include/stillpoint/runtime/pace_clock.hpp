@@ -1,0 +1,23 @@
+// Time as `pace: sensor` sees it, so that tests need none.
+#pragma once
+
+#include <stop_token>
+
+namespace stillpoint {
+
+class PaceClock {
+ public:
+  virtual ~PaceClock() = default;
+  virtual double now() = 0;  ///< seconds
+  /// Returns at `time` (seconds) or after a stop.
+  virtual void wait_until(double time, std::stop_token stop) = 0;
+};
+
+/// The clock that runs evenly, whatever happens to the clock on the wall.
+class SteadyClock final : public PaceClock {
+ public:
+  double now() override;
+  void wait_until(double time, std::stop_token stop) override;
+};
+
+}  // namespace stillpoint

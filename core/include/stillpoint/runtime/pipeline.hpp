@@ -1,0 +1,59 @@
+// The program: Fig. 2 of the paper, with a stage in each box.
+#pragma once
+
+#include <exception>
+#include <functional>
+#include <memory>
+#include <stop_token>
+#include <vector>
+
+#include "stillpoint/runtime/frame_feed.hpp"
+#include "stillpoint/runtime/mapping_system.hpp"
+#include "stillpoint/runtime/segmentation_stage.hpp"
+
+namespace stillpoint {
+
+/// One run over a recording. The caller of run() is thread 1, tracking; docs/threads.md tells about
+/// the others.
+class Pipeline {
+ public:
+  Pipeline(Stages stages, const RuntimeOptions& runtime, const SegmentationOptions& segmentation,
+           std::unique_ptr<PaceClock> clock = std::make_unique<SteadyClock>());
+  ~Pipeline() { stop_.request(); }
+
+  /// Returns at the end of the recording, or early after a stop. Throws StageError when a stage
+  /// failed. In each case, the outputs have been finished before. Once per object.
+  void run(std::stop_token stop = {});
+
+ private:
+  void process(const FramePtr& frame);
+  void report(const FrameReport& report);
+  void end_threads();
+  void finish();
+  RunSummary summary(const SparseMap& map, const SourceReport& source,
+                     const std::vector<StageTime>& times) const;
+  void keep_failure_of(const std::function<void()>& step);
+
+  const RuntimeOptions options_;
+  const std::filesystem::path map_directory_;
+  std::unique_ptr<PaceClock> clock_;
+  StopSignal stop_;
+  TimeLog times_;
+
+  StageCaller<MovingChecker> checker_;
+  StageCaller<Decision> decision_;
+  StageCaller<Tracker> tracker_;
+  std::vector<StageCaller<Output>> outputs_;
+
+  FramePtr previous_;
+  std::vector<TrackedPose> poses_;
+  double wall_seconds_ = 0.0;
+  double cpu_seconds_ = 0.0;
+
+  // Last: their threads use the clock, the stop signal and the time log.
+  FrameFeed feed_;
+  SegmentationStage segmentation_;
+  MappingSystem mapping_;
+};
+
+}  // namespace stillpoint

@@ -1,0 +1,60 @@
+// Thread 2: how the labels of the network meet the frames (paper III-B).
+#pragma once
+
+#include <condition_variable>
+#include <cstdint>
+#include <mutex>
+
+#include "stillpoint/runtime/stage.hpp"
+#include "stillpoint/runtime/worker.hpp"
+
+namespace stillpoint {
+
+/// Schedule `wait`: every frame has its own labels, as in the paper. `latest`: the newest finished
+/// labels are brought forward by the propagator; frames that come while the network is busy replace
+/// each other. The first labels are always waited for, because the map begins with them.
+///
+/// `latest` inline imitates a network that takes `latency` frames per image, so that its effect can
+/// be studied without the clock.
+class SegmentationStage {
+ public:
+  SegmentationStage(Stage<Segmenter> segmenter, Stage<Propagator> propagator,
+                    const SegmentationOptions& options, Mode mode, StopSignal& stop,
+                    TimeLog& times);
+
+  /// Gives a frame to the network.
+  void offer(const FramePtr& frame);
+  /// Labels for the frame offered last, or null when the run was stopped meanwhile.
+  SegmentationPtr at(const FramePtr& frame);
+  /// Ends the thread.
+  void end() { network_.end(); }
+
+ private:
+  using Schedule = SegmentationOptions::Schedule;
+  struct Labelled {
+    FramePtr frame;
+    SegmentationPtr labels;
+  };
+
+  void segment(FramePtr frame);
+  void imitate_latency(const FramePtr& now);
+  Labelled wait_for(const FramePtr& frame);
+
+  const SegmentationOptions options_;
+  StopSignal& stop_;
+  TimeLog& times_;
+  StageCaller<Segmenter> segmenter_;
+  StageCaller<Propagator> propagator_;
+
+  std::mutex mutex_;
+  std::condition_variable_any changed_;
+  Labelled newest_;  // guarded by mutex_
+
+  // Of `latest` inline: the frame in the imitated network and the one that waits for it.
+  FramePtr running_;
+  FramePtr waiting_;
+
+  Worker<FramePtr> network_;  // last: its thread uses all the others
+};
+
+}  // namespace stillpoint

@@ -1,0 +1,87 @@
+// A stage's thread, or no thread: the only difference between the modes of a run.
+#pragma once
+
+#include <cstddef>
+#include <exception>
+#include <functional>
+#include <thread>
+#include <utility>
+
+#include "stillpoint/runtime/bounded_queue.hpp"
+#include "stillpoint/runtime/pipeline_config.hpp"
+#include "stillpoint/runtime/stop_signal.hpp"
+
+namespace stillpoint {
+
+using Mode = RuntimeOptions::Mode;
+
+/// Hands items to a handler, one after the other. `inline`: within push(), whose caller gets the
+/// handler's exceptions. `threaded`: on a thread of its own; an exception stops the whole run.
+template <class T>
+class Worker {
+ public:
+  using Handler = std::function<void(T)>;
+
+  Worker(Mode mode, std::size_t capacity, StopSignal& stop, Handler handler)
+      : threaded_(mode == Mode::kThreaded),
+        stop_(stop),
+        handler_(std::move(handler)),
+        queue_(capacity) {
+    if (threaded_) thread_ = std::jthread([this] { work(); });
+  }
+  ~Worker() { end(); }
+  Worker(const Worker&) = delete;
+  Worker& operator=(const Worker&) = delete;
+
+  /// Waits while `capacity` items are waiting.
+  void push(T item) {
+    if (threaded_)
+      queue_.push(std::move(item), stop_.token());
+    else
+      handler_(std::move(item));
+  }
+  /// Never waits: for the edge that closes a cycle of workers.
+  void push_past_limit(T item) {
+    if (threaded_)
+      queue_.push_past_limit(std::move(item));
+    else
+      handler_(std::move(item));
+  }
+  /// Never waits: the item takes the place of those waiting.
+  void replace(T item) {
+    if (threaded_)
+      queue_.replace(std::move(item));
+    else
+      handler_(std::move(item));
+  }
+
+  bool threaded() const { return threaded_; }
+  /// Whether an item has to wait for others.
+  bool waiting() const { return queue_.size() > 0; }
+  /// Returns when everything pushed has been handled, or after a stop.
+  void wait_idle() {
+    if (threaded_) queue_.wait_idle(stop_.token());
+  }
+  /// Handles what waits, except after a stop, and ends the thread. No push may follow.
+  void end() {
+    queue_.close();
+    if (thread_.joinable()) thread_.join();
+  }
+
+ private:
+  void work() {
+    try {
+      while (auto item = queue_.pop(stop_.token())) handler_(std::move(*item));
+    } catch (...) {
+      stop_.fail(std::current_exception());
+    }
+  }
+
+  const bool threaded_;
+  StopSignal& stop_;
+  Handler handler_;
+  BoundedQueue<T> queue_;
+  std::jthread thread_;  // last: it uses all the others
+};
+
+}  // namespace stillpoint

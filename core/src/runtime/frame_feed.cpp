@@ -1,0 +1,82 @@
+#include "stillpoint/runtime/frame_feed.hpp"
+
+#include <chrono>
+#include <condition_variable>
+#include <mutex>
+#include <utility>
+
+namespace stillpoint {
+namespace {
+
+constexpr std::size_t kFramesAhead = 2;
+
+}  // namespace
+
+double SteadyClock::now() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+void SteadyClock::wait_until(double time, std::stop_token stop) {
+  using Clock = std::chrono::steady_clock;
+  const Clock::time_point end(
+      std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(time)));
+  std::mutex mutex;
+  std::condition_variable_any stopped;
+  std::unique_lock lock(mutex);
+  stopped.wait_until(lock, std::move(stop), end, [] { return false; });
+}
+
+FrameFeed::FrameFeed(Stage<Source> source, const RuntimeOptions& options, PaceClock& clock,
+                     StopSignal& stop, TimeLog& times)
+    : pace_(options.pace),
+      clock_(clock),
+      stop_(stop),
+      source_(std::move(source), "source", times),
+      queue_(kFramesAhead) {
+  if (options.mode == Mode::kThreaded || pace_ == RuntimeOptions::Pace::kSensor)
+    thread_ = std::jthread([this] { work(); });
+}
+
+FrameFeed::~FrameFeed() {
+  queue_.close();
+  end();
+}
+
+void FrameFeed::end() {
+  if (thread_.joinable()) thread_.join();
+}
+
+FramePtr FrameFeed::next() {
+  if (!thread_.joinable()) return stop_.requested() ? nullptr : read();
+  if (auto frame = queue_.pop(stop_.token())) return *std::move(frame);
+  if (!stop_.requested() && failure_) std::rethrow_exception(failure_);
+  return nullptr;
+}
+
+FramePtr FrameFeed::read() {
+  std::optional<Frame> frame = source_.call("source", frames_read_, &Source::next);
+  if (!frame) return nullptr;
+  ++frames_read_;
+  return std::make_shared<const Frame>(std::move(*frame));
+}
+
+void FrameFeed::work() {
+  try {
+    while (FramePtr frame = stop_.requested() ? nullptr : read()) deliver(std::move(frame));
+  } catch (...) {
+    failure_ = std::current_exception();
+  }
+  queue_.close();
+}
+
+void FrameFeed::deliver(FramePtr frame) {
+  if (pace_ == RuntimeOptions::Pace::kFree) {
+    queue_.push(std::move(frame), stop_.token());
+    return;
+  }
+  if (frame->index == 0) clock_ahead_ = clock_.now() - frame->time;
+  clock_.wait_until(frame->time + clock_ahead_, stop_.token());
+  dropped_ += queue_.replace(std::move(frame));
+}
+
+}  // namespace stillpoint

@@ -1,0 +1,70 @@
+#include "stillpoint/runtime/make_stages.hpp"
+
+#include <optional>
+#include <string>
+
+namespace stillpoint {
+namespace {
+
+class StageMaker {
+ public:
+  StageMaker(const PipelineConfig& config, const std::filesystem::path& output_directory,
+             const std::function<void(LogLevel, std::string_view)>& log)
+      : config_(config), output_directory_(output_directory), log_(log) {}
+
+  template <class Interface>
+  Stage<Interface> make(const std::optional<StageSpec>& spec) const {
+    if (!spec) return {};
+    return {spec->create<Interface>(context_of(*spec)), spec->type()};
+  }
+
+ private:
+  StageContext context_of(const StageSpec& spec) const {
+    const RuntimeOptions& runtime = config_.runtime;
+    const bool deterministic = runtime.mode == RuntimeOptions::Mode::kInline;
+    return {.seed = stage_seed(runtime.seed, spec.section()),
+            .threads = deterministic ? 1 : runtime.threads,
+            .deterministic = deterministic,
+            .output_directory = output_directory_,
+            .camera = config_.camera,
+            .log = [log = log_, section = spec.section()](LogLevel level, std::string_view text) {
+              log(level, section + ": " + std::string(text));
+            }};
+  }
+
+  const PipelineConfig& config_;
+  const std::filesystem::path& output_directory_;
+  const std::function<void(LogLevel, std::string_view)>& log_;
+};
+
+}  // namespace
+
+Stages make_stages(const PipelineConfig& config, const std::filesystem::path& output_directory,
+                   const std::function<void(LogLevel, std::string_view)>& log) {
+  const StageMaker maker(config, output_directory, log);
+  Stages stages{.source = maker.make<Source>(config.source),
+                .segmenter = maker.make<Segmenter>(config.segmenter),
+                .propagator = maker.make<Propagator>(config.propagator),
+                .moving_checker = maker.make<MovingChecker>(config.moving_checker),
+                .decision = maker.make<Decision>(config.decision),
+                .tracker = maker.make<Tracker>(config.tracker),
+                .local_mapper = maker.make<LocalMapper>(config.local_mapper),
+                .loop_closer = maker.make<LoopCloser>(config.loop_closer),
+                .map_backend = maker.make<MapBackend>(config.map_backend),
+                .map_directory = output_directory / "map"};
+  for (const StageSpec& output : config.outputs)
+    stages.outputs.push_back(maker.make<Output>(output));
+  return stages;
+}
+
+// FNV-1a over the section's name, then the finaliser of SplitMix64: close seeds give unrelated
+// streams.
+std::uint64_t stage_seed(int run_seed, std::string_view section) {
+  std::uint64_t hash = 0xcbf29ce484222325u ^ static_cast<std::uint64_t>(run_seed);
+  for (const char c : section) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3u;
+  hash = (hash ^ (hash >> 30)) * 0xbf58476d1ce4e5b9u;
+  hash = (hash ^ (hash >> 27)) * 0x94d049bb133111ebu;
+  return hash ^ (hash >> 31);
+}
+
+}  // namespace stillpoint

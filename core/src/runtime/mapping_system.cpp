@@ -1,0 +1,126 @@
+#include "stillpoint/runtime/mapping_system.hpp"
+
+#include <utility>
+
+namespace stillpoint {
+namespace {
+
+constexpr std::size_t kKeyFramesWaiting = 3;
+constexpr std::size_t kQueriesWaiting = 16;
+constexpr std::size_t kDenseWaiting = 16;
+
+// Removed key frames included: the dense map keeps what they have seen.
+std::vector<MovedKeyFrame> moved_keyframes(const SparseMap& before, const SparseMap& after) {
+  std::vector<MovedKeyFrame> moved;
+  for (KeyFrameId id = 0; id < before.keyframe_id_end(); ++id) {
+    if (before.keyframe(id) && before.keyframe(id) == after.keyframe(id)) continue;
+    const Pose pose = after.world_from_keyframe(id);
+    if (pose.matrix() != before.world_from_keyframe(id).matrix()) moved.push_back({id, pose});
+  }
+  return moved;
+}
+
+}  // namespace
+
+MappingSystem::MappingSystem(Stage<LocalMapper> local_mapper, Stage<LoopCloser> loop_closer,
+                             Stage<MapBackend> map_backend, Mode mode, StopSignal& stop,
+                             TimeLog& times)
+    : threaded_(mode == Mode::kThreaded),
+      stop_(stop),
+      local_mapper_(std::move(local_mapper), "local mapping", times),
+      loop_closer_(std::move(loop_closer), "loop closing", times),
+      map_backend_(std::move(map_backend), "dense mapping", times),
+      local_mapping_(mode, kKeyFramesWaiting, stop,
+                     [this](MappingItem item) {
+                       if (auto* keyframe = std::get_if<NewKeyFrame>(&item))
+                         map(std::move(*keyframe));
+                       else
+                         correct(std::get<MapCorrection>(item));
+                     }),
+      loop_closing_(loop_closer_.present() ? mode : Mode::kInline, kQueriesWaiting, stop,
+                    [this](const LoopQuery& query) { close_loop(query); }),
+      dense_mapping_(map_backend_.present() ? mode : Mode::kInline, kDenseWaiting, stop,
+                     [this](const DenseItem& item) { map_densely(item); }),
+      hurry_on_stop_(stop.token(), [this] { hurry(); }) {}
+
+void MappingSystem::push(NewKeyFrame keyframe) {
+  const bool first = snapshot()->empty();
+  local_mapping_.push(std::move(keyframe));
+  if (waiting()) hurry();
+  if (first) map_.wait_published(stop_.token());
+}
+
+void MappingSystem::end() {
+  local_mapping_.wait_idle();  // it asks for loops
+  loop_closing_.end();         // whose corrections come back to it
+  local_mapping_.end();
+  dense_mapping_.end();
+}
+
+void MappingSystem::save(const std::filesystem::path& directory) {
+  if (!map_backend_.present()) return;
+  map_backend_.call_unmeasured({}, [&](const MapBackend& backend) {
+    std::filesystem::create_directories(directory);
+    backend.save(directory);
+  });
+}
+
+void MappingSystem::map(NewKeyFrame item) {
+  const KeyFrameId id = item.keyframe.id;
+  mapped_frame_ = item.keyframe.frame;
+  const MapStore::Snapshot before = map_.snapshot();
+  map_.publish(local_mapper_.call("map_insert", mapped_frame_, &LocalMapper::insert, *before,
+                                  std::move(item.keyframe)));
+  map_.publish(local_mapper_.call("map_refine", mapped_frame_, &LocalMapper::refine,
+                                  *map_.snapshot(), id, restart_hurry()));
+  const MapStore::Snapshot after = map_.snapshot();
+  send_moved(*before, *after);
+  if (map_backend_.present() && id < after->keyframe_id_end()) {
+    item.images.world_from_camera = after->world_from_keyframe(id);
+    dense_mapping_.push(std::move(item.images));
+  }
+  loop_closing_.push({id, mapped_frame_});  // last: inline, its correction is applied within
+}
+
+void MappingSystem::correct(const MapCorrection& correction) {
+  const MapStore::Snapshot before = map_.snapshot();
+  map_.publish(local_mapper_.call("map_correct", mapped_frame_,
+                                  [&](LocalMapper&) { return apply(correction, *before); }));
+  send_moved(*before, *map_.snapshot());
+}
+
+void MappingSystem::close_loop(const LoopQuery& query) {
+  auto correction = loop_closer_.call("loop", query.frame, &LoopCloser::close, *map_.snapshot(),
+                                      query.keyframe, stop_.token());
+  if (correction) local_mapping_.push_past_limit(std::move(*correction));
+}
+
+void MappingSystem::map_densely(const DenseItem& item) {
+  if (const auto* keyframe = std::get_if<DenseKeyFrame>(&item)) {
+    dense_frame_ = keyframe->frame->index;
+    map_backend_.call("dense", dense_frame_, &MapBackend::integrate, *keyframe);
+  } else {
+    map_backend_.call("dense", dense_frame_, &MapBackend::move,
+                      std::get<std::vector<MovedKeyFrame>>(item));
+  }
+}
+
+void MappingSystem::send_moved(const SparseMap& before, const SparseMap& after) {
+  if (!map_backend_.present()) return;
+  if (auto moved = moved_keyframes(before, after); !moved.empty())
+    dense_mapping_.push(std::move(moved));
+}
+
+std::stop_token MappingSystem::restart_hurry() {
+  const std::lock_guard lock(hurry_mutex_);
+  hurry_ = std::stop_source();
+  if (threaded_ && (waiting() || stop_.requested())) hurry_.request_stop();
+  return hurry_.get_token();
+}
+
+void MappingSystem::hurry() {
+  const std::lock_guard lock(hurry_mutex_);
+  if (threaded_) hurry_.request_stop();
+}
+
+}  // namespace stillpoint

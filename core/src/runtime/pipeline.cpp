@@ -1,0 +1,126 @@
+#include "stillpoint/runtime/pipeline.hpp"
+
+#include <string>
+#include <utility>
+
+namespace stillpoint {
+namespace {
+
+std::string message_of(const std::exception_ptr& failure) {
+  if (!failure) return {};
+  try {
+    std::rethrow_exception(failure);
+  } catch (const std::exception& error) {
+    return error.what();
+  }
+}
+
+NewKeyFrame new_keyframe(const KeyFrame& keyframe, const FramePtr& frame,
+                         const SegmentationPtr& labels,
+                         const std::shared_ptr<const StaticWeights>& weights) {
+  return {keyframe, {keyframe.id, frame, labels, weights, keyframe.world_from_camera}};
+}
+
+}  // namespace
+
+Pipeline::Pipeline(Stages stages, const RuntimeOptions& runtime,
+                   const SegmentationOptions& segmentation, std::unique_ptr<PaceClock> clock)
+    : options_(runtime),
+      map_directory_(std::move(stages.map_directory)),
+      clock_(std::move(clock)),
+      checker_(std::move(stages.moving_checker), "moving check", times_),
+      decision_(std::move(stages.decision), "decision", times_),
+      tracker_(std::move(stages.tracker), "tracking", times_),
+      feed_(std::move(stages.source), runtime, *clock_, stop_, times_),
+      segmentation_(std::move(stages.segmenter), std::move(stages.propagator), segmentation,
+                    runtime.mode, stop_, times_),
+      mapping_(std::move(stages.local_mapper), std::move(stages.loop_closer),
+               std::move(stages.map_backend), runtime.mode, stop_, times_) {
+  for (Stage<Output>& output : stages.outputs)
+    outputs_.emplace_back(std::move(output), "output", times_);
+}
+
+void Pipeline::run(std::stop_token stop) {
+  const std::stop_callback forward(std::move(stop), [this] { stop_.request(); });
+  const double wall_start = SteadyClock().now();
+  const double cpu_start = process_cpu_seconds();
+  keep_failure_of([this] {
+    while (const FramePtr frame = feed_.next()) process(frame);
+  });
+  end_threads();
+  wall_seconds_ = SteadyClock().now() - wall_start;
+  cpu_seconds_ = process_cpu_seconds() - cpu_start;
+  finish();
+  if (const auto failure = stop_.failure()) std::rethrow_exception(failure);
+}
+
+void Pipeline::process(const FramePtr& frame) {
+  const std::uint32_t index = frame->index;
+  const ScopedTime time(times_, "track_thread", index);
+  segmentation_.offer(frame);                                 // thread 2
+  tracker_.call("prepare", index, &Tracker::prepare, frame);  // overlaps the network
+  const auto moving =
+      previous_ ? checker_.call("moving_check", index, &MovingChecker::check, *previous_, *frame)
+                : MovingPoints{};
+  const auto labels = segmentation_.at(frame);  // waits (paper), or propagates the newest
+  if (!labels) return;                          // stopped meanwhile
+  const auto weights = std::make_shared<const StaticWeights>(
+      decision_.call("decision", index, &Decision::decide, *frame, *labels, moving));
+  const auto result = tracker_.call("track", index, &Tracker::track, frame, *weights,
+                                    *mapping_.snapshot(), TrackHints{mapping_.waiting()});
+  if (result.keyframe) mapping_.push(new_keyframe(*result.keyframe, frame, labels, weights));
+  report({*frame, *labels, moving, *weights, result, times_.take()});
+  previous_ = frame;
+}
+
+void Pipeline::report(const FrameReport& report) {
+  const std::uint32_t index = report.frame.index;
+  poses_.push_back({index, report.frame.time, report.result.state, report.result.reference,
+                    report.result.reference_from_camera});
+  const ScopedTime time(times_, "outputs", index);
+  for (StageCaller<Output>& output : outputs_)
+    output.call_unmeasured(index, &Output::frame, report);
+}
+
+void Pipeline::end_threads() {
+  segmentation_.end();
+  mapping_.end();
+  feed_.end();
+}
+
+void Pipeline::finish() {
+  const MapStore::Snapshot map = mapping_.snapshot();
+  const SourceReport source = feed_.report();
+  const std::vector<StageTime> times = times_.take();
+  if (!map_directory_.empty()) keep_failure_of([this] { mapping_.save(map_directory_); });
+  for (StageCaller<Output>& output : outputs_) {
+    keep_failure_of(
+        [&] { output.call_unmeasured({}, &Output::finish, summary(*map, source, times)); });
+  }
+}
+
+RunSummary Pipeline::summary(const SparseMap& map, const SourceReport& source,
+                             const std::vector<StageTime>& times) const {
+  return {.map = map,
+          .poses = poses_,
+          .source = source,
+          .times = times,
+          .dropped_frames = static_cast<int>(feed_.dropped()),
+          .wall_seconds = wall_seconds_,
+          .cpu_seconds = cpu_seconds_,
+          .recorded_seconds = poses_.empty() ? 0.0 : poses_.back().time - poses_.front().time,
+          .seed = options_.seed,
+          .mode = options_.mode == Mode::kInline ? "inline" : "threaded",
+          .complete = !stop_.requested(),
+          .failure = message_of(stop_.failure())};
+}
+
+void Pipeline::keep_failure_of(const std::function<void()>& step) {
+  try {
+    step();
+  } catch (...) {
+    stop_.fail(std::current_exception());
+  }
+}
+
+}  // namespace stillpoint

@@ -1,0 +1,63 @@
+#include "stillpoint/runtime/segmentation_stage.hpp"
+
+#include <utility>
+
+namespace stillpoint {
+
+SegmentationStage::SegmentationStage(Stage<Segmenter> segmenter, Stage<Propagator> propagator,
+                                     const SegmentationOptions& options, Mode mode,
+                                     StopSignal& stop, TimeLog& times)
+    : options_(options),
+      stop_(stop),
+      times_(times),
+      segmenter_(std::move(segmenter), "segmentation", times),
+      propagator_(std::move(propagator), "propagation", times),
+      network_(segmenter_.present() ? mode : Mode::kInline, 1, stop,
+               [this](FramePtr frame) { segment(std::move(frame)); }) {}
+
+void SegmentationStage::offer(const FramePtr& frame) {
+  if (options_.schedule == Schedule::kWait)
+    network_.push(frame);
+  else if (network_.threaded())
+    network_.replace(frame);
+  else
+    waiting_ = frame;
+}
+
+SegmentationPtr SegmentationStage::at(const FramePtr& frame) {
+  if (waiting_ == frame) imitate_latency(frame);
+  const Labelled newest = wait_for(frame);
+  if (!newest.frame) return nullptr;
+  return std::make_shared<const Segmentation>(propagator_.call(
+      "propagate", frame->index, &Propagator::propagate, *newest.labels, *newest.frame, *frame));
+}
+
+void SegmentationStage::segment(FramePtr frame) {
+  auto labels = std::make_shared<const Segmentation>(
+      segmenter_.call("segmentation", frame->index, &Segmenter::segment, *frame));
+  {
+    const std::lock_guard lock(mutex_);
+    newest_ = {std::move(frame), std::move(labels)};
+  }
+  changed_.notify_all();
+}
+
+void SegmentationStage::imitate_latency(const FramePtr& now) {
+  const auto latency = static_cast<std::uint32_t>(options_.latency);
+  if (!newest_.frame) return segment(std::exchange(waiting_, nullptr));
+  if (!running_) running_ = std::exchange(waiting_, nullptr);
+  if (now->index - running_->index < latency) return;
+  segment(std::exchange(running_, std::exchange(waiting_, nullptr)));
+}
+
+SegmentationStage::Labelled SegmentationStage::wait_for(const FramePtr& frame) {
+  std::optional<ScopedTime> time;
+  if (network_.threaded()) time.emplace(times_, "segmentation_wait", frame->index);
+  const auto ready = [&] {
+    return options_.schedule == Schedule::kWait ? newest_.frame == frame : newest_.frame != nullptr;
+  };
+  std::unique_lock lock(mutex_);
+  return changed_.wait(lock, stop_.token(), ready) ? newest_ : Labelled{};
+}
+
+}  // namespace stillpoint
