@@ -80,7 +80,24 @@ inline unsigned local_maxima(const std::uint8_t* above, const std::uint8_t* here
       cv::v_signmask((score > threshold) & (score > before) & (score >= after)));
 }
 
+// Peak of the parabola through three values, from the middle one, which is the largest.
+double parabola_peak(int before, int middle, int after) {
+  const int curvature = 2 * middle - before - after;
+  return curvature > 0 ? 0.5 * (after - before) / curvature : 0;
+}
+
 }  // namespace
+
+cv::Point2d refine_corner(const cv::Mat& gray, const Corner& corner) {
+  const Circle circle = circle_offsets(static_cast<std::ptrdiff_t>(gray.step));
+  std::array<std::array<std::uint8_t, kBlock>, 3> scores;
+  for (int i = 0; i < 3; ++i) {
+    const std::uint8_t* p = gray.ptr(corner.y + i - 1) + corner.x - 1;
+    cv::v_store(scores[i].data(), score_block(p, circle, cv::v_setzero_u8()));
+  }
+  return {corner.x + parabola_peak(scores[1][0], scores[1][1], scores[1][2]),
+          corner.y + parabola_peak(scores[0][1], scores[1][1], scores[2][1])};
+}
 
 void FastDetector::detect(const cv::Mat& gray, int threshold, int border,
                           std::vector<Corner>& corners) {

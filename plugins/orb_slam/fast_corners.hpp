@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <opencv2/core/mat.hpp>
+#include <opencv2/core/types.hpp>
 #include <vector>
 
 namespace stillpoint::orb {
@@ -17,6 +18,9 @@ struct Corner {
 
   bool operator==(const Corner&) const = default;
 };
+
+/// Peak of the scores around a corner, in px. The corner must lie 18 px inside `gray`.
+cv::Point2d refine_corner(const cv::Mat& gray, const Corner& corner);
 
 /// Keeps its row buffers between calls; one object per thread.
 class FastDetector {

@@ -46,6 +46,7 @@ void OrbOptions::visit(OptionVisitor& v) {
      .max = 254,
      .unit = "grey levels",
      .help = "contrast of a corner where no stronger one is near"});
+  v("subpixel", subpixel, {.help = "refine corners to fractions of a pixel"});
   v.require(fast_min_threshold <= fast_threshold,
             "fast_min_threshold must not exceed fast_threshold");
 }
@@ -111,7 +112,9 @@ void OrbExtractor::describe(const cv::Mat& image, int level, cv::Size full_size,
   const double scale_y = static_cast<double>(full_size.height) / image.rows;
   for (const Corner& corner : corners_) {
     const Direction direction = patch_direction(image, corner.x, corner.y);
-    const cv::Point2d point((corner.x + 0.5) * scale_x - 0.5, (corner.y + 0.5) * scale_y - 0.5);
+    cv::Point2d point(corner.x, corner.y);
+    if (options_.subpixel) point = refine_corner(image, corner);
+    point = {(point.x + 0.5) * scale_x - 0.5, (point.y + 0.5) * scale_y - 0.5};
     features.keypoints.emplace_back(point, static_cast<float>(kPatchSize * scale_x),
                                     angle_degrees(direction), static_cast<float>(corner.score),
                                     level);

@@ -1,0 +1,63 @@
+#include "orb_slam/culling.hpp"
+
+namespace stillpoint::orb {
+namespace {
+
+constexpr double kMinFoundShare = 0.25;
+constexpr KeyFrameId kProbation = 2;  // key frames in which a second observation must come
+constexpr int kMinRelatives = 3;
+
+enum class Verdict { kRemove, kKeep, kUndecided };
+
+Verdict judge(const Landmark& landmark, KeyFrameId latest) {
+  if (landmark.found < kMinFoundShare * landmark.visible) return Verdict::kRemove;
+  const KeyFrameId age = latest - landmark.created_by;
+  if (age >= kProbation && landmark.observations.size() < 2) return Verdict::kRemove;
+  return age > kProbation ? Verdict::kKeep : Verdict::kUndecided;
+}
+
+// Whether enough other key frames see the landmark at least as sharply.
+bool seen_elsewhere(const SparseMap& map, const Landmark& landmark, KeyFrameId id, int level) {
+  int others = 0;
+  for (const Observation& o : landmark.observations) {
+    if (o.keyframe == id) continue;
+    if (map.keyframe(o.keyframe)->features->keypoints[o.feature].octave <= level + 1) ++others;
+    if (others == kMinRelatives) return true;
+  }
+  return false;
+}
+
+bool is_redundant(const SparseMap& map, const KeyFrame& keyframe, double share) {
+  int landmarks = 0, redundant = 0;
+  for (std::uint32_t i = 0; i < keyframe.landmarks.size(); ++i) {
+    const Landmark* landmark = map.landmark(keyframe.landmarks[i]);
+    if (!landmark) continue;
+    ++landmarks;
+    redundant +=
+        seen_elsewhere(map, *landmark, keyframe.id, keyframe.features->keypoints[i].octave);
+  }
+  return redundant > share * landmarks;
+}
+
+}  // namespace
+
+void cull_landmarks(MapEdit& edit, KeyFrameId latest, std::vector<LandmarkId>& recent) {
+  std::erase_if(recent, [&](LandmarkId id) {
+    const Landmark* landmark = edit.map().landmark(id);
+    if (!landmark) return true;
+    const Verdict verdict = judge(*landmark, latest);
+    if (verdict == Verdict::kRemove) edit.remove_landmark(id);
+    return verdict != Verdict::kUndecided;
+  });
+}
+
+void cull_keyframes(MapEdit& edit, KeyFrameId latest, double redundant_share) {
+  const std::vector<Covisibility> covisible = edit.map().keyframe(latest)->covisible;
+  for (const Covisibility& c : covisible) {
+    if (c.keyframe == 0) continue;  // the origin
+    if (is_redundant(edit.map(), *edit.map().keyframe(c.keyframe), redundant_share))
+      edit.remove_keyframe(c.keyframe);
+  }
+}
+
+}  // namespace stillpoint::orb

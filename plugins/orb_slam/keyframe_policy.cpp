@@ -1,0 +1,57 @@
+#include "orb_slam/keyframe_policy.hpp"
+
+namespace stillpoint::orb {
+namespace {
+
+// Landmarks of the reference key frame that others have seen, too; in a young map, all.
+int established_landmarks(const KeyFrame& keyframe, const SparseMap& map) {
+  const std::size_t min_observations = map.keyframe_count() <= 2 ? 2 : 3;
+  int count = 0;
+  for (const LandmarkId id : keyframe.landmarks)
+    if (id != kNoId && map.landmark(id)->observations.size() >= min_observations) ++count;
+  return count;
+}
+
+}  // namespace
+
+void KeyFrameOptions::visit(OptionVisitor& v) {
+  v("keyframe_max_frames", max_frames_between,
+    {.min = 1, .unit = "frames", .help = "a new key frame is allowed after this long in any case"});
+  v("keyframe_tracked_ratio", min_tracked_ratio,
+    {.min = 0, .max = 1,
+     .help = "new key frame when less than this share of the reference's landmarks is tracked"});
+  v("keyframe_min_inliers", min_inliers,
+    {.min = 6, .help = "no key frame from a pose on fewer landmarks"});
+  v("close_depth", close_depth,
+    {.min = 0.1, .unit = "m", .help = "nearer points have a depth good enough to fix translation"});
+  v("keyframe_min_close", min_close,
+    {.min = 0, .help = "new key frame when fewer close points are tracked and others are there"});
+  v("keyframe_max_close_untracked", max_close_untracked,
+    {.min = 0, .help = "that many close points without landmark count as 'others are there'"});
+}
+
+TrackingQuality tracking_quality(const ObservedFrame& frame, const SparseMap& map, int inliers,
+                                 int frames_since_last, const KeyFrameOptions& options) {
+  TrackingQuality quality{.inliers = inliers, .frames_since_last = frames_since_last};
+  if (const KeyFrame* reference = map.keyframe(frame.reference))
+    quality.reference_matches = established_landmarks(*reference, map);
+  for (std::uint32_t i = 0; i < frame.features->size(); ++i) {
+    const float depth = frame.features->depth[i];
+    if (depth <= 0 || depth > options.close_depth || !frame.usable(i)) continue;
+    const bool tracked = frame.landmarks[i] != kNoId && !frame.outlier[i];
+    ++(tracked ? quality.close_tracked : quality.close_untracked);
+  }
+  return quality;
+}
+
+bool needs_keyframe(const TrackingQuality& q, TrackHints hints, const KeyFrameOptions& options) {
+  if (q.inliers < options.min_inliers) return false;
+  const bool needs_close =
+      q.close_tracked < options.min_close && q.close_untracked > options.max_close_untracked;
+  const bool view_changed = q.inliers < options.min_tracked_ratio * q.reference_matches;
+  if (!needs_close && !view_changed) return false;
+  const bool urgent = needs_close || q.inliers < 0.25 * q.reference_matches;
+  return urgent || q.frames_since_last >= options.max_frames_between || !hints.mapping_waiting;
+}
+
+}  // namespace stillpoint::orb

@@ -1,0 +1,36 @@
+// When a frame is worth keeping (ORB-SLAM2, III-E: stereo key frames).
+#pragma once
+
+#include "orb_slam/observed_frame.hpp"
+#include "stillpoint/contracts/tracker.hpp"
+#include "stillpoint/options.hpp"
+
+namespace stillpoint::orb {
+
+struct KeyFrameOptions {
+  int max_frames_between = 30;
+  double min_tracked_ratio = 0.8;
+  int min_inliers = 15;
+  double close_depth = 3.0;
+  int min_close = 100;
+  int max_close_untracked = 70;
+
+  void visit(OptionVisitor& visitor);
+};
+
+/// What the decision looks at.
+struct TrackingQuality {
+  int inliers = 0;            ///< landmarks of the map that fit the pose
+  int reference_matches = 0;  ///< landmarks the reference key frame sees, of those well established
+  int close_tracked = 0;      ///< features with near depth and a fitting landmark
+  int close_untracked = 0;    ///< features with near depth and none
+  int frames_since_last = 0;  ///< since the last key frame
+};
+
+TrackingQuality tracking_quality(const ObservedFrame& frame, const SparseMap& map, int inliers,
+                                 int frames_since_last, const KeyFrameOptions& options);
+
+bool needs_keyframe(const TrackingQuality& quality, TrackHints hints,
+                    const KeyFrameOptions& options);
+
+}  // namespace stillpoint::orb

@@ -1,0 +1,77 @@
+#include "orb_slam/landmark_fusion.hpp"
+
+#include <algorithm>
+
+#include "orb_slam/landmark_geometry.hpp"
+#include "orb_slam/matcher.hpp"
+
+namespace stillpoint::orb {
+namespace {
+
+constexpr double kWindow = 3.0;  // px at the predicted level
+
+void join(MapEdit& edit, LandmarkId a, LandmarkId b) {
+  const bool a_known_better =
+      edit.map().landmark(a)->observations.size() >= edit.map().landmark(b)->observations.size();
+  const LandmarkId kept = a_known_better ? a : b;
+  edit.fuse_landmarks(kept, a_known_better ? b : a);
+  refresh_landmark(edit, kept);
+}
+
+void fuse_into(MapEdit& edit, const std::vector<LandmarkId>& landmarks, KeyFrameId target) {
+  const std::shared_ptr<const KeyFrame> keyframe = edit.map().shared_keyframe(target);
+  const Pose camera_from_world = keyframe->world_from_camera.inverse();
+  const ScalePyramid pyramid(*keyframe->features);
+  std::vector<bool> seen(edit.map().landmark_id_end());
+  for (const LandmarkId id : keyframe->landmarks)
+    if (id != kNoId) seen[id] = true;
+
+  std::vector<Query> queries;
+  for (const LandmarkId id : landmarks) {
+    const Landmark* landmark = edit.map().landmark(id);
+    if (!landmark || seen[id]) continue;
+    const auto query = predict(*landmark, camera_from_world, *keyframe->camera, pyramid, kWindow);
+    if (query) queries.push_back(*query);
+  }
+  if (queries.empty()) return;
+  const FeatureGrid grid(*keyframe->features, *keyframe->camera);
+  const auto usable = [&](std::uint32_t i) { return keyframe->track_weights[i] >= kMinMapWeight; };
+  for (const Match& m :
+       match_near(queries, *keyframe->features, grid, usable, {.max_distance = kNear})) {
+    const Landmark* landmark = edit.map().landmark(m.id);
+    if (!landmark || !observation_error(landmark->position_in_world, camera_from_world, *keyframe,
+                                        m.feature).fits())
+      continue;
+    const LandmarkId there = edit.map().keyframe(target)->landmarks[m.feature];
+    if (there == kNoId) {
+      if (edit.add_observation(m.id, {target, m.feature})) refresh_landmark(edit, m.id);
+    } else if (there != m.id) {
+      join(edit, m.id, there);
+    }
+  }
+}
+
+std::vector<LandmarkId> landmarks_of(const SparseMap& map, KeyFrameId id) {
+  std::vector<LandmarkId> landmarks = map.keyframe(id)->landmarks;
+  std::erase(landmarks, kNoId);
+  return landmarks;
+}
+
+}  // namespace
+
+void fuse_with_neighbours(MapEdit& edit, KeyFrameId id, int neighbours) {
+  std::vector<Covisibility> covisible = edit.map().keyframe(id)->covisible;
+  if (static_cast<int>(covisible.size()) > neighbours) covisible.resize(neighbours);
+  for (const Covisibility& c : covisible) fuse_into(edit, landmarks_of(edit.map(), id), c.keyframe);
+
+  std::vector<LandmarkId> theirs;
+  for (const Covisibility& c : covisible) {
+    const std::vector<LandmarkId> landmarks = landmarks_of(edit.map(), c.keyframe);
+    theirs.insert(theirs.end(), landmarks.begin(), landmarks.end());
+  }
+  std::sort(theirs.begin(), theirs.end());
+  theirs.erase(std::unique(theirs.begin(), theirs.end()), theirs.end());
+  fuse_into(edit, theirs, id);
+}
+
+}  // namespace stillpoint::orb

@@ -1,0 +1,26 @@
+// What a landmark's own fields say about its observations.
+#pragma once
+
+#include "stillpoint/contracts/sparse_map.hpp"
+
+namespace stillpoint::orb {
+
+/// Recomputes mean viewing direction, descriptor and range of distances from the observations.
+/// Does nothing when the landmark is gone.
+void refresh_landmark(MapEdit& edit, LandmarkId id);
+
+/// Squared, normalised error of an observation, and the 95 % bound it should keep. Infinite when the
+/// point is behind the camera.
+struct ObservationError {
+  double squared = 0.0;
+  double bound = 0.0;
+  bool fits() const { return squared <= bound; }
+};
+ObservationError observation_error(const Eigen::Vector3d& point_in_world,
+                                   const Pose& camera_from_world, const KeyFrame& keyframe,
+                                   std::uint32_t feature);
+
+/// Features with less weight than this do not become landmarks.
+inline constexpr std::uint8_t kMinMapWeight = 128;
+
+}  // namespace stillpoint::orb

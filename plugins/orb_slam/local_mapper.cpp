@@ -1,0 +1,76 @@
+#include "orb_slam/local_mapper.hpp"
+
+#include "orb_slam/culling.hpp"
+#include "orb_slam/landmark_creation.hpp"
+#include "orb_slam/landmark_fusion.hpp"
+#include "orb_slam/landmark_geometry.hpp"
+
+namespace stillpoint::orb {
+namespace {
+
+void add_evidence(MapEdit& edit, const std::vector<LandmarkEvidence>& evidence) {
+  for (const LandmarkEvidence& e : evidence) {
+    const LandmarkId id = edit.map().current_id(e.landmark);
+    if (id == kNoId) continue;
+    Landmark& landmark = edit.landmark(id);
+    landmark.visible += e.visible;
+    landmark.found += e.found;
+    landmark.static_log_odds += e.static_log_odds;
+  }
+}
+
+}  // namespace
+
+void OrbLocalMapper::Options::visit(OptionVisitor& v) {
+  v("close_depth", close_depth,
+    {.min = 0.1, .unit = "m", .help = "every nearer feature with depth becomes a landmark"});
+  v("min_landmarks", min_landmarks,
+    {.min = 1, .help = "farther features become landmarks until a key frame sees this many"});
+  v("neighbours", neighbours,
+    {.min = 1, .help = "covisible key frames used for triangulation and fusion"});
+  v("redundant_share", redundant_share,
+    {.min = 0, .max = 1,
+     .help = "key frames of whose landmarks more than this share is seen by others are removed"});
+  v("bundle_keyframes", bundle_keyframes,
+    {.min = 2, .help = "key frames that the local bundle adjustment moves"});
+  v("bundle_iterations", bundle_iterations, {.min = 1, .help = "of the local bundle adjustment"});
+}
+
+OrbLocalMapper::OrbLocalMapper(Options options, const StageContext& context)
+    : options_(options),
+      bundle_{.max_keyframes = options.bundle_keyframes,
+              .max_iterations = options.bundle_iterations,
+              .threads = context.threads} {}
+
+SparseMap OrbLocalMapper::insert(SparseMap map, KeyFrame keyframe) {
+  MapEdit edit(std::move(map));
+  const KeyFrameId id = keyframe.id;
+  add_evidence(edit, keyframe.evidence);
+  keyframe.evidence.clear();
+  edit.add_keyframe(std::move(keyframe));
+  for (const LandmarkId landmark : std::vector(edit.map().keyframe(id)->landmarks))
+    if (landmark != kNoId) refresh_landmark(edit, landmark);
+  remember(create_from_depth(edit, id, options_.close_depth, options_.min_landmarks));
+  edit.update_covisibility(id);
+  return std::move(edit).finish();
+}
+
+SparseMap OrbLocalMapper::refine(SparseMap map, KeyFrameId id, std::stop_token hurry) {
+  MapEdit edit(std::move(map));
+  cull_landmarks(edit, id, recent_);
+  remember(triangulate(edit, id, options_.neighbours));
+  if (!hurry.stop_requested()) fuse_with_neighbours(edit, id, options_.neighbours);
+  edit.update_covisibility(id);
+  if (!hurry.stop_requested() && edit.map().keyframe_count() > 2) {
+    for (const LandmarkId landmark : adjust_locally(edit, id, bundle_, hurry))
+      refresh_landmark(edit, landmark);
+    cull_keyframes(edit, id, options_.redundant_share);
+  }
+  return std::move(edit).finish();
+}
+
+void OrbLocalMapper::remember(const std::vector<LandmarkId>& created) {
+  recent_.insert(recent_.end(), created.begin(), created.end());
+}
+
+}  // namespace stillpoint::orb

@@ -1,0 +1,39 @@
+// Local mapper `orb`: extends and refines the sparse map (DS-SLAM III-A; ORB-SLAM2).
+#pragma once
+
+#include <vector>
+
+#include "orb_slam/bundle_adjustment.hpp"
+#include "stillpoint/contracts/local_mapper.hpp"
+#include "stillpoint/options.hpp"
+#include "stillpoint/plugin.hpp"
+
+namespace stillpoint::orb {
+
+class OrbLocalMapper final : public LocalMapper {
+ public:
+  struct Options {
+    double close_depth = 3.0;
+    int min_landmarks = 100;
+    int neighbours = 10;
+    double redundant_share = 0.9;
+    int bundle_keyframes = 15;
+    int bundle_iterations = 8;
+
+    void visit(OptionVisitor& visitor);
+  };
+
+  OrbLocalMapper(Options options, const StageContext& context);
+
+  SparseMap insert(SparseMap map, KeyFrame keyframe) override;
+  SparseMap refine(SparseMap map, KeyFrameId keyframe, std::stop_token hurry) override;
+
+ private:
+  void remember(const std::vector<LandmarkId>& created);
+
+  Options options_;
+  BundleOptions bundle_;
+  std::vector<LandmarkId> recent_;  // landmarks on probation
+};
+
+}  // namespace stillpoint::orb

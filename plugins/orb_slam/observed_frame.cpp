@@ -1,0 +1,85 @@
+#include "orb_slam/observed_frame.hpp"
+
+#include <algorithm>
+
+#include "orb_slam/pose_solver.hpp"
+
+namespace stillpoint::orb {
+
+ObservedFrame observe(FramePtr frame, Features features) {
+  const std::size_t count = features.size();
+  features.depth.resize(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const cv::Point2f p = features.keypoints[i].pt;
+    features.depth[i] = frame->depth.at<float>(cvRound(p.y), cvRound(p.x));
+  }
+  ObservedFrame observed;
+  observed.grid = FeatureGrid(features, *frame->camera);
+  observed.features = std::make_shared<Features>(std::move(features));
+  observed.frame = std::move(frame);
+  observed.landmarks.assign(count, kNoId);
+  observed.outlier.assign(count, false);
+  observed.track_weights.assign(count, 255);
+  observed.map_weights.assign(count, 255);
+  return observed;
+}
+
+void ObservedFrame::set_weights(const StaticWeights& weights) {
+  for (std::size_t i = 0; i < features->size(); ++i) {
+    const cv::Point2f p = features->keypoints[i].pt;
+    track_weights[i] = StaticWeights::at(weights.track, p.x, p.y);
+    map_weights[i] = StaticWeights::at(weights.map, p.x, p.y);
+  }
+}
+
+void ObservedFrame::clear_landmarks() {
+  std::fill(landmarks.begin(), landmarks.end(), kNoId);
+  std::fill(outlier.begin(), outlier.end(), false);
+}
+
+void ObservedFrame::assign(std::span<const Match> matches) {
+  for (const Match& m : matches) {
+    landmarks[m.feature] = m.id;
+    outlier[m.feature] = false;
+  }
+}
+
+void ObservedFrame::drop_outliers() {
+  for (std::size_t i = 0; i < landmarks.size(); ++i) {
+    if (!outlier[i]) continue;
+    landmarks[i] = kNoId;
+    outlier[i] = false;
+  }
+}
+
+int ObservedFrame::matched() const {
+  return static_cast<int>(
+      std::count_if(landmarks.begin(), landmarks.end(), [](LandmarkId id) { return id != kNoId; }));
+}
+
+int solve_pose(ObservedFrame& observed, const SparseMap& map) {
+  const Features& features = *observed.features;
+  const ScalePyramid pyramid(features);
+  std::vector<PoseObservation> observations;
+  std::vector<std::uint32_t> index;
+  for (std::uint32_t i = 0; i < features.size(); ++i) {
+    const Landmark* landmark = map.landmark(observed.landmarks[i]);
+    if (!landmark) continue;
+    const cv::KeyPoint& k = features.keypoints[i];
+    const double scale = pyramid.scale(k.octave);
+    observations.push_back({.point_in_world = landmark->position_in_world,
+                            .pixel = {k.pt.x, k.pt.y},
+                            .inverse_depth = features.depth[i] > 0 ? 1.0 / features.depth[i] : 0.0,
+                            .pixel_sigma = scale,
+                            .inverse_depth_sigma = observed.frame->camera->depth_noise * scale,
+                            .weight = observed.track_weights[i] / 255.0});
+    index.push_back(i);
+  }
+  const PoseSolution solution =
+      solve_pose(observations, *observed.frame->camera, observed.world_from_camera.inverse());
+  observed.world_from_camera = solution.camera_from_world.inverse();
+  for (std::size_t i = 0; i < index.size(); ++i) observed.outlier[index[i]] = !solution.inlier[i];
+  return solution.inliers;
+}
+
+}  // namespace stillpoint::orb

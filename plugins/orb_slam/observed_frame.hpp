@@ -1,0 +1,51 @@
+// A frame with its features, as tracking works on it.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "orb_slam/feature_grid.hpp"
+#include "orb_slam/matcher.hpp"
+#include "stillpoint/contracts/frame.hpp"
+#include "stillpoint/contracts/keyframe.hpp"
+#include "stillpoint/contracts/sparse_map.hpp"
+#include "stillpoint/contracts/static_weights.hpp"
+
+namespace stillpoint::orb {
+
+struct ObservedFrame {
+  FramePtr frame;
+  FeaturesPtr features;
+  FeatureGrid grid;
+  std::vector<std::uint8_t> track_weights;  ///< per feature
+  std::vector<std::uint8_t> map_weights;    ///< per feature
+  std::vector<LandmarkId> landmarks;        ///< per feature, kNoId = none
+  std::vector<bool> outlier;                ///< per feature: its landmark does not fit the pose
+  Pose world_from_camera = Pose::Identity();
+  KeyFrameId reference = kNoId;
+  Pose reference_from_camera = Pose::Identity();
+
+  /// Below this weight a feature is not used at all.
+  static constexpr std::uint8_t kMinWeight = 26;
+
+  bool usable(std::uint32_t feature) const { return track_weights[feature] >= kMinWeight; }
+  bool free(std::uint32_t feature) const {
+    return landmarks[feature] == kNoId && usable(feature);
+  }
+
+  void set_weights(const StaticWeights& weights);
+  void clear_landmarks();
+  void assign(std::span<const Match> matches);
+  /// Takes away the landmarks that do not fit.
+  void drop_outliers();
+  int matched() const;
+};
+
+/// Samples depth at the keypoints.
+ObservedFrame observe(FramePtr frame, Features features);
+
+/// Pose from the landmarks assigned so far, starting from the frame's own; marks the outliers and
+/// returns the number of inliers.
+int solve_pose(ObservedFrame& frame, const SparseMap& map);
+
+}  // namespace stillpoint::orb

@@ -1,0 +1,9 @@
+#include "orb_slam/local_mapper.hpp"
+#include "orb_slam/tracker.hpp"
+#include "stillpoint/sdk.hpp"
+
+STILLPOINT_PLUGIN(orb_slam, "0.1.0",
+                  stillpoint::provide<stillpoint::Tracker, stillpoint::orb::OrbTracker>(
+                      "orb", "ORB features tracked in the sparse map (ORB-SLAM2)"),
+                  stillpoint::provide<stillpoint::LocalMapper, stillpoint::orb::OrbLocalMapper>(
+                      "orb", "landmarks, culling and local bundle adjustment (ORB-SLAM2)"));

@@ -1,0 +1,139 @@
+#include "orb_slam/pose_solver.hpp"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+
+namespace stillpoint::orb {
+namespace {
+
+constexpr int kRounds = 4;
+constexpr int kRobustRounds = 2;  // later ones trust the outlier decision alone
+constexpr int kIterations = 6;    // per round
+constexpr double kConverged = 1e-6;  // metres and radians
+constexpr int kMinObservations = 6;
+constexpr double kMinDepth = 0.05;  // metres in front of the camera
+
+struct NormalEquations {
+  Matrix6d hessian = Matrix6d::Zero();
+  Vector6d gradient = Vector6d::Zero();
+  double cost = 0.0;
+};
+
+double bound(const PoseObservation& o) { return o.inverse_depth > 0 ? kChiSquare3 : kChiSquare2; }
+
+// Normalised residual (u, v, inverse depth); infinite error behind the camera.
+bool residual(const PoseObservation& o, const Camera& camera, const Eigen::Vector3d& p,
+              Eigen::Vector3d& r) {
+  if (p.z() < kMinDepth) return false;
+  const double inverse_z = 1.0 / p.z();
+  r.x() = (camera.fx * p.x() * inverse_z + camera.cx - o.pixel.x()) / o.pixel_sigma;
+  r.y() = (camera.fy * p.y() * inverse_z + camera.cy - o.pixel.y()) / o.pixel_sigma;
+  r.z() = o.inverse_depth > 0 ? (inverse_z - o.inverse_depth) / o.inverse_depth_sigma : 0.0;
+  return true;
+}
+
+double huber_cost(double squared, double limit) {
+  return squared <= limit ? squared : 2.0 * std::sqrt(squared * limit) - limit;
+}
+
+class Solver {
+ public:
+  Solver(std::span<const PoseObservation> observations, const Camera& camera, const Pose& guess)
+      : observations_(observations), camera_(camera) {
+    solution_.camera_from_world = guess;
+    solution_.inlier.assign(observations.size(), true);
+    solution_.inliers = static_cast<int>(observations.size());
+  }
+
+  PoseSolution run() {
+    for (int round = 0; round < kRounds && solution_.inliers >= kMinObservations; ++round) {
+      robust_ = round < kRobustRounds;
+      iterate();
+      classify();
+    }
+    return std::move(solution_);
+  }
+
+ private:
+  void iterate() {
+    double lambda = 1e-4;
+    NormalEquations current = build(solution_.camera_from_world);
+    for (int i = 0; i < kIterations; ++i) {
+      Matrix6d damped = current.hessian;
+      damped.diagonal() *= 1.0 + lambda;
+      const Vector6d step = damped.ldlt().solve(-current.gradient);
+      if (!step.allFinite()) return;
+      const Pose candidate = exp_se3(step) * solution_.camera_from_world;
+      NormalEquations next = build(candidate);
+      if (next.cost <= current.cost) {
+        solution_.camera_from_world = candidate;
+        current = std::move(next);
+        lambda *= 0.1;
+        if (step.norm() < kConverged) return;
+      } else {
+        lambda = std::max(lambda, 1e-6) * 10.0;
+      }
+    }
+  }
+
+  NormalEquations build(const Pose& camera_from_world) const {
+    NormalEquations n;
+    for (std::size_t i = 0; i < observations_.size(); ++i)
+      if (solution_.inlier[i]) add(observations_[i], camera_from_world, n);
+    return n;
+  }
+
+  void add(const PoseObservation& o, const Pose& camera_from_world, NormalEquations& n) const {
+    const Eigen::Vector3d p = camera_from_world * o.point_in_world;
+    Eigen::Vector3d r;
+    const double limit = bound(o);
+    if (!residual(o, camera_, p, r)) {
+      n.cost += o.weight * limit;
+      return;
+    }
+    const double squared = r.squaredNorm();
+    double weight = o.weight;
+    n.cost += o.weight * (robust_ ? huber_cost(squared, limit) : squared);
+    if (robust_ && squared > limit) weight *= std::sqrt(limit / squared);
+
+    // d p / d (translation, rotation) = [I, -skew(p)] for a perturbation on the left.
+    const double iz = 1.0 / p.z();
+    Eigen::Matrix3d by_point;
+    by_point << camera_.fx * iz / o.pixel_sigma, 0, -camera_.fx * p.x() * iz * iz / o.pixel_sigma,  //
+        0, camera_.fy * iz / o.pixel_sigma, -camera_.fy * p.y() * iz * iz / o.pixel_sigma,          //
+        0, 0, o.inverse_depth > 0 ? -iz * iz / o.inverse_depth_sigma : 0.0;
+    Eigen::Matrix<double, 3, 6> jacobian;
+    jacobian.leftCols<3>() = by_point;
+    for (int row = 0; row < 3; ++row)
+      jacobian.row(row).tail<3>() = p.cross(by_point.row(row).transpose()).transpose();
+    n.hessian.noalias() += weight * (jacobian.transpose() * jacobian);
+    n.gradient.noalias() += weight * (jacobian.transpose() * r);
+  }
+
+  void classify() {
+    solution_.inliers = 0;
+    for (std::size_t i = 0; i < observations_.size(); ++i) {
+      const PoseObservation& o = observations_[i];
+      Eigen::Vector3d r;
+      const bool visible =
+          residual(o, camera_, solution_.camera_from_world * o.point_in_world, r);
+      solution_.inlier[i] = visible && r.squaredNorm() <= bound(o);
+      solution_.inliers += solution_.inlier[i];
+    }
+  }
+
+  std::span<const PoseObservation> observations_;
+  const Camera& camera_;
+  PoseSolution solution_;
+  bool robust_ = true;
+};
+
+}  // namespace
+
+PoseSolution solve_pose(std::span<const PoseObservation> observations, const Camera& camera,
+                        const Pose& camera_from_world_guess) {
+  return Solver(observations, camera, camera_from_world_guess).run();
+}
+
+}  // namespace stillpoint::orb

@@ -1,0 +1,46 @@
+// What pyramid levels mean for measurements and distances.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "stillpoint/contracts/features.hpp"
+#include "stillpoint/contracts/landmark.hpp"
+
+namespace stillpoint::orb {
+
+/// Factors of the pyramid that features were extracted from.
+class ScalePyramid {
+ public:
+  explicit ScalePyramid(const Features& features)
+      : levels_(std::min(features.levels, kMaxLevels)), log_factor_(std::log(features.scale_factor)) {
+    for (int i = 0; i < levels_; ++i) scale_[i] = std::pow(features.scale_factor, i);
+  }
+
+  int levels() const { return levels_; }
+  /// Size of a pixel of that level in pixels of the full image; also the standard deviation of a
+  /// keypoint's position.
+  double scale(int level) const { return scale_[level]; }
+
+  /// Level at which a landmark appears from `distance` metres, as it was described at.
+  int predict_level(const Landmark& landmark, double distance) const {
+    const double level = std::log(landmark.max_distance / distance) / log_factor_;
+    return std::clamp(static_cast<int>(std::lround(level)), 0, levels_ - 1);
+  }
+
+  /// Sets the range of distances from which the landmark can be found, after it was seen on
+  /// `level` from `distance` metres.
+  void set_distance_range(Landmark& landmark, int level, double distance) const {
+    landmark.max_distance = static_cast<float>(distance * scale(level));
+    landmark.min_distance = static_cast<float>(landmark.max_distance / scale(levels_ - 1));
+  }
+
+ private:
+  static constexpr int kMaxLevels = 16;
+  int levels_;
+  double log_factor_;
+  std::array<double, kMaxLevels> scale_{};
+};
+
+}  // namespace stillpoint::orb

@@ -1,0 +1,246 @@
+#include "orb_slam/tracker.hpp"
+
+#include <algorithm>
+
+namespace stillpoint::orb {
+namespace {
+
+constexpr int kMinMotionMatches = 20;   // fewer: search again in a wider window
+constexpr int kMinFirstInliers = 10;    // to go on to the local map
+
+std::vector<TrackedFeature> describe(const ObservedFrame& frame) {
+  std::vector<TrackedFeature> tracked(frame.features->size());
+  for (std::uint32_t i = 0; i < tracked.size(); ++i) {
+    tracked[i].pixel = frame.features->keypoints[i].pt;
+    if (!frame.usable(i))
+      tracked[i].use = TrackedFeature::Use::kMoving;
+    else if (frame.landmarks[i] != kNoId)
+      tracked[i].use =
+          frame.outlier[i] ? TrackedFeature::Use::kOutlier : TrackedFeature::Use::kInlier;
+  }
+  return tracked;
+}
+
+}  // namespace
+
+void OrbTracker::Options::visit(OptionVisitor& v) {
+  orb.visit(v);
+  v("min_start_points", min_start_points,
+    {.min = 20, .help = "features with depth that the first key frame needs"});
+  v("min_inliers", min_inliers, {.min = 6, .help = "with fewer fitting landmarks tracking is lost"});
+  v("local_keyframes", local_keyframes,
+    {.min = 1, .help = "key frames whose landmarks are searched for in a frame"});
+  v("motion_window", motion_window,
+    {.min = 1, .unit = "px", .help = "search radius around the place predicted from the last frame"});
+  v("local_window", local_window,
+    {.min = 0.5, .unit = "px", .help = "search radius around the place predicted from the map"});
+  keyframe.visit(v);
+}
+
+OrbTracker::OrbTracker(Options options) : options_(options), extractor_(options.orb) {}
+
+void OrbTracker::prepare(FramePtr frame) {
+  Features features = extractor_.extract(frame->gray);
+  current_ = observe(std::move(frame), std::move(features));
+}
+
+TrackResult OrbTracker::track(FramePtr, const StaticWeights& weights, const SparseMap& map,
+                              TrackHints hints) {
+  current_.set_weights(weights);
+  if (map.empty()) return start() ? tracked(map, hints) : not_tracked(TrackState::kWaiting);
+
+  follow_map(map);
+  bool found = false;
+  if (state_ == TrackState::kTracking) found = track_with_motion(map) || track_reference(map);
+  if (!found) found = relocaliser_.find(current_, map);
+  if (found) found = track_local_map(map);
+  return found ? tracked(map, hints) : not_tracked(TrackState::kLost);
+}
+
+// The first key frame defines the world.
+bool OrbTracker::start() {
+  int points = 0;
+  for (std::uint32_t i = 0; i < current_.features->size(); ++i)
+    points += current_.features->depth[i] > 0 && current_.usable(i);
+  current_.world_from_camera = Pose::Identity();
+  current_.reference = kNoId;
+  return points >= options_.min_start_points;
+}
+
+// Mapping may have moved, fused or removed what the last frame refers to.
+void OrbTracker::follow_map(const SparseMap& map) {
+  next_keyframe_ = std::max(next_keyframe_, static_cast<KeyFrameId>(map.keyframe_id_end()));
+  if (!last_.frame) return;
+  if (last_.reference < map.keyframe_id_end())
+    last_.world_from_camera = map.world_from_keyframe(last_.reference) * last_.reference_from_camera;
+  if (const KeyFrame* keyframe = map.keyframe(last_keyframe_)) {
+    last_.landmarks = keyframe->landmarks;  // now with those that its insertion made
+    last_keyframe_ = kNoId;
+  }
+  for (LandmarkId& id : last_.landmarks) id = map.current_id(id);
+}
+
+bool OrbTracker::track_with_motion(const SparseMap& map) {
+  if (!velocity_) return false;
+  const double seconds = current_.frame->time - last_.frame->time;
+  const Pose motion = exp_se3(log_se3(*velocity_) * (seconds / velocity_seconds_));
+  current_.world_from_camera = last_.world_from_camera * motion.inverse();
+  const Pose camera_from_world = current_.world_from_camera.inverse();
+  const Camera& camera = *current_.frame->camera;
+  const ScalePyramid pyramid(*current_.features);
+
+  std::vector<Query> queries;
+  for (std::uint32_t i = 0; i < last_.landmarks.size(); ++i) {
+    const Landmark* landmark = map.landmark(last_.landmarks[i]);
+    if (!landmark || last_.outlier[i]) continue;
+    const Eigen::Vector3d p = camera_from_world * landmark->position_in_world;
+    if (p.z() <= 0) continue;
+    const Eigen::Vector2d pixel = camera.project(p);
+    if (!camera.contains(pixel.x(), pixel.y())) continue;
+    const cv::KeyPoint& k = last_.features->keypoints[i];
+    queries.push_back({.id = landmark->id,
+                       .descriptor = last_.features->descriptors[i],
+                       .u = pixel.x(),
+                       .v = pixel.y(),
+                       .radius = options_.motion_window * pyramid.scale(k.octave),
+                       .min_level = k.octave - 1,
+                       .max_level = k.octave + 1,
+                       .angle = k.angle});
+  }
+  const auto usable = [&](std::uint32_t i) { return current_.usable(i); };
+  const MatchRules rules{.max_distance = kFar, .consistent_angles = true};
+  std::vector<Match> matches = match_near(queries, *current_.features, current_.grid, usable, rules);
+  if (static_cast<int>(matches.size()) < kMinMotionMatches) {
+    for (Query& q : queries) q.radius *= 2;
+    matches = match_near(queries, *current_.features, current_.grid, usable, rules);
+  }
+  if (static_cast<int>(matches.size()) < kMinMotionMatches) return false;
+  current_.clear_landmarks();
+  current_.assign(matches);
+  const int inliers = solve_pose(current_, map);
+  current_.drop_outliers();
+  return inliers >= kMinFirstInliers;
+}
+
+bool OrbTracker::track_reference(const SparseMap& map) {
+  const KeyFrame* reference = map.keyframe(last_.reference);
+  if (!reference) return false;
+  const auto usable = [&](std::uint32_t i) { return current_.usable(i); };
+  const std::vector<Match> matches =
+      match_anywhere(landmark_queries(*reference, map), *current_.features, usable,
+                     {.max_distance = kNear, .ratio = 0.7, .consistent_angles = true});
+  if (static_cast<int>(matches.size()) < 15) return false;
+  current_.clear_landmarks();
+  current_.assign(matches);
+  current_.world_from_camera = last_.world_from_camera;
+  const int inliers = solve_pose(current_, map);
+  current_.drop_outliers();
+  return inliers >= kMinFirstInliers;
+}
+
+bool OrbTracker::track_local_map(const SparseMap& map) {
+  const LocalMap local = local_map_around(current_.landmarks, map, options_.local_keyframes);
+  if (local.reference == kNoId) return false;
+  current_.reference = local.reference;
+
+  std::vector<bool> matched(map.landmark_id_end());
+  for (const LandmarkId id : current_.landmarks)
+    if (id != kNoId) matched[id] = true;
+  const Pose camera_from_world = current_.world_from_camera.inverse();
+  const ScalePyramid pyramid(*current_.features);
+  std::vector<Query> queries;
+  std::vector<LandmarkId> visible;
+  for (const LandmarkId id : local.landmarks) {
+    if (matched[id]) {
+      visible.push_back(id);
+      continue;
+    }
+    const auto query = predict(*map.landmark(id), camera_from_world, *current_.frame->camera,
+                               pyramid, options_.local_window);
+    if (!query) continue;
+    visible.push_back(id);
+    queries.push_back(*query);
+  }
+  current_.assign(match_near(queries, *current_.features, current_.grid,
+                             [&](std::uint32_t i) { return current_.free(i); }, {.ratio = 0.8}));
+  inliers_ = solve_pose(current_, map);
+  count_evidence(visible);
+  return inliers_ >= options_.min_inliers;
+}
+
+void OrbTracker::count_evidence(const std::vector<LandmarkId>& visible) {
+  for (const LandmarkId id : visible) ++evidence_[id].visible;
+  for (std::size_t i = 0; i < current_.landmarks.size(); ++i)
+    if (current_.landmarks[i] != kNoId && !current_.outlier[i])
+      ++evidence_[current_.landmarks[i]].found;
+}
+
+TrackResult OrbTracker::tracked(const SparseMap& map, TrackHints hints) {
+  TrackResult result{.state = TrackState::kTracking};
+  result.world_from_camera = current_.world_from_camera = orthonormalised(current_.world_from_camera);
+  result.features = static_cast<int>(current_.features->size());
+  result.matches = current_.matched();
+  result.inliers = inliers_;
+  result.tracked = describe(current_);
+
+  const TrackingQuality quality = tracking_quality(
+      current_, map, inliers_, static_cast<int>(current_.frame->index - last_keyframe_index_),
+      options_.keyframe);
+  const bool keep = map.empty() || needs_keyframe(quality, hints, options_.keyframe);
+  current_.drop_outliers();
+  last_keyframe_ = kNoId;
+  if (keep) {
+    result.keyframe = make_keyframe();
+    current_.reference = last_keyframe_ = result.keyframe->id;
+    current_.reference_from_camera = Pose::Identity();
+  } else {
+    current_.reference_from_camera =
+        map.world_from_keyframe(current_.reference).inverse() * current_.world_from_camera;
+  }
+  result.reference = current_.reference;
+  result.reference_from_camera = current_.reference_from_camera;
+
+  const bool consecutive = state_ == TrackState::kTracking && last_.frame;
+  velocity_.reset();
+  if (consecutive) {
+    velocity_ = current_.world_from_camera.inverse() * last_.world_from_camera;
+    velocity_seconds_ = current_.frame->time - last_.frame->time;
+  }
+  state_ = TrackState::kTracking;
+  last_ = std::move(current_);
+  return result;
+}
+
+TrackResult OrbTracker::not_tracked(TrackState state) {
+  TrackResult result{.state = state};
+  result.features = static_cast<int>(current_.features->size());
+  current_.clear_landmarks();
+  result.tracked = describe(current_);
+  if (state_ == TrackState::kTracking) relocaliser_.begin(last_.reference);
+  state_ = state;
+  velocity_.reset();
+  return result;
+}
+
+KeyFrame OrbTracker::make_keyframe() {
+  KeyFrame keyframe{.id = next_keyframe_++,
+                    .frame = current_.frame->index,
+                    .time = current_.frame->time,
+                    .world_from_camera = current_.world_from_camera,
+                    .camera = current_.frame->camera,
+                    .features = current_.features,
+                    .track_weights = current_.track_weights,
+                    .map_weights = current_.map_weights,
+                    .landmarks = current_.landmarks};
+  for (auto& [id, evidence] : evidence_) {
+    evidence.landmark = id;
+    keyframe.evidence.push_back(evidence);
+  }
+  std::sort(keyframe.evidence.begin(), keyframe.evidence.end(),
+            [](const auto& a, const auto& b) { return a.landmark < b.landmark; });
+  evidence_.clear();
+  last_keyframe_index_ = current_.frame->index;
+  return keyframe;
+}
+
+}  // namespace stillpoint::orb

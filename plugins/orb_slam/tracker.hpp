@@ -1,0 +1,65 @@
+// Tracker `orb`: the pose of each frame in the sparse map (DS-SLAM III-A; ORB-SLAM2).
+#pragma once
+
+#include <unordered_map>
+#include <vector>
+
+#include "orb_slam/keyframe_policy.hpp"
+#include "orb_slam/local_map.hpp"
+#include "orb_slam/observed_frame.hpp"
+#include "orb_slam/orb_extractor.hpp"
+#include "orb_slam/relocaliser.hpp"
+#include "stillpoint/contracts/tracker.hpp"
+
+namespace stillpoint::orb {
+
+class OrbTracker final : public Tracker {
+ public:
+  struct Options {
+    OrbOptions orb;
+    KeyFrameOptions keyframe;
+    int min_start_points = 100;
+    int min_inliers = 30;
+    int local_keyframes = 80;
+    double motion_window = 15.0;
+    double local_window = 3.0;
+
+    void visit(OptionVisitor& visitor);
+  };
+
+  explicit OrbTracker(Options options);
+
+  void prepare(FramePtr frame) override;
+  TrackResult track(FramePtr frame, const StaticWeights& weights, const SparseMap& map,
+                    TrackHints hints) override;
+
+ private:
+  bool start();
+  void follow_map(const SparseMap& map);
+  bool track_with_motion(const SparseMap& map);
+  bool track_reference(const SparseMap& map);
+  bool track_local_map(const SparseMap& map);
+  void count_evidence(const std::vector<LandmarkId>& visible);
+
+  TrackResult tracked(const SparseMap& map, TrackHints hints);
+  TrackResult not_tracked(TrackState state);
+  KeyFrame make_keyframe();
+
+  Options options_;
+  OrbExtractor extractor_;
+  Relocaliser relocaliser_;
+
+  ObservedFrame current_;
+  ObservedFrame last_;  // the last one with a pose
+  KeyFrameId last_keyframe_ = kNoId;  // id of `last_`, when it became one
+  std::optional<Pose> velocity_;      // last camera from the one before it
+  double velocity_seconds_ = 0.0;     // over which velocity_ was measured
+  TrackState state_ = TrackState::kWaiting;
+  int inliers_ = 0;
+
+  KeyFrameId next_keyframe_ = 0;
+  std::uint32_t last_keyframe_index_ = 0;  // frame index of the newest key frame
+  std::unordered_map<LandmarkId, LandmarkEvidence> evidence_;
+};
+
+}  // namespace stillpoint::orb
