@@ -50,7 +50,8 @@ class Registry {
   std::string explain_missing(std::string_view kind, std::string_view type) const;
 
  private:
-  void load(const std::filesystem::path& library);
+  void add(const PluginDescriptor& descriptor, const std::filesystem::path& file,
+           std::shared_ptr<const void> handle);
 
   std::vector<PluginType> types_;
   std::vector<UnusableLibrary> unusable_;

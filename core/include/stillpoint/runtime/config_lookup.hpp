@@ -1,0 +1,13 @@
+// Configuration files by name: `tum_fr3` for cameras/tum_fr3.yaml in one of the config folders.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+namespace stillpoint {
+
+/// The file itself if there is one of that path, else NAME.yaml in `category` ("cameras",
+/// "pipelines") of the first config folder that has it. Throws Error(kUsage) that suggests names.
+std::filesystem::path find_config(const std::string& name_or_file, const std::string& category);
+
+}  // namespace stillpoint

@@ -1,0 +1,29 @@
+// Collects what is wrong with a configuration, so that a user sees all of it at once.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "stillpoint/runtime/config_node.hpp"
+
+namespace stillpoint {
+
+class FaultList {
+ public:
+  void add(const Location& where, const std::string& problem);
+  void add(const FaultList& others);
+  bool empty() const { return faults_.empty(); }
+
+  /// Throws ConfigError with one line "where: error: problem" per fault, in the order of files,
+  /// lines and columns.
+  void throw_if_any() const;
+
+ private:
+  struct Fault {
+    Location where;
+    std::string problem;
+  };
+  std::vector<Fault> faults_;
+};
+
+}  // namespace stillpoint

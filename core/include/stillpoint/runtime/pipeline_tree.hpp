@@ -1,0 +1,16 @@
+// All that a user says about a pipeline, merged into one tree.
+#pragma once
+
+#include "stillpoint/runtime/config_node.hpp"
+#include "stillpoint/runtime/fault_list.hpp"
+#include "stillpoint/runtime/pipeline_config.hpp"
+
+namespace stillpoint {
+
+/// From weak to strong: the file with what it extends, --camera (or the camera.yaml beside the
+/// recording when neither names one), --dataset, --set. Values are substituted, keys without a
+/// value removed.
+ConfigNode load_pipeline_tree(const std::filesystem::path& file, const PipelineRequest& request,
+                              FaultList& faults);
+
+}  // namespace stillpoint

@@ -1,0 +1,25 @@
+// One shared library, checked step by step before any of its code is used.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <string>
+
+#include "stillpoint/plugin.hpp"
+
+namespace stillpoint {
+
+/// A loaded library or the reason why it cannot be used.
+struct PluginLibrary {
+  const PluginDescriptor* descriptor = nullptr;  ///< null: see `reason`
+  std::shared_ptr<const void> handle;            ///< keeps the library loaded
+  std::string reason;
+};
+
+/// Throws nothing. The library stays loaded until the process ends.
+PluginLibrary load_plugin_library(const std::filesystem::path& file);
+
+/// What is wrong with a descriptor, or nothing.
+std::string check_descriptor(const PluginDescriptor& descriptor);
+
+}  // namespace stillpoint

@@ -1,0 +1,22 @@
+// From YAML text to ConfigNode: syntax, duplicate keys, `extends`, `--set` and `${NAME}`.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "stillpoint/runtime/config_node.hpp"
+#include "stillpoint/runtime/fault_list.hpp"
+
+namespace stillpoint {
+
+/// A file with everything it extends merged below it. An empty map when a file cannot be read or
+/// parsed, which is a fault then.
+ConfigNode load_config_file(const std::filesystem::path& file, FaultList& faults);
+
+/// The map for `key.sub=value`; relative paths are meant from the working folder.
+ConfigNode parse_assignment(const std::string& assignment, FaultList& faults);
+
+/// Replaces ${NAME} in every scalar by the environment variable.
+void substitute_environment(ConfigNode& node, FaultList& faults);
+
+}  // namespace stillpoint

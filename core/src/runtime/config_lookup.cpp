@@ -1,0 +1,46 @@
+#include "stillpoint/runtime/config_lookup.hpp"
+
+#include <set>
+#include <vector>
+
+#include "stillpoint/error.hpp"
+#include "stillpoint/runtime/did_you_mean.hpp"
+#include "stillpoint/runtime/install_layout.hpp"
+
+namespace stillpoint {
+namespace {
+
+namespace fs = std::filesystem;
+
+bool is_file(const fs::path& path) {
+  std::error_code error;
+  return fs::is_regular_file(path, error);
+}
+
+std::vector<std::string> available_names(const std::string& category) {
+  std::set<std::string> names;
+  std::error_code error;
+  for (const fs::path& folder : config_folders())
+    for (const auto& entry : fs::directory_iterator(folder / category, error))
+      if (entry.path().extension() == ".yaml") names.insert(entry.path().stem());
+  return {names.begin(), names.end()};
+}
+
+}  // namespace
+
+fs::path find_config(const std::string& name_or_file, const std::string& category) {
+  if (is_file(name_or_file)) return name_or_file;
+  const std::string singular = category.substr(0, category.size() - 1);
+  const fs::path path = name_or_file;
+  if (path.has_parent_path() || path.extension() == ".yaml")
+    throw Error(Fault::kUsage, "no such " + singular + " file", name_or_file);
+  for (const fs::path& folder : config_folders())
+    if (const fs::path file = folder / category / (name_or_file + ".yaml"); is_file(file))
+      return file;
+  const std::vector<std::string> names = available_names(category);
+  throw Error(Fault::kUsage, "no " + singular + " named '" + name_or_file + "'" +
+                                 did_you_mean(name_or_file, names) +
+                                 (names.empty() ? "" : "\n  available: " + join(names)));
+}
+
+}  // namespace stillpoint

@@ -1,0 +1,32 @@
+#include "stillpoint/runtime/fault_list.hpp"
+
+#include <algorithm>
+#include <tuple>
+
+#include "stillpoint/runtime/did_you_mean.hpp"
+#include "stillpoint/runtime/pipeline_config.hpp"
+
+namespace stillpoint {
+
+void FaultList::add(const Location& where, const std::string& problem) {
+  faults_.push_back({where, problem});
+}
+
+void FaultList::add(const FaultList& others) {
+  faults_.insert(faults_.end(), others.faults_.begin(), others.faults_.end());
+}
+
+void FaultList::throw_if_any() const {
+  if (faults_.empty()) return;
+  std::vector<Fault> sorted = faults_;
+  std::ranges::stable_sort(sorted, {}, [](const Fault& fault) {
+    return std::tie(fault.where.file, fault.where.line, fault.where.column);
+  });
+  std::vector<std::string> lines;
+  for (const Fault& fault : sorted)
+    lines.push_back(fault.where.text() + ": error: " + fault.problem);
+  lines.erase(std::unique(lines.begin(), lines.end()), lines.end());  // YAML aliases repeat nodes
+  throw ConfigError(join(lines, "\n"));
+}
+
+}  // namespace stillpoint

@@ -1,0 +1,214 @@
+#include "stillpoint/runtime/pipeline_config.hpp"
+
+#include <algorithm>
+
+#include "stillpoint/contracts/source.hpp"
+#include "stillpoint/runtime/config_lookup.hpp"
+#include "stillpoint/runtime/did_you_mean.hpp"
+#include "stillpoint/runtime/pipeline_tree.hpp"
+#include "stillpoint/runtime/yaml_option_reader.hpp"
+
+namespace stillpoint {
+namespace {
+
+struct PluginsOptions {
+  std::vector<std::string> paths;
+  void visit(OptionVisitor& v) {
+    v("paths", paths, {.help = "folders of plugins, searched first", .is_path = true});
+  }
+};
+
+struct StageSection {
+  const char* name;  // also the kind
+  std::optional<StageSpec> PipelineConfig::*stage;
+};
+
+// In the order of the paper's Fig. 2, which is that of the effective file.
+constexpr StageSection kStages[] = {
+    {"segmenter", &PipelineConfig::segmenter},
+    {"propagator", &PipelineConfig::propagator},
+    {"moving_checker", &PipelineConfig::moving_checker},
+    {"decision", &PipelineConfig::decision},
+    {"tracker", &PipelineConfig::tracker},
+    {"local_mapper", &PipelineConfig::local_mapper},
+    {"loop_closer", &PipelineConfig::loop_closer},
+    {"map_backend", &PipelineConfig::map_backend},
+};
+
+/// Reads the sections of one tree into a PipelineConfig.
+class PipelineReader {
+ public:
+  PipelineReader(const ConfigNode& tree, Registry& registry, FaultList& faults)
+      : tree_(tree), registry_(registry), faults_(faults) {}
+
+  PipelineConfig read(const std::vector<std::filesystem::path>& plugin_folders) {
+    PipelineConfig config;
+    read_version();
+    search_plugins(plugin_folders);
+    if (section("camera")) read_options(config.camera.emplace(), "camera");
+    config.source = read_stage(section("source"), "source", "source");
+    if (!section("source")) faults_.add(tree_.location, "there is no source section");
+    read_options(config.segmentation, "segmentation");
+    for (const StageSection& stage : kStages)
+      config.*stage.stage = read_stage(section(stage.name), stage.name, stage.name);
+    read_outputs(config.outputs);
+    read_options(config.runtime, "runtime");
+    report_unknown_sections();
+    config.effective_yaml =
+        "# Every option of this pipeline with its value. Loading this file gives the same one.\n" +
+        print_yaml(document_);
+    return config;
+  }
+
+ private:
+  const ConfigNode* section(const char* name) {
+    known_.push_back(name);
+    return tree_.find(name);
+  }
+
+  void read_version() {
+    const ConfigNode* version = section("version");
+    if (!version)
+      faults_.add(tree_.location, "there is no version; write 'version: 1'");
+    else if (version->scalar != "1")
+      faults_.add(version->location, "version " + yaml_text(version->scalar) +
+                                         " is not known to this program, which reads version 1");
+    document_.children.push_back({.name = "version", .value = "1"});
+  }
+
+  template <OptionGroup Options>
+  void read_options(Options& options, const char* name) {
+    YamlOptionReader reader(section(name), name);
+    options.visit(reader);
+    reader.finish();
+    faults_.add(reader.faults());
+    document_.children.push_back(reader.record());
+  }
+
+  void search_plugins(const std::vector<std::filesystem::path>& folders) {
+    PluginsOptions options;
+    read_options(options, "plugins");
+    for (const std::string& path : options.paths) {
+      std::error_code error;
+      if (!std::filesystem::is_directory(path, error))
+        faults_.add(tree_.find("plugins")->find("paths")->location,
+                    "plugins.paths: no folder '" + path + "'");
+      registry_.search(path);
+    }
+    for (const auto& folder : folders) registry_.search(folder);
+  }
+
+  std::optional<StageSpec> read_stage(const ConfigNode* node, const std::string& path,
+                                      const std::string& kind) {
+    OptionRecord record;
+    auto stage = node ? check_stage(*node, path, kind, record) : std::nullopt;
+    if (stage) document_.children.push_back(std::move(record));
+    return stage;
+  }
+
+  void read_outputs(std::vector<StageSpec>& outputs) {
+    OptionRecord record{.name = "outputs", .kind = OptionRecord::Kind::kList};
+    const ConfigNode* list = section("outputs");
+    if (list && list->kind != ConfigNode::Kind::kList) {
+      faults_.add(list->location, "outputs must be a list, as in [{type: trajectory}]");
+    } else if (list) {
+      for (std::size_t i = 0; i < list->children.size(); ++i) {
+        OptionRecord element;
+        const std::string path = "outputs[" + std::to_string(i) + "]";
+        const auto output = check_stage(list->children[i], path, "output", element);
+        if (!output) continue;
+        outputs.push_back(*output);
+        record.children.push_back(std::move(element));
+      }
+    }
+    document_.children.push_back(std::move(record));
+  }
+
+  /// Nothing when the section has no usable type; faults of options are collected.
+  std::optional<StageSpec> check_stage(const ConfigNode& node, const std::string& path,
+                                       const std::string& kind, OptionRecord& record) {
+    YamlOptionReader reader(&node, path);
+    reader.ignore("type");
+    const ConfigNode* type = node.find("type");
+    if (node.kind != ConfigNode::Kind::kMap) {
+      faults_.add(reader.faults());
+      return std::nullopt;
+    }
+    if (!type || type->kind != ConfigNode::Kind::kScalar) {
+      const Location& where = type               ? type->location
+                              : node.key.empty() ? node.location
+                                                 : node.key_location;
+      faults_.add(where, path + ": expected 'type: NAME', the implementation to use");
+      return std::nullopt;
+    }
+    const PluginType* plugin = registry_.find(kind, type->scalar);
+    if (!plugin) {
+      faults_.add(type->location, registry_.explain_missing(kind, type->scalar));
+      return std::nullopt;
+    }
+    plugin->entry->describe(reader);
+    reader.finish();
+    faults_.add(reader.faults());
+    record = reader.record();
+    record.children.insert(
+        record.children.begin(),
+        {.name = "type", .value = yaml_text(plugin->type), .comment = plugin->summary});
+    return StageSpec(path, *plugin, std::make_shared<const ConfigNode>(node));
+  }
+
+  void report_unknown_sections() {
+    for (const ConfigNode& child : tree_.children)
+      if (std::ranges::find(known_, child.key) == known_.end()) {
+        const std::string hint = did_you_mean(child.key, known_);
+        faults_.add(child.key_location, "unknown section '" + child.key + "'" +
+                                            (hint.empty() ? "; known: " + join(known_) : hint));
+      }
+  }
+
+  const ConfigNode& tree_;
+  Registry& registry_;
+  FaultList& faults_;
+  std::vector<std::string> known_;
+  OptionRecord document_{.kind = OptionRecord::Kind::kGroup};
+};
+
+}  // namespace
+
+void RuntimeOptions::visit(OptionVisitor& v) {
+  v.choice("mode", mode, {{"inline", Mode::kInline}, {"threaded", Mode::kThreaded}},
+           {.help = "one thread with reproducible results, or one per stage"});
+  v.choice("pace", pace, {{"free", Pace::kFree}, {"sensor", Pace::kSensor}},
+           {.help = "as fast as possible, or as recorded, dropping frames while busy"});
+  v("seed", seed, {.min = 0, .help = "of everything random"});
+  v("threads", threads, {.min = 1, .max = 256, .help = "of each solver; inline uses 1"});
+}
+
+void SegmentationOptions::visit(OptionVisitor& v) {
+  v.choice("schedule", schedule, {{"wait", Schedule::kWait}, {"latest", Schedule::kLatest}},
+           {.help = "wait for each frame's labels (the paper), or take the latest there are"});
+  v("latency", latency,
+    {.min = 0,
+     .max = 1000,
+     .unit = "frames",
+     .help = "of 'latest' in mode inline, which has no clock"});
+}
+
+StageSpec::StageSpec(std::string section, const PluginType& type,
+                     std::shared_ptr<const ConfigNode> options)
+    : section_(std::move(section)), type_(type), options_(std::move(options)) {}
+
+std::unique_ptr<OptionVisitor> StageSpec::reader() const {
+  return std::make_unique<YamlOptionReader>(options_.get(), section_);
+}
+
+PipelineConfig load_pipeline(const PipelineRequest& request, Registry& registry) {
+  const std::filesystem::path file = find_config(request.pipeline, "pipelines");
+  FaultList faults;
+  const ConfigNode tree = load_pipeline_tree(file, request, faults);
+  PipelineConfig config = PipelineReader(tree, registry, faults).read(request.plugin_folders);
+  faults.throw_if_any();
+  config.file = file;
+  return config;
+}
+
+}  // namespace stillpoint

@@ -1,0 +1,99 @@
+#include "stillpoint/runtime/registry.hpp"
+
+#include <algorithm>
+#include <span>
+
+#include "stillpoint/error.hpp"
+#include "stillpoint/runtime/did_you_mean.hpp"
+#include "stillpoint/runtime/plugin_library.hpp"
+
+namespace stillpoint {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::vector<fs::path> plugin_files(const fs::path& folder) {
+  std::vector<fs::path> files;
+  std::error_code error;
+  for (const auto& entry : fs::directory_iterator(folder, error)) {
+    const std::string name = entry.path().filename().string();
+    if (name.starts_with("libstillpoint_") && name.ends_with(".so")) files.push_back(entry.path());
+  }
+  std::ranges::sort(files);
+  return files;
+}
+
+}  // namespace
+
+void Registry::add(const PluginDescriptor& descriptor) { add(descriptor, {}, nullptr); }
+
+void Registry::search(const fs::path& folder) {
+  const fs::path absolute = fs::absolute(folder).lexically_normal();
+  if (std::ranges::find(searched_, absolute) != searched_.end()) return;
+  searched_.push_back(absolute);
+  for (const fs::path& file : plugin_files(absolute)) {
+    PluginLibrary library = load_plugin_library(file);
+    if (library.descriptor)
+      add(*library.descriptor, file, std::move(library.handle));
+    else
+      unusable_.push_back({file, library.reason});
+  }
+}
+
+void Registry::add(const PluginDescriptor& descriptor, const fs::path& file,
+                   std::shared_ptr<const void> handle) {
+  const std::span<const PluginEntry> entries(descriptor.entries, descriptor.entry_count);
+  for (const PluginEntry& entry : entries) {
+    const PluginType* first = find(entry.kind, entry.type);
+    if (!first) continue;
+    const std::string provider = first->library.empty() ? "this program" : first->library.string();
+    unusable_.push_back({file, std::string(entry.kind) + " '" + entry.type +
+                                   "' is already provided by " + provider});
+    return;
+  }
+  for (const PluginEntry& entry : entries)
+    types_.push_back({entry.kind, entry.type, entry.summary, descriptor.name, descriptor.version,
+                      file, &entry, handle});
+}
+
+const PluginType* Registry::find(std::string_view kind, std::string_view type) const {
+  const auto found = std::ranges::find_if(types_, [&](const PluginType& candidate) {
+    return candidate.kind == kind && candidate.type == type;
+  });
+  return found == types_.end() ? nullptr : &*found;
+}
+
+std::string Registry::explain_missing(std::string_view kind, std::string_view type) const {
+  std::vector<std::string> available;
+  for (const PluginType& candidate : types_)
+    if (candidate.kind == kind) available.push_back(candidate.type);
+  std::ranges::sort(available);
+  std::string text = "no " + std::string(kind) + " named '" + std::string(type) + "'" +
+                     did_you_mean(type, available) +
+                     "\n  available:  " + (available.empty() ? "none" : join(available));
+  for (const UnusableLibrary& library : unusable_)
+    text += "\n  not usable: " + library.library.filename().string() + ": " + library.reason;
+  std::vector<std::string> folders;
+  for (const fs::path& folder : searched_) folders.push_back(folder.string());
+  return text + "\n  searched:   " + join(folders) +
+         "      (add folders with STILLPOINT_PLUGIN_PATH)";
+}
+
+std::shared_ptr<void> create_object(const PluginType& type, std::string_view kind,
+                                    OptionVisitor& options, const StageContext& context,
+                                    void (*destroy)(void*)) {
+  const std::string name = type.kind + " (" + type.type + ")";
+  if (type.kind != kind) throw Error(Fault::kStage, "asked for as a " + std::string(kind), name);
+  try {
+    void* object = type.entry->create(options, context);
+    return {object, [destroy, library = type.handle](void* p) { destroy(p); }};
+  } catch (const Error& error) {
+    throw Error(error.fault(), error.what(), name);
+  } catch (const std::exception& error) {
+    throw Error(Fault::kStage, error.what(), name);
+  } catch (...) {
+    throw Error(Fault::kStage, "threw something that is not a std::exception", name);
+  }
+}
+
+}  // namespace stillpoint

@@ -1,0 +1,230 @@
+#include "stillpoint/runtime/yaml_loader.hpp"
+
+#include <yaml-cpp/yaml.h>
+
+#include <algorithm>
+#include <fstream>
+#include <iterator>
+#include <optional>
+#include <vector>
+
+#include "stillpoint/runtime/did_you_mean.hpp"
+
+namespace stillpoint {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Aliases can nest a node in itself, or double a document at every level.
+constexpr int kMaxDepth = 32;
+constexpr int kMaxNodes = 100000;
+
+/// Turns the nodes of one document into ours.
+class Converter {
+ public:
+  Converter(Location origin, fs::path folder, FaultList& faults)
+      : origin_(std::move(origin)), folder_(std::move(folder)), faults_(faults) {}
+
+  ConfigNode convert(const YAML::Node& yaml, const std::string& path = {}, int depth = 0) {
+    ConfigNode node;
+    node.location = at(yaml.Mark());
+    node.folder = folder_;
+    if (depth > kMaxDepth || ++nodes_ > kMaxNodes) {
+      if (!std::exchange(too_large_, true))
+        faults_.add(node.location, "nested too deeply or too large for a configuration");
+      return node;
+    }
+    if (yaml.IsScalar()) {
+      node.kind = ConfigNode::Kind::kScalar;
+      node.scalar = yaml.Scalar();
+    } else if (yaml.IsSequence()) {
+      node.kind = ConfigNode::Kind::kList;
+      for (const auto& item : yaml)
+        node.children.push_back(
+            convert(item, path + "[" + std::to_string(node.children.size()) + "]", depth + 1));
+    } else if (yaml.IsMap()) {
+      node.kind = ConfigNode::Kind::kMap;
+      for (const auto& pair : yaml) add_pair(node, pair.first, pair.second, path, depth);
+    }
+    return node;
+  }
+
+ private:
+  void add_pair(ConfigNode& map, const YAML::Node& yaml_key, const YAML::Node& yaml_value,
+                const std::string& path, int depth) {
+    const Location where = at(yaml_key.Mark());
+    const std::string prefix = path.empty() ? "" : path + ": ";
+    if (!yaml_key.IsScalar()) {
+      faults_.add(where, prefix + "a key must be a name");
+      return;
+    }
+    const std::string& key = yaml_key.Scalar();
+    if (map.find(key)) {
+      faults_.add(where, prefix + "key '" + key + "' is given twice");
+      return;
+    }
+    ConfigNode value = convert(yaml_value, path.empty() ? key : path + "." + key, depth + 1);
+    value.key = key;
+    value.key_location = where;
+    map.children.push_back(std::move(value));
+  }
+
+  Location at(const YAML::Mark& mark) const {
+    Location where = origin_;
+    if (where.line > 0) {
+      where.line = mark.line + 1;
+      where.column = mark.column + 1;
+    }
+    return where;
+  }
+
+  Location origin_;
+  fs::path folder_;
+  FaultList& faults_;
+  int nodes_ = 0;
+  bool too_large_ = false;
+};
+
+/// One document; nothing after a syntax error, which is added as a fault.
+std::optional<ConfigNode> parse(const std::string& text, Location origin, const fs::path& folder,
+                                FaultList& faults) {
+  try {
+    const std::vector<YAML::Node> documents = YAML::LoadAll(text);
+    if (documents.size() > 1) {
+      faults.add(origin, "more than one YAML document ('---') in a file");
+      return std::nullopt;
+    }
+    if (documents.empty()) return ConfigNode{.location = origin, .folder = folder};
+    return Converter(origin, folder, faults).convert(documents.front());
+  } catch (const YAML::Exception& error) {
+    if (origin.line > 0 && !error.mark.is_null())
+      origin = {origin.file, error.mark.line + 1, error.mark.column + 1};
+    faults.add(origin, "not valid YAML: " + error.msg);
+    return std::nullopt;
+  }
+}
+
+std::optional<std::string> read_text(const fs::path& file) {
+  std::error_code error;
+  if (!fs::is_regular_file(file, error)) return std::nullopt;
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream) return std::nullopt;
+  return std::string(std::istreambuf_iterator<char>(stream), {});
+}
+
+ConfigNode empty_map(const fs::path& file) {
+  return {.kind = ConfigNode::Kind::kMap, .location = {file.string(), 1, 1}};
+}
+
+ConfigNode load_chain(const fs::path& file, const Location& named_at, std::vector<fs::path> chain,
+                      FaultList& faults);
+
+/// Takes `extends` out of a file and loads what it names.
+std::optional<ConfigNode> load_parent(ConfigNode& node, const fs::path& file,
+                                      const std::vector<fs::path>& chain, FaultList& faults) {
+  ConfigNode* extends = node.find("extends");
+  if (!extends) return std::nullopt;
+  substitute_environment(*extends, faults);
+  const ConfigNode named = *extends;
+  node.erase("extends");
+  if (named.kind != ConfigNode::Kind::kScalar || named.scalar.empty()) {
+    faults.add(named.key_location, "extends takes the path of one file");
+    return std::nullopt;
+  }
+  return load_chain((file.parent_path() / named.scalar).lexically_normal(), named.location, chain,
+                    faults);
+}
+
+ConfigNode load_chain(const fs::path& file, const Location& named_at, std::vector<fs::path> chain,
+                      FaultList& faults) {
+  std::error_code unreadable;  // said below
+  const fs::path identity = fs::weakly_canonical(file, unreadable);
+  if (std::ranges::find(chain, identity) != chain.end()) {
+    faults.add(named_at, "extends goes in a circle: '" + file.string() + "' is already being read");
+    return empty_map(file);
+  }
+  chain.push_back(identity);
+  const std::optional<std::string> text = read_text(file);
+  if (!text) {
+    faults.add(named_at, "cannot read '" + file.string() + "'");
+    return empty_map(file);
+  }
+  const fs::path folder = fs::absolute(file).parent_path();
+  auto node = parse(*text, {file.string(), 1, 1}, folder, faults);
+  if (!node) return empty_map(file);
+  if (node->kind != ConfigNode::Kind::kMap) {
+    faults.add({file.string(), 1, 1}, "expected sections, as in 'source: {type: tum_rgbd}'");
+    return empty_map(file);
+  }
+  const auto parent = load_parent(*node, file, chain, faults);
+  return parent ? merge_sections(*parent, *node) : *node;
+}
+
+bool is_variable_name(std::string_view name) {
+  const auto letter = [](char c) {
+    return c == '_' || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z');
+  };
+  return !name.empty() && letter(name[0]) &&
+         std::ranges::all_of(name, [&](char c) { return letter(c) || (c >= '0' && c <= '9'); });
+}
+
+std::string substituted(const std::string& text, const Location& where, FaultList& faults) {
+  std::string result;
+  std::size_t position = 0;
+  for (;;) {
+    const std::size_t start = text.find("${", position);
+    result.append(text, position, start - position);
+    if (start == std::string::npos) return result;
+    const std::size_t end = text.find('}', start);
+    const std::string name = text.substr(start + 2, end - start - 2);
+    if (end == std::string::npos || !is_variable_name(name)) {
+      faults.add(where,
+                 "'" + text + "': expected the name of an environment variable, as in ${HOME}");
+      return result;
+    }
+    if (const char* value = std::getenv(name.c_str()))
+      result += value;
+    else
+      faults.add(where, "environment variable '" + name + "' is not set");
+    position = end + 1;
+  }
+}
+
+}  // namespace
+
+ConfigNode load_config_file(const fs::path& file, FaultList& faults) {
+  return load_chain(file, {file.string(), 1, 1}, {}, faults);
+}
+
+ConfigNode parse_assignment(const std::string& assignment, FaultList& faults) {
+  const Location where{"--set " + assignment};
+  const ConfigNode nothing{.kind = ConfigNode::Kind::kMap, .location = where};
+  const std::size_t equals = assignment.find('=');
+  const std::string path = assignment.substr(0, equals);
+  if (equals == std::string::npos || path.empty() || path.front() == '.' || path.back() == '.' ||
+      path.find("..") != std::string::npos) {
+    faults.add(where, "expected KEY.SUB=VALUE, as in tracker.features=2000");
+    return nothing;
+  }
+  auto node = parse(assignment.substr(equals + 1), where, fs::current_path(), faults);
+  if (!node) return nothing;
+  for (std::size_t end = path.size(); end != std::string::npos;) {
+    const std::size_t dot = end == 0 ? std::string::npos : path.rfind('.', end - 1);
+    const std::size_t start = dot == std::string::npos ? 0 : dot + 1;
+    node->key = path.substr(start, end - start);
+    node->key_location = where;
+    ConfigNode map = nothing;
+    map.children.push_back(*std::move(node));
+    node = std::move(map);
+    end = dot;
+  }
+  return *std::move(node);
+}
+
+void substitute_environment(ConfigNode& node, FaultList& faults) {
+  if (node.kind == ConfigNode::Kind::kScalar)
+    node.scalar = substituted(node.scalar, node.location, faults);
+  for (ConfigNode& child : node.children) substitute_environment(child, faults);
+}
+
+}  // namespace stillpoint
