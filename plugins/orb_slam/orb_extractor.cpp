@@ -46,6 +46,10 @@ void OrbOptions::visit(OptionVisitor& v) {
      .max = 254,
      .unit = "grey levels",
      .help = "contrast of a corner where no stronger one is near"});
+  v("oversampling", oversampling,
+    {.min = 1,
+     .max = 10,
+     .help = "corners spread evenly per feature, of which the strongest stay; 1 is most even"});
   v("subpixel", subpixel, {.help = "refine corners to fractions of a pixel"});
   v.require(fast_min_threshold <= fast_threshold,
             "fast_min_threshold must not exceed fast_threshold");
@@ -99,7 +103,9 @@ void OrbExtractor::build_pyramid(const cv::Mat& gray) {
 void OrbExtractor::detect(const cv::Mat& image, int count) {
   fast_.detect(image, options_.fast_min_threshold, kPatchBorder, corners_);
   drop_weak_beside_strong(corners_, image.size(), kCell, options_.fast_threshold);
-  keep_evenly_spread(corners_, image.size(), count);
+  const auto candidates = static_cast<int>(std::lround(options_.oversampling * count));
+  keep_evenly_spread(corners_, image.size(), candidates);
+  corners_.resize(std::min(corners_.size(), static_cast<std::size_t>(count)));
 }
 
 void OrbExtractor::describe(const cv::Mat& image, int level, cv::Size full_size,

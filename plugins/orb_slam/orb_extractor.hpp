@@ -18,6 +18,7 @@ struct OrbOptions {
   double scale_factor = 1.2;
   int fast_threshold = 20;
   int fast_min_threshold = 7;
+  double oversampling = 1.5;
   bool subpixel = true;
 
   void visit(OptionVisitor& v);
