@@ -10,6 +10,7 @@ namespace stillpoint {
 
 void add_check(CLI::App& app);
 void add_evaluate(CLI::App& app);
+void add_inspect(CLI::App& app);
 void add_plugins(CLI::App& app);
 
 /// PIPELINE, --dataset, --camera and --set, for every subcommand that reads a pipeline file.

@@ -14,6 +14,7 @@ using stillpoint::Fault;
 constexpr void (*kCommands[])(CLI::App&) = {
     stillpoint::add_check,
     stillpoint::add_evaluate,
+    stillpoint::add_inspect,
     stillpoint::add_plugins,
 };
 
