@@ -77,7 +77,7 @@ void MappingSystem::map(NewKeyFrame item) {
   send_moved(*before, *after);
   if (map_backend_.present() && id < after->keyframe_id_end()) {
     item.images.world_from_camera = after->world_from_keyframe(id);
-    dense_mapping_.push(std::move(item.images));
+    dense_mapping_.push(std::make_shared<const DenseKeyFrame>(std::move(item.images)));
   }
   loop_closing_.push({id, mapped_frame_});  // last: inline, its correction is applied within
 }
@@ -96,9 +96,9 @@ void MappingSystem::close_loop(const LoopQuery& query) {
 }
 
 void MappingSystem::map_densely(const DenseItem& item) {
-  if (const auto* keyframe = std::get_if<DenseKeyFrame>(&item)) {
-    dense_frame_ = keyframe->frame->index;
-    map_backend_.call("dense", dense_frame_, &MapBackend::integrate, *keyframe);
+  if (const auto* keyframe = std::get_if<std::shared_ptr<const DenseKeyFrame>>(&item)) {
+    dense_frame_ = (*keyframe)->frame->index;
+    map_backend_.call("dense", dense_frame_, &MapBackend::integrate, **keyframe);
   } else {
     map_backend_.call("dense", dense_frame_, &MapBackend::move,
                       std::get<std::vector<MovedKeyFrame>>(item));

@@ -52,7 +52,7 @@ class BoundedQueue {
     changed_.notify_all();
     const bool ready = changed_.wait(lock, stop, [this] { return closed_ || !items_.empty(); });
     if (!ready || stop.stop_requested() || items_.empty()) return std::nullopt;
-    std::optional<T> item(std::move(items_.front()));
+    T item = std::move(items_.front());
     items_.pop_front();
     busy_ = true;
     changed_.notify_all();

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <memory>
 #include <mutex>
 #include <stop_token>
 #include <variant>
@@ -42,7 +43,7 @@ class MappingSystem {
 
  private:
   using MappingItem = std::variant<NewKeyFrame, MapCorrection>;
-  using DenseItem = std::variant<DenseKeyFrame, std::vector<MovedKeyFrame>>;
+  using DenseItem = std::variant<std::shared_ptr<const DenseKeyFrame>, std::vector<MovedKeyFrame>>;
   struct LoopQuery {
     KeyFrameId keyframe = kNoId;
     std::uint32_t frame = 0;

@@ -1,0 +1,263 @@
+// Stages that do little, on purpose, and write down what happens to them.
+#pragma once
+
+#include <algorithm>
+#include <condition_variable>
+#include <functional>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "stillpoint/runtime/stage.hpp"
+
+namespace stillpoint::testing {
+
+/// What was called, in order; of all threads. Calls can be made to fail.
+class Journal {
+ public:
+  void write(const std::string& call, std::uint32_t frame) {
+    std::string entry = call;
+    entry.append(" ").append(std::to_string(frame));
+    {
+      const std::lock_guard lock(mutex_);
+      entries_.push_back(entry);
+    }
+    changed_.notify_all();
+    if (hook) hook(entry);
+    if (entry == failing) throw std::runtime_error("out of ideas");
+  }
+  std::vector<std::string> entries() const {
+    const std::lock_guard lock(mutex_);
+    return entries_;
+  }
+  std::vector<std::string> entries(const std::string& beginning) const {
+    std::vector<std::string> found;
+    for (const std::string& entry : entries())
+      if (entry.starts_with(beginning + " ")) found.push_back(entry);
+    return found;
+  }
+  bool contains(const std::string& entry) const {
+    const auto all = entries();
+    return std::find(all.begin(), all.end(), entry) != all.end();
+  }
+  void wait_for(const std::string& entry) const {
+    std::unique_lock lock(mutex_);
+    changed_.wait(
+        lock, [&] { return std::find(entries_.begin(), entries_.end(), entry) != entries_.end(); });
+  }
+
+  // Both are set before the run.
+  std::function<void(const std::string& entry)> hook;
+  std::string failing;  ///< entry after which an exception is thrown
+
+ private:
+  mutable std::mutex mutex_;
+  mutable std::condition_variable changed_;
+  std::vector<std::string> entries_;  // guarded by mutex_
+};
+
+inline Frame make_frame(std::uint32_t index) {
+  static const auto camera = std::make_shared<const Camera>();
+  return {.index = index, .time = 10.0 + 0.1 * index, .camera = camera};
+}
+
+class FakeSource final : public Source {
+ public:
+  FakeSource(Journal& journal, std::uint32_t frames) : journal_(journal), frames_(frames) {}
+  std::optional<Frame> next() override {
+    if (next_ == frames_) return std::nullopt;
+    journal_.write("source", next_);
+    return make_frame(next_++);
+  }
+  std::optional<std::size_t> size() const override { return frames_; }
+  SourceReport report() const override { return {.skipped = 2, .warnings = {"two were bad"}}; }
+
+ private:
+  Journal& journal_;
+  std::uint32_t frames_;
+  std::uint32_t next_ = 0;
+};
+
+class FakeSegmenter final : public Segmenter {
+ public:
+  explicit FakeSegmenter(Journal& journal) : journal_(journal) {}
+  Segmentation segment(const Frame& frame) override {
+    journal_.write("segment", frame.index);
+    return {.labels = cv::Mat(1, 1, CV_8UC1, cv::Scalar(15)), .frame = frame.index};
+  }
+
+ private:
+  Journal& journal_;
+};
+
+class FakePropagator final : public Propagator {
+ public:
+  explicit FakePropagator(Journal& journal) : journal_(journal) {}
+  Segmentation propagate(const Segmentation& segmentation, const Frame& from,
+                         const Frame& to) override {
+    if (segmentation.frame != from.index) throw std::logic_error("labels of another frame");
+    journal_.write(std::string("propagate ").append(std::to_string(from.index)), to.index);
+    Segmentation moved = segmentation;
+    moved.frame = to.index;
+    return moved;
+  }
+
+ private:
+  Journal& journal_;
+};
+
+class FakeChecker final : public MovingChecker {
+ public:
+  explicit FakeChecker(Journal& journal) : journal_(journal) {}
+  MovingPoints check(const Frame& previous, const Frame& current) override {
+    journal_.write(std::string("check ").append(std::to_string(previous.index)), current.index);
+    return {.reliable = true};
+  }
+
+ private:
+  Journal& journal_;
+};
+
+class FakeDecision final : public Decision {
+ public:
+  explicit FakeDecision(Journal& journal) : journal_(journal) {}
+  StaticWeights decide(const Frame& frame, const Segmentation& segmentation,
+                       const MovingPoints&) override {
+    journal_.write("decide", frame.index);
+    return {.object_moves = std::vector<bool>(segmentation.known() ? 1 : 0, true)};
+  }
+
+ private:
+  Journal& journal_;
+};
+
+/// Moves one metre along x per frame; every `spacing`-th frame is a key frame.
+class FakeTracker final : public Tracker {
+ public:
+  explicit FakeTracker(Journal& journal, std::uint32_t spacing = 2)
+      : journal_(journal), spacing_(spacing) {}
+  void prepare(FramePtr frame) override { journal_.write("prepare", frame->index); }
+  TrackResult track(FramePtr frame, const StaticWeights&, const SparseMap& map,
+                    TrackHints) override {
+    journal_.write("track", frame->index);
+    if (next_id_ > 0 && map.empty()) throw std::logic_error("the first key frame is not there");
+    TrackResult result{.state = TrackState::kTracking};
+    const Pose pose(Eigen::Translation3d(frame->index, 0.0, 0.0));
+    if (frame->index % spacing_ == 0) {
+      KeyFrame keyframe{.id = next_id_++, .frame = frame->index, .time = frame->time};
+      keyframe.world_from_camera = pose;
+      keyframe.features = std::make_shared<const Features>();
+      reference_ = keyframe;
+      result.keyframe = std::move(keyframe);
+    }
+    result.reference = reference_.id;
+    result.reference_from_camera = reference_.world_from_camera.inverse() * pose;
+    result.world_from_camera = pose;
+    return result;
+  }
+
+ private:
+  Journal& journal_;
+  std::uint32_t spacing_;
+  KeyFrameId next_id_ = 0;
+  KeyFrame reference_;
+};
+
+class FakeMapper final : public LocalMapper {
+ public:
+  explicit FakeMapper(Journal& journal)
+      : journal_(journal), insertion_(make_null_stage<LocalMapper>()) {}
+  SparseMap insert(SparseMap map, KeyFrame keyframe) override {
+    journal_.write("insert", keyframe.frame);
+    return insertion_->insert(std::move(map), std::move(keyframe));
+  }
+  SparseMap refine(SparseMap map, KeyFrameId id, std::stop_token hurry) override {
+    journal_.write("refine", map.keyframe(id)->frame);
+    if (while_refining) while_refining(id, hurry);
+    return map;
+  }
+
+  std::function<void(KeyFrameId, std::stop_token)> while_refining;
+
+ private:
+  Journal& journal_;
+  std::shared_ptr<LocalMapper> insertion_;
+};
+
+/// Closes a loop at every key frame: everything moves one metre along y.
+class FakeCloser final : public LoopCloser {
+ public:
+  explicit FakeCloser(Journal& journal) : journal_(journal) {}
+  std::optional<MapCorrection> close(const SparseMap& map, KeyFrameId latest,
+                                     std::stop_token) override {
+    journal_.write("close", map.keyframe(latest)->frame);
+    MapCorrection correction{.base_version = map.version(),
+                             .keyframe_id_end = static_cast<KeyFrameId>(map.keyframe_id_end())};
+    for (KeyFrameId id = 0; id < map.keyframe_id_end(); ++id)
+      correction.moved.push_back(
+          {id, Eigen::Translation3d(0.0, 1.0, 0.0) * map.world_from_keyframe(id)});
+    return correction;
+  }
+
+ private:
+  Journal& journal_;
+};
+
+/// Knows where each key frame is.
+class FakeBackend final : public MapBackend {
+ public:
+  explicit FakeBackend(Journal& journal) : journal_(journal) {}
+  void integrate(const DenseKeyFrame& keyframe) override {
+    journal_.write("integrate", keyframe.frame->index);
+    if (!keyframe.segmentation || !keyframe.weights) throw std::logic_error("incomplete");
+    poses[keyframe.id] = keyframe.world_from_camera;
+  }
+  void move(std::span<const MovedKeyFrame> moved) override {
+    for (const MovedKeyFrame& m : moved)
+      if (poses.contains(m.keyframe)) poses[m.keyframe] = m.world_from_camera;
+  }
+  void save(const std::filesystem::path&) const override { journal_.write("save", 0); }
+
+  std::map<KeyFrameId, Pose> poses;
+
+ private:
+  Journal& journal_;
+};
+
+class FakeOutput final : public Output {
+ public:
+  explicit FakeOutput(Journal& journal) : journal_(journal) {}
+  void frame(const FrameReport& report) override {
+    for (const StageTime& time : report.times) times.push_back(time);
+    journal_.write("output", report.frame.index);
+  }
+  void finish(const RunSummary& summary) override {
+    for (const StageTime& time : summary.times) times.push_back(time);
+    map = summary.map;
+    poses = summary.poses;
+    source = summary.source;
+    dropped = summary.dropped_frames;
+    complete = summary.complete;
+    failure = summary.failure;
+    ++finished;
+    journal_.write("finish", 0);
+  }
+
+  std::vector<StageTime> times;
+  SparseMap map;
+  std::vector<TrackedPose> poses;
+  SourceReport source;
+  int dropped = -1;
+  bool complete = false;
+  std::string failure;
+  int finished = 0;
+
+ private:
+  Journal& journal_;
+};
+
+}  // namespace stillpoint::testing

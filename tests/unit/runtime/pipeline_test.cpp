@@ -1,0 +1,340 @@
+#include "stillpoint/runtime/pipeline.hpp"
+
+#include <gtest/gtest.h>
+
+#include <set>
+#include <thread>
+
+#include "doubles.hpp"
+
+namespace stillpoint {
+namespace {
+
+using testing::Journal;
+using Pace = RuntimeOptions::Pace;
+using Strings = std::vector<std::string>;
+
+struct Fixture {
+  explicit Fixture(std::uint32_t frames = 6)
+      : source(std::make_shared<testing::FakeSource>(journal, frames)) {}
+
+  Stages stages() {
+    return {.source = {source, "list"},
+            .segmenter = {std::make_shared<testing::FakeSegmenter>(journal), "net"},
+            .propagator = {std::make_shared<testing::FakePropagator>(journal), "flow"},
+            .moving_checker = {std::make_shared<testing::FakeChecker>(journal), "lk"},
+            .decision = {std::make_shared<testing::FakeDecision>(journal), "vote"},
+            .tracker = {std::make_shared<testing::FakeTracker>(journal), "orb"},
+            .local_mapper = {mapper, "orb"},
+            .loop_closer = {closer, "bits"},
+            .map_backend = {backend, "cloud"},
+            .outputs = {{output, "first"}, {second_output, "second"}},
+            .map_directory = ::testing::TempDir() + "stillpoint_pipeline_test"};
+  }
+
+  Journal journal;
+  std::shared_ptr<Source> source;
+  std::shared_ptr<testing::FakeMapper> mapper = std::make_shared<testing::FakeMapper>(journal);
+  std::shared_ptr<LoopCloser> closer = std::make_shared<testing::FakeCloser>(journal);
+  std::shared_ptr<testing::FakeBackend> backend = std::make_shared<testing::FakeBackend>(journal);
+  std::shared_ptr<testing::FakeOutput> output = std::make_shared<testing::FakeOutput>(journal);
+  Journal second_journal;
+  std::shared_ptr<testing::FakeOutput> second_output =
+      std::make_shared<testing::FakeOutput>(second_journal);
+};
+
+RuntimeOptions runtime(Mode mode, Pace pace = Pace::kFree) {
+  RuntimeOptions options;
+  options.mode = mode;
+  options.pace = pace;
+  return options;
+}
+
+class PipelineInBothModes : public ::testing::TestWithParam<Mode> {};
+INSTANTIATE_TEST_SUITE_P(Modes, PipelineInBothModes,
+                         ::testing::Values(Mode::kInline, Mode::kThreaded), [](const auto& test) {
+                           return test.param == Mode::kInline ? "Inline" : "Threaded";
+                         });
+
+TEST(Pipeline, InlineCallsTheBoxesInTheOrderOfThePaper) {
+  Fixture f(2);
+  Pipeline(f.stages(), runtime(Mode::kInline), {}).run();
+  EXPECT_EQ(
+      f.journal.entries(),
+      (Strings{"source 0", "segment 0", "prepare 0",   "propagate 0 0", "decide 0",      "track 0",
+               "insert 0", "refine 0",  "integrate 0", "close 0",       "output 0",  //
+               "source 1", "segment 1", "prepare 1",   "check 0 1",     "propagate 1 1", "decide 1",
+               "track 1",  "output 1",  //
+               "save 0",   "finish 0"}));
+}
+
+TEST_P(PipelineInBothModes, EveryFrameGoesThroughEveryBox) {
+  Fixture f(40);
+  Pipeline(f.stages(), runtime(GetParam()), {}).run();
+  for (const char* call :
+       {"source", "segment", "prepare", "propagate", "decide", "track", "output"})
+    EXPECT_EQ(f.journal.entries(call).size(), 40u) << call;
+  EXPECT_EQ(f.journal.entries("check").size(), 39u);
+  for (const char* call : {"insert", "refine", "close", "integrate"})
+    EXPECT_EQ(f.journal.entries(call).size(), 20u) << call;
+  EXPECT_EQ(f.output->finished, 1);
+  EXPECT_TRUE(f.output->complete);
+  EXPECT_EQ(f.output->failure, "");
+  EXPECT_EQ(f.output->poses.size(), 40u);
+  EXPECT_EQ(f.output->source.skipped, 2u);
+}
+
+TEST_P(PipelineInBothModes, CorrectionsReachTheMapsAlsoAtTheEnd) {
+  Fixture f(60);
+  Pipeline(f.stages(), runtime(GetParam()), {}).run();
+  // Every key frame closes a loop, and each correction lifts the map by one metre.
+  const SparseMap& map = f.output->map;
+  ASSERT_EQ(map.keyframe_count(), 30u);
+  EXPECT_DOUBLE_EQ(map.world_from_keyframe(0).translation().y(), 30.0);
+  ASSERT_EQ(f.backend->poses.size(), 30u);
+  for (const auto& [id, pose] : f.backend->poses)
+    EXPECT_TRUE(pose.isApprox(map.world_from_keyframe(id))) << id;
+}
+
+TEST_P(PipelineInBothModes, AllTimesAreReportedOnceAndNameTheirFrame) {
+  Fixture f(4);
+  Pipeline(f.stages(), runtime(GetParam()), {}).run();
+  std::set<std::pair<std::string, std::uint32_t>> seen;
+  for (const StageTime& time : f.output->times) {
+    EXPECT_GE(time.wall_ms, 0.0);
+    if (time.stage == "source" || time.stage == "dense" || time.stage == "map_correct") continue;
+    EXPECT_TRUE(seen.emplace(time.stage, time.frame).second) << time.stage << ' ' << time.frame;
+  }
+  std::size_t expected = 7 * 4 + 3 + 3 * 2;          // per frame, check, per key frame
+  if (GetParam() == Mode::kThreaded) expected += 4;  // segmentation_wait
+  EXPECT_EQ(seen.size(), expected);
+}
+
+TEST_P(PipelineInBothModes, NullStagesRunThrough) {
+  Fixture f(5);
+  Stages stages;
+  stages.source = {f.source, "list"};
+  stages.outputs = {{f.output, "first"}};
+  Pipeline(std::move(stages), runtime(GetParam()), {}).run();
+  EXPECT_EQ(f.output->poses.size(), 5u);
+  EXPECT_TRUE(f.output->map.empty());
+}
+
+TEST_P(PipelineInBothModes, NullMapperKeepsTheKeyFrames) {
+  Fixture f(5);
+  Stages stages = f.stages();
+  stages.local_mapper = {};
+  Pipeline(std::move(stages), runtime(GetParam()), {}).run();
+  EXPECT_EQ(f.output->map.keyframe_count(), 3u);
+}
+
+TEST_P(PipelineInBothModes, EmptyRecordingFinishes) {
+  Fixture f(0);
+  Pipeline(f.stages(), runtime(GetParam()), {}).run();
+  EXPECT_EQ(f.output->finished, 1);
+  EXPECT_TRUE(f.output->complete);
+}
+
+TEST(Pipeline, NeedsASource) { EXPECT_THROW(Pipeline({}, {}, {}), Error); }
+
+struct FailureCase {
+  const char* name;
+  const char* entry;
+  const char* message;
+};
+
+class PipelineFailure : public ::testing::TestWithParam<std::tuple<Mode, FailureCase>> {};
+INSTANTIATE_TEST_SUITE_P(
+    Stages, PipelineFailure,
+    ::testing::Combine(
+        ::testing::Values(Mode::kInline, Mode::kThreaded),
+        ::testing::Values(
+            FailureCase{"Source", "source 4", "source (list) failed on frame 4: out of ideas"},
+            FailureCase{"Segmenter", "segment 4",
+                        "segmentation (net) failed on frame 4: out of ideas"},
+            FailureCase{"Propagator", "propagate 4 4",
+                        "propagation (flow) failed on frame 4: out of ideas"},
+            FailureCase{"Checker", "check 3 4",
+                        "moving check (lk) failed on frame 4: out of ideas"},
+            FailureCase{"Decision", "decide 4", "decision (vote) failed on frame 4: out of ideas"},
+            FailureCase{"Prepare", "prepare 4", "tracking (orb) failed on frame 4: out of ideas"},
+            FailureCase{"Track", "track 4", "tracking (orb) failed on frame 4: out of ideas"},
+            FailureCase{"FirstInsert", "insert 0",
+                        "local mapping (orb) failed on frame 0: out of ideas"},
+            FailureCase{"Insert", "insert 4",
+                        "local mapping (orb) failed on frame 4: out of ideas"},
+            FailureCase{"Refine", "refine 4",
+                        "local mapping (orb) failed on frame 4: out of ideas"},
+            FailureCase{"Closer", "close 4", "loop closing (bits) failed on frame 4: out of ideas"},
+            FailureCase{"Backend", "integrate 4",
+                        "dense mapping (cloud) failed on frame 4: out of ideas"},
+            FailureCase{"Save", "save 0", "dense mapping (cloud) failed: out of ideas"},
+            FailureCase{"Output", "output 4", "output (first) failed on frame 4: out of ideas"},
+            FailureCase{"Finish", "finish 0", "output (first) failed: out of ideas"})),
+    [](const auto& test) {
+      return std::string(std::get<0>(test.param) == Mode::kInline ? "Inline" : "Threaded") +
+             std::get<1>(test.param).name;
+    });
+
+TEST_P(PipelineFailure, IsNamedAndWhatWasComputedIsSaved) {
+  const auto& [mode, failure] = GetParam();
+  Fixture f(200);
+  f.journal.failing = failure.entry;
+  Pipeline pipeline(f.stages(), runtime(mode), {});
+  try {
+    pipeline.run();
+    FAIL() << "no exception";
+  } catch (const StageError& error) {
+    EXPECT_STREQ(error.what(), failure.message);
+    EXPECT_EQ(error.fault(), Fault::kStage);
+  }
+  EXPECT_EQ(f.output->finished, 1);
+  EXPECT_EQ(f.second_output->finished, 1);
+  EXPECT_FALSE(f.second_output->complete);
+  EXPECT_EQ(f.second_output->failure, failure.message);
+}
+
+class UnusableSource final : public Source {
+ public:
+  std::optional<Frame> next() override {
+    throw Error(Fault::kData, "not a number", "rgb.txt:3", "remove the line");
+  }
+};
+
+TEST_P(PipelineInBothModes, DataFaultsOfTheSourceStayDataFaults) {
+  Fixture f;
+  f.source = std::make_shared<UnusableSource>();
+  try {
+    Pipeline(f.stages(), runtime(GetParam()), {}).run();
+    FAIL() << "no exception";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.fault(), Fault::kData);
+    EXPECT_STREQ(error.what(),
+                 "source (list) failed on frame 0: rgb.txt:3: not a number; remove the line");
+  }
+  EXPECT_EQ(f.output->finished, 1);
+}
+
+TEST_P(PipelineInBothModes, AStopFromAnotherThreadEndsTheRun) {
+  Fixture f(1'000'000'000);
+  std::stop_source stop;
+  std::jthread stopper([&] {
+    f.journal.wait_for("output 5");
+    stop.request_stop();
+  });
+  Pipeline(f.stages(), runtime(GetParam()), {}).run(stop.get_token());
+  EXPECT_EQ(f.output->finished, 1);
+  EXPECT_FALSE(f.output->complete);
+  EXPECT_EQ(f.output->failure, "");
+  EXPECT_GE(f.output->poses.size(), 6u);
+}
+
+TEST_P(PipelineInBothModes, AStopBeforeTheRunProcessesNothing) {
+  Fixture f;
+  std::stop_source stop;
+  stop.request_stop();
+  Pipeline(f.stages(), runtime(GetParam()), {}).run(stop.get_token());
+  EXPECT_EQ(f.output->poses.size(), 0u);
+  EXPECT_EQ(f.output->finished, 1);
+}
+
+TEST(Pipeline, ARefinementIsHurriedWhenAnotherKeyFrameWaits) {
+  Fixture f(5);
+  f.mapper->while_refining = [&](KeyFrameId id, std::stop_token hurry) {
+    if (id > 0) return;
+    f.journal.wait_for("track 2");  // a key frame, pushed while this one is being refined
+    std::mutex mutex;
+    std::condition_variable_any changed;
+    std::unique_lock lock(mutex);
+    changed.wait(lock, hurry, [] { return false; });
+    EXPECT_TRUE(hurry.stop_requested());
+  };
+  Pipeline(f.stages(), runtime(Mode::kThreaded), {}).run();
+  EXPECT_EQ(f.output->map.keyframe_count(), 3u);
+}
+
+TEST(Pipeline, AStopHurriesTheRefinementUnderWay) {
+  Fixture f(1);
+  std::stop_source stop;
+  f.mapper->while_refining = [&](KeyFrameId, std::stop_token hurry) {
+    stop.request_stop();
+    EXPECT_TRUE(hurry.stop_requested());
+  };
+  Pipeline(f.stages(), runtime(Mode::kThreaded), {}).run(stop.get_token());
+  EXPECT_EQ(f.output->map.keyframe_count(), 1u);
+}
+
+TEST(Pipeline, InlineNeverHurries) {
+  Fixture f(9);
+  f.mapper->while_refining = [](KeyFrameId, std::stop_token hurry) {
+    EXPECT_FALSE(hurry.stop_requested());
+  };
+  Pipeline(f.stages(), runtime(Mode::kInline), {}).run();
+}
+
+/// Stands still until a test lets it go on.
+class ManualClock final : public PaceClock {
+ public:
+  double now() override { return now_; }
+  void wait_until(double time, std::stop_token stop) override {
+    std::unique_lock lock(mutex_);
+    waits_for_ = time;
+    changed_.notify_all();
+    changed_.wait(lock, std::move(stop), [&] { return now_ >= time - 1e-9; });
+  }
+  void set(double time) {
+    const std::lock_guard lock(mutex_);
+    now_ = time;
+    changed_.notify_all();
+  }
+  /// Returns when all frames due by `time` have been delivered and the next one is waited for.
+  void advance(double time) {
+    set(time);
+    std::unique_lock lock(mutex_);
+    changed_.wait(lock, [&] { return waits_for_ > time; });
+  }
+
+ private:
+  std::mutex mutex_;
+  std::condition_variable_any changed_;
+  double now_ = 0.0;
+  double waits_for_ = -1.0;
+};
+
+TEST_P(PipelineInBothModes, AtThePaceOfTheSensorFramesThatFindItBusyAreDropped) {
+  Fixture f(8);  // 0.1 s apart
+  auto clock = std::make_unique<ManualClock>();
+  ManualClock* time = clock.get();
+  f.journal.hook = [&](const std::string& entry) {
+    if (entry == "track 0") time->advance(0.45);   // frames 1 to 4 come meanwhile
+    if (entry == "output 4") time->advance(0.65);  // frames 5 and 6
+    if (entry == "output 6") time->set(0.75);      // frame 7, the last
+  };
+  Pipeline(f.stages(), runtime(GetParam(), Pace::kSensor), {}, std::move(clock)).run();
+  EXPECT_EQ(f.journal.entries("track"), (Strings{"track 0", "track 4", "track 6", "track 7"}));
+  EXPECT_EQ(f.output->dropped, 4);
+}
+
+TEST_P(PipelineInBothModes, AStopEndsTheWaitForTheSensor) {
+  Fixture f(8);
+  std::stop_source stop;
+  f.journal.hook = [&](const std::string& entry) {
+    if (entry == "output 0") stop.request_stop();
+  };
+  Pipeline(f.stages(), runtime(GetParam(), Pace::kSensor), {}, std::make_unique<ManualClock>())
+      .run(stop.get_token());
+  EXPECT_EQ(f.output->finished, 1);
+}
+
+TEST(SteadyClock, WaitsUntilTheTimeOrAStop) {
+  SteadyClock clock;
+  const double start = clock.now();
+  clock.wait_until(start + 0.001, {});
+  EXPECT_GE(clock.now(), start + 0.001);
+  std::stop_source stop;
+  stop.request_stop();
+  clock.wait_until(start + 1e6, stop.get_token());
+}
+
+}  // namespace
+}  // namespace stillpoint

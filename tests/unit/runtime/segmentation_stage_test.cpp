@@ -1,0 +1,129 @@
+#include "stillpoint/runtime/segmentation_stage.hpp"
+
+#include <gtest/gtest.h>
+
+#include <latch>
+#include <thread>
+
+#include "doubles.hpp"
+
+namespace stillpoint {
+namespace {
+
+using testing::Journal;
+using Schedule = SegmentationOptions::Schedule;
+using Strings = std::vector<std::string>;
+
+struct Fixture {
+  Journal journal;
+  StopSignal stop;
+  TimeLog times;
+
+  std::unique_ptr<SegmentationStage> make(Schedule schedule, Mode mode, int latency = 3) {
+    SegmentationOptions options;
+    options.schedule = schedule;
+    options.latency = latency;
+    return std::make_unique<SegmentationStage>(
+        Stage<Segmenter>{std::make_shared<testing::FakeSegmenter>(journal), "fake"},
+        Stage<Propagator>{std::make_shared<testing::FakePropagator>(journal), "fake"}, options,
+        mode, stop, times);
+  }
+};
+
+SegmentationPtr process(SegmentationStage& stage, std::uint32_t index) {
+  const auto frame = std::make_shared<const Frame>(testing::make_frame(index));
+  stage.offer(frame);
+  return stage.at(frame);
+}
+
+TEST(SegmentationStage, WaitGivesEveryFrameItsOwnLabels) {
+  for (const Mode mode : {Mode::kInline, Mode::kThreaded}) {
+    Fixture f;
+    const auto stage = f.make(Schedule::kWait, mode);
+    for (std::uint32_t i = 0; i < 5; ++i) {
+      const auto labels = process(*stage, i);
+      ASSERT_TRUE(labels && labels->known());
+      EXPECT_EQ(labels->frame, i);
+    }
+    EXPECT_EQ(f.journal.entries("propagate 4"), (Strings{"propagate 4 4"}));
+  }
+}
+
+TEST(SegmentationStage, LatestInlineImitatesABusyNetwork) {
+  Fixture f;
+  const auto stage = f.make(Schedule::kLatest, Mode::kInline, 3);
+  for (std::uint32_t i = 0; i <= 8; ++i) EXPECT_TRUE(process(*stage, i)->known());
+  // The first labels are waited for. Frame 1 takes until 4; of those that came meanwhile, the
+  // newest is next and takes until 7.
+  EXPECT_EQ(
+      f.journal.entries("propagate"),
+      (Strings{"propagate 0 0", "propagate 0 1", "propagate 0 2", "propagate 0 3", "propagate 1 4",
+               "propagate 1 5", "propagate 1 6", "propagate 4 7", "propagate 4 8"}));
+  EXPECT_EQ(f.journal.entries("segment"), (Strings{"segment 0", "segment 1", "segment 4"}));
+}
+
+TEST(SegmentationStage, LatestInlineWithoutLatencyIsWait) {
+  Fixture f;
+  const auto stage = f.make(Schedule::kLatest, Mode::kInline, 0);
+  for (std::uint32_t i = 0; i < 4; ++i) process(*stage, i);
+  EXPECT_EQ(f.journal.entries("propagate"),
+            (Strings{"propagate 0 0", "propagate 1 1", "propagate 2 2", "propagate 3 3"}));
+}
+
+TEST(SegmentationStage, LatestThreadedNeverWaitsForABusyNetwork) {
+  Fixture f;
+  std::latch release(1);
+  f.journal.hook = [&](const std::string& entry) {
+    if (entry == "segment 1") release.wait();
+  };
+  const auto stage = f.make(Schedule::kLatest, Mode::kThreaded);
+  process(*stage, 0);
+  const auto first = std::make_shared<const Frame>(testing::make_frame(1));
+  stage->offer(first);
+  f.journal.wait_for("segment 1");
+  stage->at(first);
+  for (std::uint32_t i = 2; i < 6; ++i) EXPECT_TRUE(process(*stage, i)->known());
+  EXPECT_TRUE(f.journal.contains("propagate 0 5"));
+  release.count_down();
+  stage->end();
+  EXPECT_EQ(f.journal.entries("segment"), (Strings{"segment 0", "segment 1", "segment 5"}));
+}
+
+TEST(SegmentationStage, WithoutSegmenterNothingIsKnown) {
+  StopSignal stop;
+  TimeLog times;
+  SegmentationStage stage({}, {}, {}, Mode::kThreaded, stop, times);
+  const auto labels = process(stage, 0);
+  ASSERT_TRUE(labels);
+  EXPECT_FALSE(labels->known());
+  EXPECT_TRUE(times.take().empty());
+}
+
+TEST(SegmentationStage, AFailureEndsTheWait) {
+  Fixture f;
+  f.journal.failing = "segment 0";
+  const auto stage = f.make(Schedule::kWait, Mode::kThreaded);
+  EXPECT_EQ(process(*stage, 0), nullptr);
+  try {
+    std::rethrow_exception(f.stop.failure());
+  } catch (const StageError& error) {
+    EXPECT_STREQ(error.what(), "segmentation (fake) failed on frame 0: out of ideas");
+  }
+}
+
+TEST(SegmentationStage, TimesNameTheirFrame) {
+  Fixture f;
+  const auto stage = f.make(Schedule::kWait, Mode::kThreaded);
+  process(*stage, 7);
+  stage->end();
+  std::vector<std::string> stages;
+  for (const StageTime& time : f.times.take()) {
+    EXPECT_EQ(time.frame, 7u);
+    stages.push_back(time.stage);
+  }
+  std::sort(stages.begin(), stages.end());
+  EXPECT_EQ(stages, (Strings{"propagate", "segmentation", "segmentation_wait"}));
+}
+
+}  // namespace
+}  // namespace stillpoint
