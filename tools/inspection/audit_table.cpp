@@ -10,7 +10,7 @@ namespace {
 constexpr std::size_t kListedGaps = 3;
 
 void row(std::ostream& out, const std::string& name, const std::string& value) {
-  out << "  " << name << std::string(name.size() < 16 ? 16 - name.size() : 1, ' ') << value << '\n';
+  out << "  " << name << std::string(18 - name.size(), ' ') << value << '\n';
 }
 
 std::string milliseconds(double seconds, int digits = 0) {
@@ -66,7 +66,7 @@ void print_streams(std::ostream& out, const RecordingAudit& audit) {
       std::to_string(audit.color.images - audit.pairs.images) + " colour, " +
           std::to_string(audit.depth.images - audit.pairs.images) + " depth");
   row(out, "stamps of a pair",
-      " differ by " + milliseconds(audit.mean_difference, 1) + " on average, " +
+      "differ by " + milliseconds(audit.mean_difference, 1) + " on average, " +
           milliseconds(audit.max_difference, 1) + " at most");
 }
 

@@ -38,15 +38,14 @@ void check_depth(const RecordingAudit& audit, Warnings& warnings) {
   if (depth.valid_share() < 0.3)
     warnings.push_back("only " + percent(depth.valid_share()) +
                        " of the depth pixels hold a measurement");
-  // Depth cameras of this kind measure from about 0.4 m to 10 m: most of a scene lies beyond 0.5 m,
-  // all of it within.
+  // Depth cameras of this kind measure from 0.5 m to about 10 m.
   const double median = depth.quantile(0.5) / audit.depth_factor;
   const double far = depth.quantile(0.95) / audit.depth_factor;
-  if (median >= 0.4 && far <= 12.0) return;
+  if (median >= 0.5 && far <= 12.0) return;
   std::string advice = "check the camera's depth_factor";
   const double other = audit.depth_factor == 1000.0 ? 5000.0 : 1000.0;
   const double other_median = depth.quantile(0.5) / other;
-  if (other_median >= 0.4 && depth.quantile(0.95) / other <= 12.0)
+  if (other_median >= 0.5 && depth.quantile(0.95) / other <= 12.0)
     advice += "; with " + fixed(other, 0) + " the median would be " + fixed(other_median, 2) + " m";
   warnings.push_back("depth is implausible: half of it is nearer than " + fixed(median, 2) +
                      " m, 95 % nearer than " + fixed(far, 2) + " m; " + advice);
@@ -69,10 +68,14 @@ void check_offset(const RecordingAudit& audit, const RecordingOptions& pairing,
   const TimeOffset& offset = audit.time_offset;
   const double worth_telling = std::max(0.010, 3 * offset.deviation);  // seconds
   if (!offset.known || std::abs(offset.offset) < worth_telling) return;
-  const double total = pairing.time_offset + offset.offset;
+  const std::string advice =
+      audit.recording.pairs_from.empty()
+          ? "try time_offset: " + fixed(pairing.time_offset + offset.offset, 3) +
+                " in the source section"
+          : "with rgb.txt and depth.txt instead of " +
+                audit.recording.pairs_from.filename().string() + ", time_offset could correct it";
   warnings.push_back("depth is stamped " + fixed(1e3 * std::abs(offset.offset), 0) + " ms too " +
-                     (offset.offset < 0 ? "late" : "early") +
-                     "; try time_offset: " + fixed(total, 3) + " in the source section");
+                     (offset.offset < 0 ? "late; " : "early; ") + advice);
 }
 
 void check_truth(const RecordingAudit& audit, Warnings& warnings) {
