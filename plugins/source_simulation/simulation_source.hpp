@@ -1,0 +1,25 @@
+// Frames of a simulated scene, rendered in memory.
+#pragma once
+
+#include <stillpoint/sdk.hpp>
+
+#include "simulation/simulator.hpp"
+
+namespace stillpoint {
+
+class SimulationSource final : public Source {
+ public:
+  using Options = simulation::SceneOptions;
+
+  SimulationSource(const Options& options, const StageContext& context);
+
+  std::optional<Frame> next() override;
+  std::optional<std::size_t> size() const override;
+
+ private:
+  simulation::Simulator simulator_;
+  std::shared_ptr<const Camera> camera_;
+  int next_ = 0;
+};
+
+}  // namespace stillpoint

@@ -1,0 +1,24 @@
+// How the camera moves: the handheld motions of the TUM benchmark as smooth functions of time.
+#pragma once
+
+#include "simulation/scene_options.hpp"
+#include "stillpoint/pose_math.hpp"
+
+namespace stillpoint::simulation {
+
+class CameraMotion {
+ public:
+  CameraMotion(const MotionOptions& options, int seed) : options_(options), seed_(seed) {}
+
+  /// `time` in seconds from the first frame.
+  Pose world_from_camera(double time) const;
+
+ private:
+  Pose wanted(double time) const;
+  Pose trembling(double time) const;
+
+  MotionOptions options_;
+  int seed_;
+};
+
+}  // namespace stillpoint::simulation

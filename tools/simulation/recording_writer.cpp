@@ -1,0 +1,104 @@
+#include "simulation/recording_writer.hpp"
+
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <opencv2/imgcodecs.hpp>
+#include <string>
+#include <utility>
+
+#include "simulation/parallel.hpp"
+#include "stillpoint/error.hpp"
+
+namespace stillpoint::simulation {
+namespace {
+
+std::string seconds(double time) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.6f", time);
+  return text.data();
+}
+
+void make_folders(const std::filesystem::path& folder) {
+  if (std::filesystem::exists(folder / "rgb.txt"))
+    throw Error(Fault::kUsage, "there is a recording already", folder.string(),
+                "name another folder or remove this one");
+  for (const char* name : {"rgb", "depth", "labels", "instances"}) {
+    std::error_code error;
+    std::filesystem::create_directories(folder / name, error);
+    if (error)
+      throw Error(Fault::kUsage, "cannot make the folder (" + error.message() + ")",
+                  (folder / name).string(), "name another one");
+  }
+}
+
+void save(const std::filesystem::path& file, const cv::Mat& image) {
+  // Speed matters more than size: filters cost more than they save on noisy images.
+  const std::vector<int> fast = {cv::IMWRITE_PNG_COMPRESSION, 1, cv::IMWRITE_PNG_STRATEGY,
+                                 cv::IMWRITE_PNG_STRATEGY_RLE};
+  if (!cv::imwrite(file.string(), image, fast))
+    throw Error(Fault::kUsage, "cannot write the image", file.string(), "is the disk full?");
+}
+
+}  // namespace
+
+RecordingWriter::RecordingWriter(const std::filesystem::path& folder, int threads)
+    : folder_(folder), threads_(threads) {
+  make_folders(folder_);
+  colors_ = open("rgb.txt", "# color images\n# timestamp filename\n");
+  depths_ = open("depth.txt", "# depth maps\n# timestamp filename\n");
+  associations_ = open("associations.txt", "");
+}
+
+std::ofstream RecordingWriter::open(const char* name, const char* header) const {
+  std::ofstream file(folder_ / name);
+  if (!(file << header << std::flush))
+    throw Error(Fault::kUsage, "cannot write", (folder_ / name).string(), "name another folder");
+  return file;
+}
+
+void RecordingWriter::write(const SimulatedFrame& frame) {
+  const std::string color_name = seconds(frame.time) + ".png";
+  const std::string depth_name = seconds(frame.depth_time) + ".png";
+  const std::array<std::pair<std::filesystem::path, cv::Mat>, 4> images = {{
+      {folder_ / "rgb" / color_name, frame.bgr},
+      {folder_ / "depth" / depth_name, frame.depth},
+      {folder_ / "labels" / color_name, frame.labels},
+      {folder_ / "instances" / color_name, frame.instances},
+  }};
+  parallel_for(threads_, static_cast<int>(images.size()), [&](int i) {
+    const auto& [file, image] = images[static_cast<std::size_t>(i)];
+    save(file, image);
+  });
+  const std::string color = seconds(frame.time) + " rgb/" + color_name;
+  const std::string depth = seconds(frame.depth_time) + " depth/" + depth_name;
+  colors_ << color << '\n';
+  depths_ << depth << '\n';
+  associations_ << color << ' ' << depth << '\n';
+  if (!colors_ || !depths_ || !associations_)
+    throw Error(Fault::kUsage, "cannot write the lists of images", folder_.string(),
+                "is the disk full?");
+}
+
+void RecordingWriter::write_ground_truth(const Simulator& simulator, int frames) {
+  constexpr double kRate = 100;  // Hz
+  std::ofstream file = open("groundtruth.txt",
+                            "# ground truth trajectory\n# timestamp tx ty tz qx qy qz qw\n");
+  const auto first = static_cast<long>(std::floor(simulator.stamp(0) * kRate)) - 5;
+  const auto last = static_cast<long>(std::ceil(simulator.stamp(frames - 1) * kRate)) + 5;
+  for (long i = first; i <= last; ++i) {
+    const double time = static_cast<double>(i) / kRate;
+    const Pose pose = simulator.world_from_camera(time);
+    const Eigen::Quaterniond q(pose.linear());
+    std::array<char, 192> line{};
+    std::snprintf(line.data(), line.size(), "%.4f %.6f %.6f %.6f %.7f %.7f %.7f %.7f\n", time,
+                  pose.translation().x(), pose.translation().y(), pose.translation().z(), q.x(),
+                  q.y(), q.z(), q.w());
+    file << line.data();
+  }
+  if (!file.flush())
+    throw Error(Fault::kUsage, "cannot write", (folder_ / "groundtruth.txt").string(),
+                "is the disk full?");
+}
+
+}  // namespace stillpoint::simulation
