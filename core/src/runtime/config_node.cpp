@@ -55,6 +55,13 @@ void ConfigNode::erase(std::string_view name) {
   std::erase_if(children, [&](const ConfigNode& child) { return child.key == name; });
 }
 
+ConfigNode empty_map(const Location& location) {
+  ConfigNode node;
+  node.kind = ConfigNode::Kind::kMap;
+  node.location = location;
+  return node;
+}
+
 ConfigNode merge(ConfigNode base, const ConfigNode& overlay) {
   return merge_children(std::move(base), overlay, merge);
 }

@@ -1,5 +1,6 @@
 #include "stillpoint/runtime/option_parsing.hpp"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 
@@ -13,23 +14,26 @@ namespace fs = std::filesystem;
 
 bool is_scalar(const ConfigNode& node) { return node.kind == ConfigNode::Kind::kScalar; }
 
-std::string shown(const ConfigNode& node) {
-  switch (node.kind) {
-    case ConfigNode::Kind::kNull:
-      return " has no value";
-    case ConfigNode::Kind::kScalar:
-      return " = " + yaml_text(node.scalar);
-    case ConfigNode::Kind::kList:
-      return " is a list,";
-    case ConfigNode::Kind::kMap:
-      return " is a map,";
-  }
-  return {};
+/// The text as it was written where that is readable.
+std::string shown(const std::string& scalar) {
+  const bool readable = !scalar.empty() && std::ranges::none_of(scalar, [](unsigned char c) {
+    return c <= ' ' || c == 0x7F;
+  });
+  return " = " + (readable ? scalar : yaml_text(scalar));
 }
 
 ValueFault wrong_type(const ConfigNode& node, const std::string& expected) {
-  if (node.kind == ConfigNode::Kind::kNull) return shown(node) + "; expected " + expected;
-  return shown(node) + " is not " + expected;
+  switch (node.kind) {
+    case ConfigNode::Kind::kNull:
+      return " has no value; expected " + expected;
+    case ConfigNode::Kind::kScalar:
+      return shown(node.scalar) + " is not " + expected;
+    case ConfigNode::Kind::kList:
+      return " is a list; expected " + expected;
+    case ConfigNode::Kind::kMap:
+      return " is a map; expected " + expected;
+  }
+  return {};
 }
 
 template <class T>
@@ -110,7 +114,7 @@ ValueFault parse_choice(const ConfigNode& node, const std::vector<std::string_vi
     value = name;
     return {};
   }
-  return shown(node) + " is not one of " + join(names) + did_you_mean(node.scalar, names);
+  return shown(node.scalar) + " is not one of " + join(names) + did_you_mean(node.scalar, names);
 }
 
 }  // namespace stillpoint

@@ -39,15 +39,14 @@ constexpr StageSection kStages[] = {
 class PipelineReader {
  public:
   PipelineReader(const ConfigNode& tree, Registry& registry, FaultList& faults)
-      : tree_(tree), registry_(registry), faults_(faults) {}
+      : tree_(tree), registry_(registry), faults_(faults), loaded_(faults.empty()) {}
 
   PipelineConfig read(const std::vector<std::filesystem::path>& plugin_folders) {
     PipelineConfig config;
     read_version();
     search_plugins(plugin_folders);
-    if (section("camera")) read_options(config.camera.emplace(), "camera");
-    config.source = read_stage(section("source"), "source", "source");
-    if (!section("source")) faults_.add(tree_.location, "there is no source section");
+    if (tree_.find("camera")) read_options(config.camera.emplace(), "camera");
+    read_source(config.source);
     read_options(config.segmentation, "segmentation");
     for (const StageSection& stage : kStages)
       config.*stage.stage = read_stage(section(stage.name), stage.name, stage.name);
@@ -69,11 +68,22 @@ class PipelineReader {
   void read_version() {
     const ConfigNode* version = section("version");
     if (!version)
-      faults_.add(tree_.location, "there is no version; write 'version: 1'");
+      add_missing("there is no version; write 'version: 1'");
     else if (version->scalar != "1")
-      faults_.add(version->location, "version " + yaml_text(version->scalar) +
-                                         " is not known to this program, which reads version 1");
+      faults_.add(version->location, "version '" + version->scalar +
+                                         "' is not known to this program, which reads version 1");
     document_.children.push_back({.name = "version", .value = "1"});
+  }
+
+  /// After a file that could not be read, nothing is known to be missing.
+  void add_missing(const std::string& what) {
+    if (loaded_) faults_.add(tree_.location, what);
+  }
+
+  void read_source(std::optional<StageSpec>& source) {
+    const ConfigNode* node = section("source");
+    if (!node) add_missing("there is no source section");
+    source = read_stage(node, "source", "source");
   }
 
   template <OptionGroup Options>
@@ -146,7 +156,12 @@ class PipelineReader {
       faults_.add(type->location, registry_.explain_missing(kind, type->scalar));
       return std::nullopt;
     }
-    plugin->entry->describe(reader);
+    try {
+      plugin->entry->describe(reader);
+    } catch (const std::exception& error) {
+      faults_.add(type->location, path + " (" + plugin->type + "): " + error.what());
+      return std::nullopt;
+    }
     reader.finish();
     faults_.add(reader.faults());
     record = reader.record();
@@ -168,7 +183,8 @@ class PipelineReader {
   const ConfigNode& tree_;
   Registry& registry_;
   FaultList& faults_;
-  std::vector<std::string> known_;
+  const bool loaded_;
+  std::vector<std::string> known_ = {"extends"};
   OptionRecord document_{.kind = OptionRecord::Kind::kGroup};
 };
 

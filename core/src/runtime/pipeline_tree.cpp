@@ -12,24 +12,22 @@ namespace fs = std::filesystem;
 /// `source: {path: DIR}` as if it were written on the command line.
 ConfigNode dataset_overlay(const fs::path& dataset) {
   const Location where{"--dataset " + dataset.string()};
-  const auto map = [&] { return ConfigNode{.kind = ConfigNode::Kind::kMap, .location = where}; };
-  ConfigNode path{.kind = ConfigNode::Kind::kScalar,
-                  .key = "path",
-                  .key_location = where,
-                  .scalar = fs::absolute(dataset).lexically_normal().string(),
-                  .location = where};
-  ConfigNode source = map();
+  ConfigNode path;
+  path.kind = ConfigNode::Kind::kScalar;
+  path.key = "path";
+  path.scalar = fs::absolute(dataset).lexically_normal().string();
+  path.location = path.key_location = where;
+  ConfigNode source = empty_map(where);
   source.key = "source";
   source.key_location = where;
   source.children.push_back(std::move(path));
-  ConfigNode tree = map();
+  ConfigNode tree = empty_map(where);
   tree.children.push_back(std::move(source));
   return tree;
 }
 
 ConfigNode command_line_overlay(const PipelineRequest& request, FaultList& faults) {
-  ConfigNode overlay{.kind = ConfigNode::Kind::kMap};
-  if (!request.dataset.empty()) overlay = dataset_overlay(request.dataset);
+  ConfigNode overlay = request.dataset.empty() ? empty_map({}) : dataset_overlay(request.dataset);
   for (const std::string& assignment : request.assignments)
     overlay = merge(std::move(overlay), parse_assignment(assignment, faults));
   return overlay;

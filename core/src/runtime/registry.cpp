@@ -75,7 +75,7 @@ std::string Registry::explain_missing(std::string_view kind, std::string_view ty
     text += "\n  not usable: " + library.library.filename().string() + ": " + library.reason;
   std::vector<std::string> folders;
   for (const fs::path& folder : searched_) folders.push_back(folder.string());
-  return text + "\n  searched:   " + join(folders) +
+  return text + "\n  searched:   " + (folders.empty() ? "nothing" : join(folders)) +
          "      (add folders with STILLPOINT_PLUGIN_PATH)";
 }
 

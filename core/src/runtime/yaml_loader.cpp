@@ -3,9 +3,11 @@
 #include <yaml-cpp/yaml.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <fstream>
 #include <iterator>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "stillpoint/runtime/did_you_mean.hpp"
@@ -94,7 +96,7 @@ std::optional<ConfigNode> parse(const std::string& text, Location origin, const 
       faults.add(origin, "more than one YAML document ('---') in a file");
       return std::nullopt;
     }
-    if (documents.empty()) return ConfigNode{.location = origin, .folder = folder};
+    if (documents.empty()) return ConfigNode();
     return Converter(origin, folder, faults).convert(documents.front());
   } catch (const YAML::Exception& error) {
     if (origin.line > 0 && !error.mark.is_null())
@@ -112,9 +114,7 @@ std::optional<std::string> read_text(const fs::path& file) {
   return std::string(std::istreambuf_iterator<char>(stream), {});
 }
 
-ConfigNode empty_map(const fs::path& file) {
-  return {.kind = ConfigNode::Kind::kMap, .location = {file.string(), 1, 1}};
-}
+Location start_of(const fs::path& file) { return {file.string(), 1, 1}; }
 
 ConfigNode load_chain(const fs::path& file, const Location& named_at, std::vector<fs::path> chain,
                       FaultList& faults);
@@ -141,20 +141,20 @@ ConfigNode load_chain(const fs::path& file, const Location& named_at, std::vecto
   const fs::path identity = fs::weakly_canonical(file, unreadable);
   if (std::ranges::find(chain, identity) != chain.end()) {
     faults.add(named_at, "extends goes in a circle: '" + file.string() + "' is already being read");
-    return empty_map(file);
+    return empty_map(start_of(file));
   }
   chain.push_back(identity);
   const std::optional<std::string> text = read_text(file);
   if (!text) {
     faults.add(named_at, "cannot read '" + file.string() + "'");
-    return empty_map(file);
+    return empty_map(start_of(file));
   }
   const fs::path folder = fs::absolute(file).parent_path();
-  auto node = parse(*text, {file.string(), 1, 1}, folder, faults);
-  if (!node) return empty_map(file);
+  auto node = parse(*text, start_of(file), folder, faults);
+  if (!node) return empty_map(start_of(file));
   if (node->kind != ConfigNode::Kind::kMap) {
-    faults.add({file.string(), 1, 1}, "expected sections, as in 'source: {type: tum_rgbd}'");
-    return empty_map(file);
+    faults.add(start_of(file), "expected sections, as in 'source: {type: tum_rgbd}'");
+    return empty_map(start_of(file));
   }
   const auto parent = load_parent(*node, file, chain, faults);
   return parent ? merge_sections(*parent, *node) : *node;
@@ -193,12 +193,12 @@ std::string substituted(const std::string& text, const Location& where, FaultLis
 }  // namespace
 
 ConfigNode load_config_file(const fs::path& file, FaultList& faults) {
-  return load_chain(file, {file.string(), 1, 1}, {}, faults);
+  return load_chain(file, start_of(file), {}, faults);
 }
 
 ConfigNode parse_assignment(const std::string& assignment, FaultList& faults) {
   const Location where{"--set " + assignment};
-  const ConfigNode nothing{.kind = ConfigNode::Kind::kMap, .location = where};
+  const ConfigNode nothing = empty_map(where);
   const std::size_t equals = assignment.find('=');
   const std::string path = assignment.substr(0, equals);
   if (equals == std::string::npos || path.empty() || path.front() == '.' || path.back() == '.' ||

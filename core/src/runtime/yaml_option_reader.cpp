@@ -28,7 +28,7 @@ YamlOptionReader::YamlOptionReader(const ConfigNode* section, std::string path) 
   record_->kind = OptionRecord::Kind::kGroup;
   record_->name = path;
   if (section) expect(section, ConfigNode::Kind::kMap, path);
-  scopes_.push_back({section, std::move(path), where, record_.get(), {}});
+  scopes_.push_back({section, std::move(path), where, record_.get(), {}, false});
 }
 
 void YamlOptionReader::finish() { report_unknown_keys(); }
@@ -41,7 +41,7 @@ void YamlOptionReader::require(bool condition, std::string_view message) {
 template <class T, class Parse>
 void YamlOptionReader::read(std::string_view name, T& v, const OptionInfo& info, Parse parse) {
   OptionRecord record{.name = std::string(name)};
-  if (!info.required) record.default_value = yaml_text(v);
+  if (!info.required && !scopes_.back().in_list) record.default_value = yaml_text(v);
   record.comment = comment_of(info, record.default_value);
   if (const ConfigNode* node = take(name, info)) {
     const ValueFault fault = parse(*node);
@@ -142,7 +142,9 @@ void YamlOptionReader::enter(const ConfigNode* node, std::string_view name, std:
   scope.record->children.push_back(std::move(record));
   Location where = scope.where;
   if (node) where = node->key.empty() ? node->location : node->key_location;
-  scopes_.push_back({node, std::move(path), std::move(where), &scope.record->children.back(), {}});
+  OptionRecord* entered = &scope.record->children.back();
+  const bool in_list = scope.in_list || entered->kind == OptionRecord::Kind::kList;
+  scopes_.push_back({node, std::move(path), std::move(where), entered, {}, in_list});
 }
 
 void YamlOptionReader::expect(const ConfigNode*& node, ConfigNode::Kind kind,

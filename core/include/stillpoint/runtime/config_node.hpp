@@ -36,6 +36,8 @@ struct ConfigNode {
   void erase(std::string_view name);
 };
 
+ConfigNode empty_map(const Location& location);
+
 /// Lays `overlay` over `base`: maps merge by key, everything else replaces.
 ConfigNode merge(ConfigNode base, const ConfigNode& overlay);
 

@@ -16,7 +16,7 @@ struct OptionRecord {
   std::string name;           ///< empty for elements of a list
   Kind kind = Kind::kValue;   ///< a map of groups is a kGroup
   std::string value;          ///< of a kValue, as YAML
-  std::string default_value;  ///< of a kValue, as YAML; empty when required
+  std::string default_value;  ///< of a kValue, as YAML; empty when there is none
   std::string comment;        ///< help, unit, default
   std::vector<OptionRecord> children;
 };

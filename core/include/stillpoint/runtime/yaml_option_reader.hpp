@@ -57,6 +57,7 @@ class YamlOptionReader final : public OptionVisitor {
     Location where;
     OptionRecord* record;
     std::vector<std::string> known;
+    bool in_list;  // its fields have no defaults of their own: those hang on the default list
   };
 
   template <class T, class Parse>

@@ -1,0 +1,181 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <fstream>
+
+#include "fake_stages.hpp"
+#include "stillpoint/runtime/pipeline_config.hpp"
+
+namespace stillpoint::test {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+using testing::Not;
+
+class PipelineConfigTest : public testing::Test {
+ protected:
+  PipelineConfigTest() {
+    const auto* info = testing::UnitTest::GetInstance()->current_test_info();
+    folder_ = fs::path(testing::TempDir()) / (std::string("stillpoint_config_") + info->name());
+    fs::remove_all(folder_);
+    fs::create_directories(folder_ / "sub");
+    fs::current_path(folder_);
+    registry_.add(kFakePlugin);
+  }
+  ~PipelineConfigTest() override {
+    fs::current_path("/");
+    fs::remove_all(folder_);
+  }
+
+  static void write(const fs::path& file, const std::string& text) { std::ofstream(file) << text; }
+
+  PipelineConfig load(PipelineRequest request) {
+    request.plugin_folders = {};
+    return load_pipeline(request, registry_);
+  }
+
+  std::string source_path(const PipelineConfig& config) {
+    return config.source->create<Source>({})->ground_truth();
+  }
+
+  fs::path folder_;
+  Registry registry_;
+};
+
+constexpr const char* kSource = "version: 1\nsource: {type: tum_rgbd, path: data}\n";
+constexpr const char* kCamera = "camera: {fx: 100, fy: 100, cx: 50, cy: 50}\n";
+
+TEST_F(PipelineConfigTest, LeftOutSectionsAreEmpty) {
+  write("p.yaml", kSource);
+  const PipelineConfig config = load({.pipeline = "p.yaml"});
+  EXPECT_FALSE(config.camera || config.segmenter || config.tracker || config.map_backend);
+  EXPECT_TRUE(config.outputs.empty());
+  EXPECT_EQ(config.runtime.mode, RuntimeOptions::Mode::kThreaded);
+}
+
+TEST_F(PipelineConfigTest, EffectiveFileLoadsToItself) {
+  write("p.yaml", std::string(kSource) + kCamera +
+                      "moving_checker: {type: lk_usac, epsilon: 0.1}\ndecision: {type: "
+                      "object_vote, rule: most}\noutputs: [{type: trajectory}, {type: "
+                      "trajectory, format: kitti}]\nruntime: {mode: inline, seed: 7}\n");
+  const std::string first = load({.pipeline = "p.yaml"}).effective_yaml;
+  EXPECT_THAT(first, HasSubstr("epsilon: 0.1  # farther than this is moving [px]; default 1"));
+  write("sub/q.yaml", first);
+  EXPECT_EQ(load({.pipeline = "sub/q.yaml"}).effective_yaml, first);
+}
+
+TEST_F(PipelineConfigTest, PathsBelongToTheFileThatNamesThem) {
+  write("sub/parent.yaml", kSource);
+  write("child.yaml", "extends: sub/parent.yaml\n");
+  EXPECT_EQ(source_path(load({.pipeline = "child.yaml"})), folder_ / "sub/data");
+  EXPECT_EQ(source_path(load({.pipeline = "child.yaml", .assignments = {"source.path=x/../y"}})),
+            folder_ / "y");
+  EXPECT_EQ(source_path(load({.pipeline = "child.yaml", .dataset = "sub"})), folder_ / "sub");
+}
+
+TEST_F(PipelineConfigTest, OverriddenVariablesNeedNotBeSet) {
+  unsetenv("STILLPOINT_TEST_UNSET");
+  write("p.yaml", "version: 1\nsource: {type: tum_rgbd, path: '${STILLPOINT_TEST_UNSET}/x'}\n");
+  EXPECT_THROW(load({.pipeline = "p.yaml"}), ConfigError);
+  EXPECT_NO_THROW(load({.pipeline = "p.yaml", .dataset = "."}));
+  setenv("STILLPOINT_TEST_UNSET", "/data", 1);
+  EXPECT_EQ(source_path(load({.pipeline = "p.yaml"})), "/data/x");
+  unsetenv("STILLPOINT_TEST_UNSET");
+}
+
+TEST_F(PipelineConfigTest, MapsMergeAndAnotherTypeReplaces) {
+  write("parent.yaml", std::string(kSource) +
+                           "moving_checker: {type: lk_epipolar, epsilon: 2, max_corners: 50}\n");
+  write("child.yaml", "extends: parent.yaml\nmoving_checker: {epsilon: 3}\n");
+  const std::string merged = load({.pipeline = "child.yaml"}).effective_yaml;
+  EXPECT_THAT(merged, HasSubstr("epsilon: 3 "));
+  EXPECT_THAT(merged, HasSubstr("max_corners: 50 "));
+  const std::string replaced =
+      load({.pipeline = "child.yaml", .assignments = {"moving_checker.type=lk_usac"}})
+          .effective_yaml;
+  EXPECT_THAT(replaced, HasSubstr("epsilon: 1 "));
+  EXPECT_THAT(replaced, HasSubstr("max_corners: 1000 "));
+}
+
+TEST_F(PipelineConfigTest, NullRemovesAnInheritedSection) {
+  write("parent.yaml", std::string(kSource) + "moving_checker: {type: lk_epipolar}\n");
+  write("child.yaml", "extends: parent.yaml\nmoving_checker: null\n");
+  EXPECT_FALSE(load({.pipeline = "child.yaml"}).moving_checker);
+  EXPECT_FALSE(
+      load({.pipeline = "parent.yaml", .assignments = {"moving_checker=null"}}).moving_checker);
+}
+
+TEST_F(PipelineConfigTest, CameraPrecedence) {
+  fs::create_directories("data");
+  write("plain.yaml", kSource);
+  write("named.yaml", std::string(kSource) + kCamera);
+  write("data/camera.yaml", "camera: {fx: 200, fy: 200, cx: 50, cy: 50}\n");
+  write("other.yaml", "version: 1\ncamera: {fx: 300, fy: 300, cx: 50, cy: 50}\n");
+  EXPECT_EQ(load({.pipeline = "plain.yaml"}).camera->fx, 200);
+  EXPECT_EQ(load({.pipeline = "named.yaml"}).camera->fx, 100);
+  EXPECT_EQ(load({.pipeline = "named.yaml", .camera = "other.yaml"}).camera->fx, 300);
+  EXPECT_EQ(load({.pipeline = "plain.yaml", .assignments = {"camera.fx=400"}}).camera->fx, 400);
+  write("elsewhere.yaml", "version: 1\nsource: {type: tum_rgbd, path: nowhere}\n");
+  EXPECT_FALSE(load({.pipeline = "elsewhere.yaml"}).camera);
+  EXPECT_EQ(load({.pipeline = "elsewhere.yaml", .dataset = "data"}).camera->fx, 200);
+}
+
+TEST_F(PipelineConfigTest, NamesAreFoundInTheConfigFolders) {
+  fs::create_directories("configs/pipelines");
+  fs::create_directories("configs/cameras");
+  write("configs/pipelines/base.yaml", kSource);
+  write("configs/cameras/kinect.yaml", kCamera);
+  setenv("STILLPOINT_CONFIG_PATH", "configs", 1);
+  EXPECT_EQ(load({.pipeline = "base", .camera = "kinect"}).camera->fx, 100);
+  EXPECT_EQ(load_camera("kinect").fx, 100);
+  EXPECT_THROW(load({.pipeline = "bse"}), Error);
+  unsetenv("STILLPOINT_CONFIG_PATH");
+}
+
+TEST_F(PipelineConfigTest, CameraFilesAreWrittenAndRead) {
+  CameraModel camera;
+  camera.name = "made";
+  camera.fx = 123.456;
+  camera.distortion = {0.1, -0.2, 0.001, 0};
+  write("camera.yaml", camera_yaml(camera));
+  const CameraModel read = load_camera("camera.yaml");
+  EXPECT_EQ(read.name, "made");
+  EXPECT_EQ(read.fx, 123.456);
+  EXPECT_EQ(read.distortion, camera.distortion);
+}
+
+TEST_F(PipelineConfigTest, ConstructorFailuresNameTheStage) {
+  write("p.yaml", std::string(kSource) + "outputs: [{type: trajectory}]\n");
+  const PipelineConfig config = load({.pipeline = "p.yaml"});
+  try {
+    config.outputs[0].create<Output>({});
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.fault(), Fault::kStage);
+    EXPECT_STREQ(error.what(), "output (trajectory): the disk is full");
+  }
+  EXPECT_THROW(config.source->create<Output>({}), Error) << "another contract";
+}
+
+TEST_F(PipelineConfigTest, DamagedFilesAreFaultsNotCrashes) {
+  std::string text = std::string(kSource) + kCamera + "moving_checker: {type: lk_usac}\n";
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    for (const char c : {'\0', '\xff', '{', '*', '&', '"'}) {
+      std::string damaged = text;
+      damaged[i] = c;
+      write("p.yaml", damaged);
+      try {
+        load({.pipeline = "p.yaml"});
+      } catch (const Error& error) {
+        EXPECT_EQ(error.fault(), Fault::kUsage);
+      }
+    }
+  }
+  write("p.yaml", std::string(100000, '['));
+  EXPECT_THROW(load({.pipeline = "p.yaml"}), ConfigError);
+}
+
+}  // namespace
+}  // namespace stillpoint::test
