@@ -20,7 +20,7 @@ std::string range_text(const Trajectory& trajectory, double offset) {
   const bool overlap = e.estimate.start() + offset <= e.reference.end() &&
                        e.reference.start() <= e.estimate.end() + offset;
   throw Error(Fault::kData,
-              "only " + std::to_string(e.pairs.size()) +
+              std::to_string(e.pairs.size()) +
                   " poses of estimate and reference belong together within " +
                   fixed(e.options.max_difference, 3) + " s, at least " + std::to_string(kMinPairs) +
                   " are needed; the reference covers " + range_text(e.reference, 0) +

@@ -8,7 +8,8 @@
 namespace stillpoint::evaluation {
 namespace {
 
-constexpr int kLabelWidth = 28;
+constexpr int kLabelWidth = 30;
+constexpr int kUnitColumn = 26;
 constexpr int kColumnWidth = 10;
 constexpr int kDigits = 6;  // as the benchmark's scripts print
 
@@ -94,14 +95,18 @@ std::string report_table(const Evaluation& e) {
   text += "Pairs      " + std::to_string(e.pairs.size()) + " of " +
           std::to_string(e.estimate.poses.size()) + " estimated poses have a reference within " +
           fixed(e.options.max_difference, 3) + " s\n" + coverage_line(e) + "\n" + header_line();
-  text += statistics_line(padded("ATE, SE(3)", 24) + "m", e.rigid.metres) + "\n";
-  text += statistics_line(padded("ATE, Sim(3)", 24) + "m", e.similarity.metres) + "   scale " +
-          fixed(e.similarity.reference_from_estimate.scale, 4) + "\n";
+  text += statistics_line(padded("ATE, SE(3)", kUnitColumn) + "m", e.rigid.metres) + "\n";
+  text += statistics_line(padded("ATE, Sim(3)", kUnitColumn) + "m", e.similarity.metres) +
+          "   scale " + fixed(e.similarity.reference_from_estimate.scale, 4) + "\n";
   const std::string delta = delta_text(e.options.delta);
   if (!e.relative) return text + "RPE over " + delta + ": the trajectories are too short\n";
   const std::string rpe = "RPE, " + delta;
-  text += statistics_line(padded(rpe + ", position", 24) + "m", e.relative->translation_m) + "\n";
-  text += statistics_line(padded(rpe + ", rotation", 24) + "deg", e.relative->rotation_deg) + "\n";
+  text +=
+      statistics_line(padded(rpe + ", position", kUnitColumn) + "m", e.relative->translation_m) +
+      "\n";
+  text +=
+      statistics_line(padded(rpe + ", rotation", kUnitColumn) + "deg", e.relative->rotation_deg) +
+      "\n";
   return text;
 }
 

@@ -1,29 +1,39 @@
 // stillpoint evaluate: how far an estimated trajectory is from the true one.
+#include <cmath>
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "commands.hpp"
 #include "evaluation/evaluation.hpp"
 #include "evaluation/plot.hpp"
 #include "evaluation/report.hpp"
+#include "stillpoint/error.hpp"
 
 namespace stillpoint {
 namespace {
 
 struct Arguments {
-  std::string reference, estimate, frames, plot;
+  std::string reference, estimate, frames, plot, delta_unit = "s";
   evaluation::EvaluationOptions options;
   bool json = false;
 };
 
 void run(const Arguments& arguments) {
   using namespace evaluation;
-  const Evaluation result =
-      evaluate(read_trajectory(arguments.reference), read_trajectory(arguments.estimate),
-               arguments.frames.empty() ? std::vector<double>() : read_stamps(arguments.frames),
-               arguments.options);
+  EvaluationOptions options = arguments.options;
+  // The range check lets "nan" through.
+  for (double value : {options.max_difference, options.offset, options.delta.length})
+    if (std::isnan(value)) throw Error(Fault::kUsage, "'nan' is not a value of an option");
+  options.delta.unit = arguments.delta_unit == "s" ? DeltaUnit::kSeconds : DeltaUnit::kFrames;
+  Trajectory reference = read_trajectory(arguments.reference);
+  Trajectory estimate = read_trajectory(arguments.estimate);
+  const std::vector<double> frames =
+      arguments.frames.empty() ? std::vector<double>() : read_stamps(arguments.frames);
+  const Evaluation result = evaluate(std::move(reference), std::move(estimate), frames, options);
   if (!arguments.plot.empty()) write_plot(result, arguments.plot);
   if (arguments.json)
     std::cout << report_json(result).dump(2) << '\n';
@@ -37,31 +47,31 @@ void add_evaluate(CLI::App& app) {
   auto arguments = std::make_shared<Arguments>();
   CLI::App* command =
       app.add_subcommand("evaluate", "Compare a trajectory with ground truth: ATE, RPE, coverage");
-  command->add_option("--reference", arguments->reference, "True trajectory, TUM format")
-      ->required();
-  command->add_option("--estimate", arguments->estimate, "Estimated trajectory, TUM format")
-      ->required();
-  command->add_option(
-      "--frames", arguments->frames,
-      "List of the recording's frames (rgb.txt, associations.txt) for the coverage");
+  const auto file = [&](const char* name, std::string& path, const char* help) {
+    return command->add_option(name, path, help)->type_name("FILE");
+  };
+  const auto number = [&](const char* name, double& value, const char* help, double min,
+                          double max) {
+    command->add_option(name, value, help)
+        ->capture_default_str()
+        ->check(CLI::Range(min, max))
+        ->type_name("NUMBER");
+  };
+  file("--reference", arguments->reference, "True trajectory, TUM format")->required();
+  file("--estimate", arguments->estimate, "Estimated trajectory, TUM format")->required();
+  file("--frames", arguments->frames,
+       "List of the recording's frames (rgb.txt, associations.txt) for the coverage");
   evaluation::EvaluationOptions& options = arguments->options;
-  command
-      ->add_option("--max-difference", options.max_difference,
-                   "Poses further apart in time do not belong together, s")
+  number("--max-difference", options.max_difference,
+         "Poses further apart in time do not belong together, s", 1e-6, 1.0);
+  number("--offset", options.offset, "Added to the times of the estimate, s", -1e10, 1e10);
+  number("--delta", options.delta.length, "Interval of the relative pose error", 1e-3, 1e6);
+  command->add_option("--delta-unit", arguments->delta_unit, "Of --delta: s (seconds), f (frames)")
       ->capture_default_str()
-      ->check(CLI::Range(1e-6, 1.0));
-  command->add_option("--offset", options.offset, "Added to the times of the estimate, s")
-      ->capture_default_str()
-      ->check(CLI::Number);
-  command->add_option("--delta", options.delta.length, "Interval of the relative pose error")
-      ->capture_default_str()
-      ->check(CLI::PositiveNumber);
-  command->add_option("--delta-unit", options.delta.unit, "Of --delta: s (seconds) or f (frames)")
-      ->default_str("s")
-      ->transform(CLI::CheckedTransformer(std::map<std::string, evaluation::DeltaUnit>{
-          {"s", evaluation::DeltaUnit::kSeconds}, {"f", evaluation::DeltaUnit::kFrames}}));
+      ->check(CLI::IsMember({"s", "f"}))
+      ->type_name("s|f");
   command->add_flag("--json", arguments->json, "Print JSON instead of a table");
-  command->add_option("--plot", arguments->plot, "Draw both trajectories and the error, PNG file");
+  file("--plot", arguments->plot, "Draw both trajectories and the error, PNG file");
   command->callback([arguments] { run(*arguments); });
 }
 
