@@ -26,7 +26,7 @@ Vector3f hemisphere_direction(const Vector3f& normal, float a, float b) {
 float openness(const RayCaster& caster, const Vector3f& point, const Vector3f& normal,
                const RowNoise& noise) {
   constexpr int kRays = 24;
-  constexpr float kReach = 1.2F;  // metres; what is farther does not darken
+  constexpr float kReach = 0.9F;  // metres; what is farther does not darken
   int open = 0;
   for (int i = 0; i < kRays; ++i) {
     const float a = (static_cast<float>(i) + noise.uniform(2 * i)) / kRays;
@@ -59,8 +59,8 @@ float lamplight(const RayCaster& caster, const std::vector<Lamp>& lamps, const V
 }  // namespace
 
 void light_room(World& world) {
-  constexpr float kAmbient = 0.62F;
-  constexpr float kLamp = 0.62F;
+  constexpr float kAmbient = 0.85F;
+  constexpr float kLamp = 0.85F;
   const RayCaster caster(world.room);
   std::vector<float> light(world.room.vertices.size(), -1.0F);
   for (std::size_t i = 0; i < world.room.faces.size(); ++i) {
@@ -71,7 +71,7 @@ void light_room(World& world) {
       if (light[id] < 0) {
         const Vector3f point = world.room.vertices[id] + kOffSurface * face.normal[k];
         const RowNoise noise(1, 0, Stream::kColor, static_cast<int>(id));
-        light[id] = kAmbient * openness(caster, point, face.normal[k], noise) + 0.12F +
+        light[id] = kAmbient * openness(caster, point, face.normal[k], noise) + 0.28F +
                     kLamp * lamplight(caster, world.lamps, point, face.normal[k]);
       }
       face.light[k] = light[id];
@@ -80,7 +80,7 @@ void light_room(World& world) {
 }
 
 float light_on_body(const Eigen::Vector3f& normal) {
-  return 0.66F + 0.34F * normal.z() - 0.10F * normal.y();
+  return 1.08F + 0.45F * normal.z() - 0.12F * normal.y();
 }
 
 }  // namespace stillpoint::simulation

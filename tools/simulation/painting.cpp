@@ -79,7 +79,7 @@ void Painter::picture(cv::Mat image) {
 }
 
 cv::Mat Painter::plaster(cv::Size size, cv::Scalar base, double contrast) {
-  const cv::Mat field = noise(size, {4, 4}, 8, 0.72);
+  const cv::Mat field = noise(size, {24, 16}, 6, 0.8);
   return tint(field, base, contrast);
 }
 

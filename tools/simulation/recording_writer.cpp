@@ -33,10 +33,9 @@ void make_folders(const std::filesystem::path& folder) {
 }
 
 void save(const std::filesystem::path& file, const cv::Mat& image) {
-  // Speed matters more than size: filters cost more than they save on noisy images.
-  const std::vector<int> fast = {cv::IMWRITE_PNG_COMPRESSION, 1, cv::IMWRITE_PNG_STRATEGY,
-                                 cv::IMWRITE_PNG_STRATEGY_RLE};
-  if (!cv::imwrite(file.string(), image, fast))
+  // Without parameters OpenCV chooses the fastest compression and a single filter; a compression
+  // level, even the lowest, would make it try all filters.
+  if (!cv::imwrite(file.string(), image))
     throw Error(Fault::kUsage, "cannot write the image", file.string(), "is the disk full?");
 }
 

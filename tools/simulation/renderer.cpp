@@ -15,20 +15,20 @@ using Eigen::Vector3f;
 
 constexpr int kPacketWidth = 4;  // px
 constexpr int kPacketHeight = 2;
-constexpr float kSharp = 0.6F;  // px of motion during the exposure that one sample can show
-constexpr float kSmooth = 4.0F;  // px of motion that kFew samples can show
-constexpr int kFew = 4;
-constexpr int kMany = 8;
+constexpr int kFew = 4;    // samples at an edge
+constexpr int kMany = 8;   // samples at a fast edge; the most anywhere
 
-/// Positions within a pixel, in px from its centre: Halton points, bases 2 and 3.
-constexpr std::array<std::array<float, 2>, kMany> kSamples = {{{0.0F, -1 / 6.F},
-                                                               {-0.25F, 1 / 6.F},
-                                                               {0.25F, -7 / 18.F},
-                                                               {-0.375F, -1 / 18.F},
-                                                               {0.125F, 5 / 18.F},
-                                                               {-0.125F, -5 / 18.F},
-                                                               {0.375F, 1 / 18.F},
-                                                               {-0.4375F, 7 / 18.F}}};
+/// Columns and rows of the samples of an edge pixel in a grid of kFew or kMany: each is used once,
+/// so that the mean stays at the pixel's centre, and in an order that has nothing to do with time.
+constexpr std::array<std::array<int, kFew>, 2> kFewCells = {{{1, 3, 0, 2}, {0, 2, 3, 1}}};
+constexpr std::array<std::array<int, kMany>, 2> kManyCells = {
+    {{0, 4, 2, 6, 1, 5, 3, 7}, {2, 7, 4, 1, 6, 3, 0, 5}}};
+
+/// Offset in px along axis 0 (x) or 1 (y).
+float cell_offset(std::size_t axis, std::size_t sample, std::size_t count) {
+  const int cell = count == kFew ? kFewCells[axis][sample] : kManyCells[axis][sample];
+  return (static_cast<float>(cell) + 0.5F) / static_cast<float>(count) - 0.5F;
+}
 
 /// The camera at one moment of the exposure.
 struct Eye {
@@ -63,8 +63,7 @@ struct Renderer::Job {
   Eye middle;
   Eye begin;
   Eye end;
-  std::array<Eye, kFew> few;
-  std::array<Eye, kMany> many;
+  std::array<std::vector<Eye>, kMany + 1> eyes;  // [n]: n moments, evenly spread
   std::vector<Eigen::Affine3d> begin_from_middle;  // per body, of points in the world
   std::vector<Eigen::Affine3d> end_from_middle;
 
@@ -82,10 +81,9 @@ struct Renderer::Job {
     middle = eye_at(r.motion_, t, e, 0.5);
     begin = eye_at(r.motion_, t, e, 0);
     end = eye_at(r.motion_, t, e, 1);
-    for (std::size_t i = 0; i < kFew; ++i)
-      few[i] = eye_at(r.motion_, t, e, (static_cast<double>(i) + 0.5) / kFew);
-    for (std::size_t i = 0; i < kMany; ++i)
-      many[i] = eye_at(r.motion_, t, e, (static_cast<double>(i) + 0.5) / kMany);
+    for (int n = 2; colored && n <= kMany; ++n)
+      for (int i = 0; i < n; ++i)
+        eyes[static_cast<std::size_t>(n)].push_back(eye_at(r.motion_, t, e, (i + 0.5) / n));
     for (const Body& body : r.world_.bodies) {
       const Eigen::Affine3d body_from_world = body.world_from_body(t).inverse(Eigen::Isometry);
       begin_from_middle.push_back(body.world_from_body(t - e / 2) * body_from_world);
@@ -167,7 +165,7 @@ struct Renderer::Job {
         view.instances.at<std::uint8_t>(y, x) = face.instance;
         surfaces.at<int>(y, x) = static_cast<int>(surface_key(hit, face));
         float cosine = 0;
-        if (colored && moved <= kSharp) {
+        if (colored && moved <= 1) {
           const Shade shade = shader.shade(hit, directions[i]);
           view.color.at<cv::Vec3f>(y, x) = {shade.color[0], shade.color[1], shade.color[2]};
           cosine = shade.cosine;
@@ -206,28 +204,30 @@ struct Renderer::Job {
   /// Colours of a row of packets where edges or motion need several samples.
   void second_pass(int row) {
     for (int column = 0; column < packet_columns(); ++column) {
-      const float moved = motion_around(column, row);
-      if (moved > kSmooth) {
-        resample(column, row, many);
-      } else if (moved > kSharp || has_edge(column, row)) {
-        resample(column, row, few);
+      // One sample per pixel of motion: textures are as smooth as a pixel is wide.
+      const int n = std::clamp(static_cast<int>(std::ceil(motion_around(column, row))), 1, kMany);
+      if (has_edge(column, row)) {
+        resample(column, row, n <= kFew ? kFew : kMany, true);
+      } else if (n > 1) {
+        resample(column, row, static_cast<std::size_t>(n), false);
       }
     }
   }
 
-  template <std::size_t N>
-  void resample(int column, int row, const std::array<Eye, N>& eyes) {
+  void resample(int column, int row, std::size_t count, bool edge) {
     std::array<Vector3f, kPacket> directions;
     std::array<Hit, kPacket> hits;
     std::array<Vector3f, kPacket> sums;
     sums.fill(Vector3f::Zero());
-    for (std::size_t s = 0; s < N; ++s) {
-      cast(column, row, eyes[s], kSamples[s][0], kSamples[s][1], directions, hits);
+    for (std::size_t s = 0; s < count; ++s) {
+      const float dx = edge ? cell_offset(0, s, count) : 0;
+      const float dy = edge ? cell_offset(1, s, count) : 0;
+      cast(column, row, eyes[count][s], dx, dy, directions, hits);
       for (std::size_t i = 0; i < kPacket; ++i)
         if (hits[i].distance > 0) sums[i] += shader.shade(hits[i], directions[i]).color;
     }
     for_pixels(column, row, [&](std::size_t i, int x, int y) {
-      const Vector3f mean = sums[i] / static_cast<float>(N);
+      const Vector3f mean = sums[i] / static_cast<float>(count);
       view.color.at<cv::Vec3f>(y, x) = {mean[0], mean[1], mean[2]};
     });
   }

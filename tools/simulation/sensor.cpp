@@ -13,9 +13,12 @@ namespace {
 constexpr int kLattice = 5;  // px; neighbours share errors because windows are matched, not pixels
 
 std::uint16_t encode(double metres, double depth_factor) {
-  const double value = std::round(metres * depth_factor);
-  return value > 0 && value <= 65535 ? static_cast<std::uint16_t>(value) : 0;
+  const double value = metres * depth_factor + 0.5;
+  return value < 65536 ? static_cast<std::uint16_t>(value) : 0;
 }
+
+/// Of numbers above -1000; std::lround is a slow function call.
+int round_to_int(float x) { return static_cast<int>(x + 1000.5F) - 1000; }
 
 /// Pixels which the projector, right of the camera, cannot reach: another surface is in the way.
 /// The light on a pixel left the projector in column x - bf / z; what is nearer covers the columns
@@ -128,8 +131,8 @@ void Sensor::measure_row(const View& view, int frame, int y, std::uint16_t* out)
   constexpr float kEdge = 0.06F;     // relative step of depth that is an edge
   constexpr float kEdgeLoss = 0.3F;  // share of pixels lost at edges
   constexpr float kWander = 0.4F;    // px, standard deviation of where an edge is seen
-  constexpr float kDark = 0.06F;     // infrared: never measured below this,
-  constexpr float kBright = 0.22F;   // always above that
+  constexpr float kDark = 0.03F;     // infrared: never measured below this,
+  constexpr float kBright = 0.12F;   // always above that
   const auto id = static_cast<std::uint32_t>(frame);
   const RowNoise white(seed_, id, Stream::kDepthWhite, y);
   const RowNoise holes(seed_, id, Stream::kDepthHole, y);
@@ -148,10 +151,9 @@ void Sensor::measure_row(const View& view, int frame, int y, std::uint16_t* out)
     if (shadow[static_cast<std::size_t>(x)]) continue;
     const std::uint32_t bits = jitter.bits(x);
     const int from_x = std::clamp(
-        static_cast<int>(std::lround(x + kWander * normal_from_bits(bits))), 0, depth.cols - 1);
+        x + round_to_int(kWander * normal_from_bits(bits)), 0, depth.cols - 1);
     const int from_y = std::clamp(
-        static_cast<int>(std::lround(y + kWander * normal_from_bits(mix(bits)))), 0,
-        depth.rows - 1);
+        y + round_to_int(kWander * normal_from_bits(mix(bits))), 0, depth.rows - 1);
     const float here = depth.at<float>(y, x);
     float z = depth.at<float>(from_y, from_x);
     // Sub-pixel wander matters at edges only; on a surface it would add noise of its own.
@@ -165,7 +167,7 @@ void Sensor::measure_row(const View& view, int frame, int y, std::uint16_t* out)
     const bool edge = std::abs(left - right) > kEdge * here;
     if (edge && random < kEdgeLoss) continue;
     float disparity = focal / z + sigma_white * white.normal(x) + sigma_shared * lattice;
-    if (step > 0) disparity = step * std::round(disparity / step);
+    if (step > 0) disparity = step * static_cast<float>(round_to_int(disparity / step));
     if (disparity > 0) out[x] = encode(focal / disparity, depth_factor_);
   }
 }

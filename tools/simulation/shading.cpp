@@ -22,9 +22,9 @@ const Face& Shader::face(const Hit& hit) const {
 }
 
 Vector3f Shader::normal(const Hit& hit, const Face& face) const {
-  const Vector3f n = ((1 - hit.u - hit.v) * face.normal[0] + hit.u * face.normal[1] +
-                      hit.v * face.normal[2])
-                         .normalized();
+  // Corners' normals are close to each other: what is between is as good as normalised.
+  const Vector3f n =
+      (1 - hit.u - hit.v) * face.normal[0] + hit.u * face.normal[1] + hit.v * face.normal[2];
   return hit.body < 0 ? n : world_from_body_[static_cast<std::size_t>(hit.body)] * n;
 }
 

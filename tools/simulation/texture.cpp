@@ -8,7 +8,7 @@
 namespace stillpoint::simulation {
 namespace {
 
-constexpr int kMaxTaps = 4;  // along the longer axis of a footprint
+constexpr int kMaxTaps = 3;  // along the longer axis of a footprint
 
 /// Weighted mean of four 8-bit channels at once; `weight` of b in 1/256.
 std::uint32_t lerp(std::uint32_t a, std::uint32_t b, std::uint32_t weight) {
@@ -24,6 +24,9 @@ std::uint32_t lerp(std::uint32_t a, std::uint32_t b, std::uint32_t weight) {
 float rough_log2(float x) {
   return static_cast<float>(std::bit_cast<std::int32_t>(x) - 0x3f800000) * 0x1p-23F;
 }
+
+/// Rounds down; std::floor is a function call on processors without SSE4.1, which we build for.
+int floor_to_int(float x) { return static_cast<int>(x) - (x < 0 ? 1 : 0); }
 
 int power_of_two(int size) { return static_cast<int>(std::bit_ceil(static_cast<unsigned>(size))); }
 
@@ -51,7 +54,7 @@ Eigen::Vector3f Texture::sample(const Eigen::Vector2f& uv, const Footprint& foot
   const float major = 2 * footprint.major.norm();
   const float minor = std::max(footprint.minor, major / kMaxTaps);
   const float level = rough_log2(std::max(minor * texels_per_metre_, 1.0F));
-  const int taps = std::clamp(static_cast<int>(major / minor + 0.5F), 1, kMaxTaps);
+  const int taps = std::clamp(static_cast<int>(major / minor + 0.3F), 1, kMaxTaps);
   Eigen::Array3i sum = Eigen::Array3i::Zero();
   for (int i = 0; i < taps; ++i) {
     const float along = static_cast<float>(2 * i + 1 - taps) / static_cast<float>(taps);
@@ -71,10 +74,10 @@ std::uint32_t Texture::trilinear(const Eigen::Vector2f& uv, float level) const {
 
 std::uint32_t Texture::bilinear(const Level& level, const Eigen::Vector2f& uv) const {
   // 24.8 fixed point; the half texel shift puts sample positions at texel centres.
-  const auto u = static_cast<int>(
-      std::floor(uv.x() * periods_per_metre_.x() * static_cast<float>(256 * level.width)) - 128);
-  const auto v = static_cast<int>(
-      std::floor(uv.y() * periods_per_metre_.y() * static_cast<float>(256 * level.height)) - 128);
+  const int u =
+      floor_to_int(uv.x() * periods_per_metre_.x() * static_cast<float>(256 * level.width)) - 128;
+  const int v =
+      floor_to_int(uv.y() * periods_per_metre_.y() * static_cast<float>(256 * level.height)) - 128;
   const int x0 = (u >> 8) & (level.width - 1);
   const int x1 = (x0 + 1) & (level.width - 1);
   const int y0 = (v >> 8) & (level.height - 1);
