@@ -15,6 +15,7 @@ struct Clothes {
   Skin shirt;
   Skin trousers;
   Skin face;
+  Skin arms;
   Skin shoes;
 };
 
@@ -39,6 +40,7 @@ Clothes dress(World& world, const PersonOptions& options) {
                            {0.6F, 0.6F}),
           // As large as the skin over the head: see ellipsoid() in body_mesh.
           .face = worn(painter.face({512, 512}), {0.69F, 0.345F}),
+          .arms = worn(painter.fabric({256, 256}, {120, 150, 205}, 0.06), {0.3F, 0.3F}),
           .shoes = worn(painter.fabric({256, 256}, {40, 42, 48}, 0.3), {0.3F, 0.3F})};
 }
 
@@ -104,10 +106,10 @@ Mesh part_mesh(int part, float h, const Clothes& clothes) {
       break;
     case kLeftForearm:
     case kRightForearm: {
-      add_limb(0.146F, 0.025F, 0.024F, 0.018F, clothes.face);
+      add_limb(0.146F, 0.025F, 0.024F, 0.018F, clothes.arms);
       const Affine3f hand = Translation3f(0, 0, -0.19F * h) * Affine3f::Identity();
       add_loft(mesh, hand, ellipsoid({0, 0, 0}, {0.022F * h, 0.013F * h, 0.05F * h}),
-               clothes.face);
+               clothes.arms);
       break;
     }
     default:

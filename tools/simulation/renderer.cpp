@@ -48,6 +48,12 @@ std::uint32_t surface_key(const Hit& hit, const Face& face) {
   return static_cast<std::uint32_t>(hit.body + 1) << 16 | face.surface;
 }
 
+/// Pixels whose rays are cast together; those near each other are faster.
+struct Pixels {
+  std::array<int, kPacket> x;
+  std::array<int, kPacket> y;
+};
+
 }  // namespace
 
 /// One image on its way.
@@ -94,35 +100,35 @@ struct Renderer::Job {
   int packet_columns() const { return (renderer.camera_.width + kPacketWidth - 1) / kPacketWidth; }
   int packet_rows() const { return (renderer.camera_.height + kPacketHeight - 1) / kPacketHeight; }
 
-  /// Casts the rays of a packet of pixels, `dx`, `dy` px from their centres.
-  void cast(int column, int row, const Eye& eye, float dx, float dy,
+  /// Pixels beyond the image are replaced by those at its border.
+  Pixels packet(int column, int row) const {
+    Pixels pixels{};
+    for (int i = 0; i < kPacket; ++i) {
+      const auto k = static_cast<std::size_t>(i);
+      pixels.x[k] = std::min(column * kPacketWidth + i % kPacketWidth, renderer.camera_.width - 1);
+      pixels.y[k] =
+          std::min(row * kPacketHeight + i / kPacketWidth, renderer.camera_.height - 1);
+    }
+    return pixels;
+  }
+
+  /// Casts rays `dx`, `dy` px from the centres of pixels.
+  void cast(const Pixels& pixels, const Eye& eye, float dx, float dy,
             std::array<Vector3f, kPacket>& directions, std::array<Hit, kPacket>& hits) const {
     const Camera& c = renderer.camera_;
-    RayPacket packet;
-    for (int i = 0; i < kPacket; ++i) {
-      const auto u = static_cast<float>(column * kPacketWidth + i % kPacketWidth) + dx;
-      const auto v = static_cast<float>(row * kPacketHeight + i / kPacketWidth) + dy;
+    RayPacket rays;
+    for (std::size_t i = 0; i < kPacket; ++i) {
+      const float u = static_cast<float>(pixels.x[i]) + dx;
+      const float v = static_cast<float>(pixels.y[i]) + dy;
       const Vector3f ray((u - static_cast<float>(c.cx)) / static_cast<float>(c.fx),
                          (v - static_cast<float>(c.cy)) / static_cast<float>(c.fy), 1);
       const Vector3f d = eye.world_from_camera * ray;
-      const auto k = static_cast<std::size_t>(i);
-      directions[k] = d;
-      packet.x[k] = d.x();
-      packet.y[k] = d.y();
-      packet.z[k] = d.z();
+      directions[i] = d;
+      rays.x[i] = d.x();
+      rays.y[i] = d.y();
+      rays.z[i] = d.z();
     }
-    renderer.caster_.cast(eye.position, packet, eye.moment, hits);
-  }
-
-  /// Calls visit(lane, x, y) for the pixels of a packet that lie in the image.
-  template <class Visit>
-  void for_pixels(int column, int row, Visit&& visit) const {
-    for (int i = 0; i < kPacket; ++i) {
-      const int x = column * kPacketWidth + i % kPacketWidth;
-      const int y = row * kPacketHeight + i / kPacketWidth;
-      if (x < renderer.camera_.width && y < renderer.camera_.height)
-        visit(static_cast<std::size_t>(i), x, y);
-    }
+    renderer.caster_.cast(eye.position, rays, eye.moment, hits);
   }
 
   /// How far the surface at a hit moves in the image during the exposure, px.
@@ -145,51 +151,46 @@ struct Renderer::Job {
     std::array<Vector3f, kPacket> directions;
     std::array<Hit, kPacket> hits;
     for (int column = 0; column < packet_columns(); ++column) {
-      cast(column, row, middle, 0, 0, directions, hits);
+      const Pixels pixels = packet(column, row);
+      cast(pixels, middle, 0, 0, directions, hits);
       float& moved = motion.at<float>(row, column);
       if (colored && exposure > 0)
         moved = std::max(image_motion(hits[0], directions[0]), image_motion(hits[7], directions[7]));
-      for_pixels(column, row, [&](std::size_t i, int x, int y) {
-        const Hit& hit = hits[i];
-        view.depth.at<float>(y, x) = hit.distance;
-        if (hit.distance == 0) {
-          view.labels.at<std::uint8_t>(y, x) = 0;
-          view.instances.at<std::uint8_t>(y, x) = 0;
-          view.infrared.at<float>(y, x) = 0;
-          surfaces.at<int>(y, x) = -1;
-          if (colored) view.color.at<cv::Vec3f>(y, x) = {};
-          return;
-        }
-        const Face& face = shader.face(hit);
-        view.labels.at<std::uint8_t>(y, x) = face.label;
-        view.instances.at<std::uint8_t>(y, x) = face.instance;
-        surfaces.at<int>(y, x) = static_cast<int>(surface_key(hit, face));
-        float cosine = 0;
-        if (colored && moved <= 1) {
-          const Shade shade = shader.shade(hit, directions[i]);
-          view.color.at<cv::Vec3f>(y, x) = {shade.color[0], shade.color[1], shade.color[2]};
-          cosine = shade.cosine;
-        } else {
-          cosine = shader.cosine(hit, directions[i]);
-        }
-        view.infrared.at<float>(y, x) =
-            cosine * renderer.world_.textures[face.texture].infrared();
-      });
+      for (std::size_t i = 0; i < kPacket; ++i)
+        keep(hits[i], directions[i], pixels.x[i], pixels.y[i], colored && moved <= 1);
     }
   }
 
-  bool has_edge(int column, int row) const {
-    const int left = std::max(0, column * kPacketWidth - 1);
-    const int right = std::min(renderer.camera_.width - 1, (column + 1) * kPacketWidth);
-    const int top = std::max(0, row * kPacketHeight - 1);
-    const int bottom = std::min(renderer.camera_.height - 1, (row + 1) * kPacketHeight);
-    const int first = surfaces.at<int>(top, left);
-    for (int y = top; y <= bottom; ++y) {
-      const int* keys = surfaces.ptr<int>(y);
-      for (int x = left; x <= right; ++x)
-        if (keys[x] != first) return true;
+  void keep(const Hit& hit, const Vector3f& direction, int x, int y, bool with_color) {
+    view.depth.at<float>(y, x) = hit.distance;
+    if (hit.distance == 0) {
+      view.labels.at<std::uint8_t>(y, x) = 0;
+      view.instances.at<std::uint8_t>(y, x) = 0;
+      view.infrared.at<float>(y, x) = 0;
+      surfaces.at<int>(y, x) = -1;
+      if (with_color) view.color.at<cv::Vec3f>(y, x) = {};
+      return;
     }
-    return false;
+    const Face& face = shader.face(hit);
+    view.labels.at<std::uint8_t>(y, x) = face.label;
+    view.instances.at<std::uint8_t>(y, x) = face.instance;
+    surfaces.at<int>(y, x) = static_cast<int>(surface_key(hit, face));
+    view.infrared.at<float>(y, x) = shader.cosine(hit, direction) *
+                                    renderer.world_.textures[face.texture].infrared();
+    if (with_color) set_color(x, y, shader.shade(hit, direction));
+  }
+
+  void set_color(int x, int y, const Vector3f& c) {
+    view.color.at<cv::Vec3f>(y, x) = {c[0], c[1], c[2]};
+  }
+
+  bool is_edge(int x, int y) const {
+    const int key = surfaces.at<int>(y, x);
+    const auto differs = [&](int to_x, int to_y) {
+      return to_x >= 0 && to_y >= 0 && to_x < surfaces.cols && to_y < surfaces.rows &&
+             surfaces.at<int>(to_y, to_x) != key;
+    };
+    return differs(x - 1, y) || differs(x + 1, y) || differs(x, y - 1) || differs(x, y + 1);
   }
 
   /// Motion here or near enough to come here during the exposure.
@@ -203,18 +204,37 @@ struct Renderer::Job {
 
   /// Colours of a row of packets where edges or motion need several samples.
   void second_pass(int row) {
+    Pixels edges{};
+    std::size_t waiting = 0;
     for (int column = 0; column < packet_columns(); ++column) {
+      const Pixels pixels = packet(column, row);
       // One sample per pixel of motion: textures are as smooth as a pixel is wide.
       const int n = std::clamp(static_cast<int>(std::ceil(motion_around(column, row))), 1, kMany);
-      if (has_edge(column, row)) {
-        resample(column, row, n <= kFew ? kFew : kMany, true);
-      } else if (n > 1) {
-        resample(column, row, static_cast<std::size_t>(n), false);
+      if (n > 1) {
+        bool edge = false;
+        for (std::size_t i = 0; i < kPacket; ++i) edge |= is_edge(pixels.x[i], pixels.y[i]);
+        const int count = !edge ? n : n <= kFew ? kFew : kMany;
+        resample(pixels, static_cast<std::size_t>(count), edge);
+        continue;
+      }
+      for (std::size_t i = 0; i < kPacket; ++i) {
+        if (!is_edge(pixels.x[i], pixels.y[i])) continue;
+        edges.x[waiting] = pixels.x[i];
+        edges.y[waiting] = pixels.y[i];
+        if (++waiting < kPacket) continue;
+        resample(edges, kFew, true);
+        waiting = 0;
       }
     }
+    if (waiting == 0) return;
+    for (std::size_t i = waiting; i < kPacket; ++i) {
+      edges.x[i] = edges.x[0];
+      edges.y[i] = edges.y[0];
+    }
+    resample(edges, kFew, true);
   }
 
-  void resample(int column, int row, std::size_t count, bool edge) {
+  void resample(const Pixels& pixels, std::size_t count, bool edge) {
     std::array<Vector3f, kPacket> directions;
     std::array<Hit, kPacket> hits;
     std::array<Vector3f, kPacket> sums;
@@ -222,14 +242,12 @@ struct Renderer::Job {
     for (std::size_t s = 0; s < count; ++s) {
       const float dx = edge ? cell_offset(0, s, count) : 0;
       const float dy = edge ? cell_offset(1, s, count) : 0;
-      cast(column, row, eyes[count][s], dx, dy, directions, hits);
+      cast(pixels, eyes[count][s], dx, dy, directions, hits);
       for (std::size_t i = 0; i < kPacket; ++i)
-        if (hits[i].distance > 0) sums[i] += shader.shade(hits[i], directions[i]).color;
+        if (hits[i].distance > 0) sums[i] += shader.shade(hits[i], directions[i]);
     }
-    for_pixels(column, row, [&](std::size_t i, int x, int y) {
-      const Vector3f mean = sums[i] / static_cast<float>(count);
-      view.color.at<cv::Vec3f>(y, x) = {mean[0], mean[1], mean[2]};
-    });
+    for (std::size_t i = 0; i < kPacket; ++i)
+      set_color(pixels.x[i], pixels.y[i], sums[i] / static_cast<float>(count));
   }
 };
 

@@ -32,7 +32,7 @@ struct SensorOptions {
   bool ideal = false;  ///< geometry and colours as they are: no noise, no blur, no holes
   double exposure = 0.008;          ///< s
   double exposure_drift = 0.05;     ///< relative amplitude
-  double color_noise = 1.2;         ///< grey levels, standard deviation at middle grey
+  double color_noise = 0.9;         ///< grey levels, standard deviation at middle grey
   double disparity_noise = 0.055;   ///< px, standard deviation
   double disparity_step = 0.125;    ///< px
   double baseline_focal = 43.5;     ///< px·m: baseline times focal length of the infrared camera

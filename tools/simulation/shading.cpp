@@ -32,7 +32,7 @@ float Shader::cosine(const Hit& hit, const Vector3f& direction) const {
   return std::abs(normal(hit, face(hit)).dot(direction)) / direction.norm();
 }
 
-Shade Shader::shade(const Hit& hit, const Vector3f& direction) const {
+Vector3f Shader::shade(const Hit& hit, const Vector3f& direction) const {
   constexpr float kGrazing = 0.08F;  // footprints grow no longer than 1 / this
   const Face& f = face(hit);
   const float w = 1 - hit.u - hit.v;
@@ -54,7 +54,7 @@ Shade Shader::shade(const Hit& hit, const Vector3f& direction) const {
                       : hit.body < 0
                           ? w * f.light[0] + hit.u * f.light[1] + hit.v * f.light[2]
                           : light_on_body(n);
-  return {world_.textures[f.texture].sample(uv, footprint) * light, cosine};
+  return world_.textures[f.texture].sample(uv, footprint) * light;
 }
 
 }  // namespace stillpoint::simulation

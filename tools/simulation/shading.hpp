@@ -7,18 +7,14 @@
 
 namespace stillpoint::simulation {
 
-struct Shade {
-  Eigen::Vector3f color;  ///< b, g, r, 0…255 at normal exposure
-  float cosine;           ///< between ray and surface normal, [0, 1]
-};
-
 class Shader {
  public:
   /// `pixel` is the size of a pixel at a distance of 1 m. Normals are those at `time`.
   Shader(const World& world, double time, float pixel);
 
   const Face& face(const Hit& hit) const;
-  Shade shade(const Hit& hit, const Eigen::Vector3f& direction) const;
+  /// b, g, r, 0…255 at normal exposure.
+  Eigen::Vector3f shade(const Hit& hit, const Eigen::Vector3f& direction) const;
   /// Between ray and surface normal, [0, 1].
   float cosine(const Hit& hit, const Eigen::Vector3f& direction) const;
 
