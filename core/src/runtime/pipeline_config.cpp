@@ -45,7 +45,7 @@ class PipelineReader {
     PipelineConfig config;
     read_version();
     search_plugins(plugin_folders);
-    if (tree_.find("camera")) read_options(config.camera.emplace(), "camera");
+    if (section("camera")) read_options(config.camera.emplace(), "camera");
     read_source(config.source);
     read_options(config.segmentation, "segmentation");
     for (const StageSection& stage : kStages)
@@ -60,10 +60,7 @@ class PipelineReader {
   }
 
  private:
-  const ConfigNode* section(const char* name) {
-    known_.push_back(name);
-    return tree_.find(name);
-  }
+  const ConfigNode* section(const char* name) const { return tree_.find(name); }
 
   void read_version() {
     const ConfigNode* version = section("version");
@@ -172,19 +169,21 @@ class PipelineReader {
   }
 
   void report_unknown_sections() {
-    for (const ConfigNode& child : tree_.children)
-      if (std::ranges::find(known_, child.key) == known_.end()) {
-        const std::string hint = did_you_mean(child.key, known_);
-        faults_.add(child.key_location, "unknown section '" + child.key + "'" +
-                                            (hint.empty() ? "; known: " + join(known_) : hint));
-      }
+    std::vector<std::string> known = {"version", "extends",      "plugins", "camera",
+                                      "source",  "segmentation", "outputs", "runtime"};
+    for (const StageSection& stage : kStages) known.emplace_back(stage.name);
+    for (const ConfigNode& child : tree_.children) {
+      if (std::ranges::find(known, child.key) != known.end()) continue;
+      const std::string hint = did_you_mean(child.key, known);
+      faults_.add(child.key_location, "unknown section '" + child.key + "'" +
+                                          (hint.empty() ? "; known: " + join(known) : hint));
+    }
   }
 
   const ConfigNode& tree_;
   Registry& registry_;
   FaultList& faults_;
   const bool loaded_;
-  std::vector<std::string> known_ = {"extends"};
   OptionRecord document_{.kind = OptionRecord::Kind::kGroup};
 };
 

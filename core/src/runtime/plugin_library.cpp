@@ -24,15 +24,14 @@ std::string check_entry(const PluginEntry& entry) {
   return {};
 }
 
-/// What dlopen said, without Boost's own words around it: its prefix, the path that the reader
-/// knows, and an errno that dlopen does not set.
+/// What dlopen said: Boost writes "… (dlerror system message: PATH: TEXT): ERRNO", where errno is
+/// not dlopen's and the path is known to the reader.
 std::string loader_message(std::string text, const std::string& file) {
-  if (const auto path = text.find(file + ": "); path != std::string::npos)
-    text.erase(0, path + file.size() + 2);
-  if (const auto errno_text = text.rfind(": "); errno_text != std::string::npos) {
-    const std::string_view tail = std::string_view(text).substr(errno_text + 2);
-    if (tail.starts_with("Bad file descriptor")) text.erase(errno_text);
-  }
+  const std::string before = file + ": ";
+  const auto start = text.find(before);
+  const auto end = text.rfind("): ");
+  if (start != std::string::npos && end != std::string::npos && end > start)
+    text = text.substr(start + before.size(), end - start - before.size());
   return "cannot be loaded: " + text;
 }
 
