@@ -16,6 +16,7 @@ constexpr void (*kCommands[])(CLI::App&) = {
     stillpoint::add_evaluate,
     stillpoint::add_inspect,
     stillpoint::add_plugins,
+    stillpoint::add_run,
     stillpoint::add_simulate,
 };
 

@@ -1,0 +1,20 @@
+// Draws on a frame what the pipeline made of it.
+#pragma once
+
+#include <opencv2/core/mat.hpp>
+#include <stillpoint/sdk.hpp>
+
+namespace stillpoint {
+
+/// What is drawn.
+struct AnnotationParts {
+  bool features = true;
+  bool moving = true;
+  bool mask = true;
+  bool text = true;
+};
+
+/// A picture of the frame's size, CV_8UC3.
+cv::Mat annotated(const FrameReport& report, const AnnotationParts& parts);
+
+}  // namespace stillpoint

@@ -1,0 +1,42 @@
+#include "output_files/atomic_file.hpp"
+
+#include <cerrno>
+#include <cstring>
+#include <stillpoint/error.hpp>
+#include <system_error>
+#include <utility>
+
+namespace stillpoint {
+namespace {
+
+[[noreturn]] void fail(const std::filesystem::path& path, int error) {
+  throw Error(Fault::kUsage, std::string("cannot write: ") + std::strerror(error), path.string(),
+              "check the folder's permissions and the free space");
+}
+
+}  // namespace
+
+AtomicFile::AtomicFile(std::filesystem::path path)
+    : path_(std::move(path)), temporary_(path_.string() + ".part") {
+  std::error_code error;
+  std::filesystem::create_directories(path_.parent_path(), error);
+  if (error) fail(path_.parent_path(), error.value());
+  stream_.open(temporary_, std::ios::binary | std::ios::trunc);
+  if (!stream_) fail(temporary_, errno);
+}
+
+AtomicFile::~AtomicFile() {
+  stream_.close();
+  std::error_code ignored;  // after commit() there is nothing to remove
+  std::filesystem::remove(temporary_, ignored);
+}
+
+void AtomicFile::commit() {
+  stream_.close();
+  if (!stream_) fail(temporary_, errno);
+  std::error_code error;
+  std::filesystem::rename(temporary_, path_, error);
+  if (error) fail(path_, error.value());
+}
+
+}  // namespace stillpoint

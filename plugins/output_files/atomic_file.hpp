@@ -1,0 +1,29 @@
+// Files that are either complete or not there.
+#pragma once
+
+#include <filesystem>
+#include <fstream>
+
+namespace stillpoint {
+
+/// Written under a temporary name beside its place, and put there by commit(). Without commit(),
+/// nothing is left behind.
+class AtomicFile {
+ public:
+  /// Makes missing folders. Throws Error when the file cannot be made.
+  explicit AtomicFile(std::filesystem::path path);
+  ~AtomicFile();
+  AtomicFile(const AtomicFile&) = delete;
+  AtomicFile& operator=(const AtomicFile&) = delete;
+
+  std::ostream& stream() { return stream_; }
+  /// Throws Error when not everything could be written.
+  void commit();
+
+ private:
+  std::filesystem::path path_;
+  std::filesystem::path temporary_;
+  std::ofstream stream_;
+};
+
+}  // namespace stillpoint

@@ -1,0 +1,17 @@
+#include "output_files/keyframes_output.hpp"
+
+#include "output_files/atomic_file.hpp"
+#include "output_files/tum_pose.hpp"
+
+namespace stillpoint {
+
+void KeyFramesOutput::finish(const RunSummary& summary) {
+  AtomicFile file(path_);
+  file.stream() << "# time tx ty tz qx qy qz qw\n";
+  for (KeyFrameId id = 0; id < summary.map.keyframe_id_end(); ++id)
+    if (const KeyFrame* keyframe = summary.map.keyframe(id))
+      write_tum_pose(file.stream(), keyframe->time, keyframe->world_from_camera);
+  file.commit();
+}
+
+}  // namespace stillpoint

@@ -1,0 +1,22 @@
+#include <stillpoint/sdk.hpp>
+
+#include "output_files/image_output.hpp"
+#include "output_files/keyframes_output.hpp"
+#include "output_files/summary_output.hpp"
+#include "output_files/timings_output.hpp"
+#include "output_files/trajectory_output.hpp"
+
+using stillpoint::Output;
+using stillpoint::provide;
+
+STILLPOINT_PLUGIN(
+    output_files, "0.1.0",
+    provide<Output, stillpoint::TrajectoryOutput>(
+        "trajectory", "trajectory.txt: poses of all tracked frames, TUM format"),
+    provide<Output, stillpoint::KeyFramesOutput>(
+        "keyframes", "keyframes.txt: poses of the key frames, TUM format"),
+    provide<Output, stillpoint::TimingsOutput>(
+        "timings", "timings.csv: what every stage took for every frame"),
+    provide<Output, stillpoint::SummaryOutput>("summary", "summary.json: the figures of the run"),
+    provide<Output, stillpoint::ImageOutput>(
+        "images", "pictures of frames with features, moving points and labels"));

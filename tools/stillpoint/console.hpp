@@ -1,0 +1,25 @@
+// Standard error as a run uses it: lines of text, and on a terminal a status line below them.
+#pragma once
+
+#include <mutex>
+#include <string>
+
+namespace stillpoint {
+
+/// May be used from any thread.
+class Console {
+ public:
+  Console();
+
+  bool is_terminal() const { return is_terminal_; }
+  void line(const std::string& text);
+  /// Replaces the status line; empty: removes it. Does nothing without a terminal.
+  void status(const std::string& text);
+
+ private:
+  const bool is_terminal_;
+  std::mutex mutex_;
+  std::string status_;  // guarded by mutex_
+};
+
+}  // namespace stillpoint

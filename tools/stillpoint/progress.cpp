@@ -1,0 +1,83 @@
+#include "progress.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+
+namespace stillpoint {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr int kBarWidth = 30;
+
+std::string bar(double share) {
+  const int full = static_cast<int>(share * kBarWidth + 0.5);
+  std::string text;
+  for (int i = 0; i < kBarWidth; ++i) text += i < full ? "█" : "░";
+  return text;
+}
+
+std::string minutes(double seconds) {
+  const int whole = static_cast<int>(seconds + 0.5);
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%d:%02d", whole / 60, whole % 60);
+  return text.data();
+}
+
+const char* name_of(TrackState state) {
+  switch (state) {
+    case TrackState::kWaiting:
+      return "waiting";
+    case TrackState::kTracking:
+      return "tracking";
+    case TrackState::kLost:
+      return "LOST";
+  }
+  return "";
+}
+
+}  // namespace
+
+Progress::Progress(Console& console, std::optional<std::size_t> frames)
+    : console_(console), frames_(frames && *frames > 0 ? frames : std::nullopt) {}
+
+void Progress::frame(const FrameReport& report) {
+  done_ = report.frame.index + 1;
+  ++processed_;
+  if (report.result.keyframe) ++keyframes_;
+  const Clock::time_point now = Clock::now();
+  if (!due(now)) return;
+  last_shown_ = now;
+  last_share_ = share();
+  const std::string text =
+      describe(std::chrono::duration<double>(now - start_).count(), report.result);
+  if (!console_.is_terminal())
+    console_.line(text);
+  else
+    console_.status(frames_ ? bar(share()) + "  " + text : text);
+}
+
+bool Progress::due(Clock::time_point now) const {
+  if (console_.is_terminal()) return now - last_shown_ > 100ms;
+  return now - last_shown_ > 5s || share() - last_share_ >= 0.1 - 1e-9;
+}
+
+double Progress::share() const {
+  return frames_ ? std::min(1.0, static_cast<double>(done_) / static_cast<double>(*frames_)) : 0.0;
+}
+
+std::string Progress::describe(double seconds, const TrackResult& result) const {
+  const double rate = static_cast<double>(processed_) / std::max(seconds, 1e-9);
+  std::array<char, 160> text{};
+  if (frames_)
+    std::snprintf(text.data(), text.size(), "%zu/%zu  %3.0f %%  %.1f frames/s  %s left  ", done_,
+                  *frames_, 100.0 * share(), rate,
+                  minutes(seconds / share() * (1.0 - share())).c_str());
+  else
+    std::snprintf(text.data(), text.size(), "%zu  %.1f frames/s  ", done_, rate);
+  return std::string(text.data()) + std::to_string(keyframes_) + " key frames  " +
+         name_of(result.state);
+}
+
+}  // namespace stillpoint

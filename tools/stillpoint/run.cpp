@@ -1,0 +1,96 @@
+// stillpoint run: a recording through a pipeline, and what comes out into a run folder.
+#include <csignal>
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <string>
+
+#include "commands.hpp"
+#include "console.hpp"
+#include "interrupt.hpp"
+#include "progress.hpp"
+#include "run_folder.hpp"
+#include "run_table.hpp"
+#include "stillpoint/runtime/make_stages.hpp"
+#include "stillpoint/runtime/pipeline.hpp"
+
+namespace stillpoint {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Arguments {
+  PipelineRequest request;
+  fs::path output;
+};
+
+void print_files(const RunFolder& folder, const fs::path& ground_truth) {
+  std::cout << "  files     " << folder.path().string() << ":";
+  for (const std::string& name : folder.contents()) std::cout << ' ' << name;
+  std::cout << '\n';
+  const fs::path trajectory = folder.path() / "trajectory.txt";
+  if (!ground_truth.empty() && fs::exists(trajectory))
+    std::cout << "  compare   stillpoint evaluate --reference " << ground_truth.string()
+              << " --estimate " << trajectory.string() << '\n';
+}
+
+// Runs, and prints the table also when a stage has failed: what was computed is saved.
+void run_and_print(Stages stages, const PipelineConfig& config, const RunFolder& folder,
+                   std::stop_token stop) {
+  const fs::path ground_truth = stages.source.object->ground_truth();
+  const auto table = std::make_shared<RunTable>();
+  stages.outputs.push_back({table, "table"});
+  const auto print = [&] {
+    table->print(std::cout);
+    print_files(folder, ground_truth);
+    std::cout << std::flush;
+  };
+  Pipeline pipeline(std::move(stages), config.runtime, config.segmentation);
+  try {
+    pipeline.run(std::move(stop));
+  } catch (const Error& error) {
+    print();
+    folder.log(LogLevel::kInfo, std::string("failed: ") + error.what());
+    throw;
+  }
+  print();
+}
+
+void run(const Arguments& arguments) {
+  Registry registry;
+  const PipelineConfig config = load_pipeline(arguments.request, registry);
+  Console console;
+  const RunFolder folder(
+      arguments.output.empty() ? fs::path("out") / config.file.stem() : arguments.output,
+      config.effective_yaml, console);
+  folder.log(LogLevel::kInfo, "stillpoint " STILLPOINT_VERSION ", " + config.file.string());
+  Stages stages =
+      make_stages(config, folder.path(),
+                  [&folder](LogLevel level, std::string_view text) { folder.log(level, text); });
+  stages.outputs.push_back(
+      {std::make_shared<Progress>(console, stages.source.object->size()), "progress"});
+  int signal = 0;
+  {
+    const Interrupt interrupt;
+    run_and_print(std::move(stages), config, folder, interrupt.token());
+    signal = Interrupt::signal();
+  }
+  if (signal == 0) return folder.log(LogLevel::kInfo, "done");
+  folder.log(LogLevel::kWarning, "stopped; what was computed until then is saved");
+  std::raise(signal);  // so that a calling script sees that it was interrupted
+}
+
+}  // namespace
+
+void add_run(CLI::App& app) {
+  auto arguments = std::make_shared<Arguments>();
+  CLI::App* command = app.add_subcommand("run", "Process a recording with a pipeline");
+  add_pipeline_options(*command, arguments->request);
+  command
+      ->add_option("-o,--output", arguments->output,
+                   "Run folder; out/ and the pipeline's name when left out")
+      ->type_name("DIR");
+  command->callback([arguments] { run(*arguments); });
+}
+
+}  // namespace stillpoint

@@ -1,0 +1,89 @@
+#include "run_folder.hpp"
+
+#include <spdlog/logger.h>
+#include <spdlog/sinks/basic_file_sink.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <system_error>
+#include <utility>
+
+#include "stillpoint/error.hpp"
+
+namespace stillpoint {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kResults[] = {"pipeline.yaml", "log.txt",     "trajectory.txt",
+                                    "keyframes.txt", "timings.csv", "summary.json"};
+
+[[noreturn]] void fail(const fs::path& path, const std::string& reason) {
+  throw Error(Fault::kUsage, "cannot write the run folder: " + reason, path.string(),
+              "choose another one with -o");
+}
+
+spdlog::level::level_enum level_of(LogLevel level) {
+  switch (level) {
+    case LogLevel::kDebug:
+      return spdlog::level::debug;
+    case LogLevel::kInfo:
+      return spdlog::level::info;
+    case LogLevel::kWarning:
+      return spdlog::level::warn;
+    case LogLevel::kError:
+      return spdlog::level::err;
+  }
+  return spdlog::level::info;
+}
+
+}  // namespace
+
+RunFolder::RunFolder(fs::path path, const std::string& effective_yaml, Console& console)
+    : path_(std::move(path)), console_(console) {
+  std::error_code error;
+  fs::create_directories(path_, error);
+  if (error) fail(path_, error.message());
+  remove_earlier_results();
+  std::ofstream yaml(path_ / "pipeline.yaml");
+  if (!(yaml << effective_yaml << std::flush)) fail(path_ / "pipeline.yaml", std::strerror(errno));
+  try {
+    auto sink =
+        std::make_shared<spdlog::sinks::basic_file_sink_mt>((path_ / "log.txt").string(), true);
+    log_ = std::make_shared<spdlog::logger>("run", std::move(sink));
+  } catch (const spdlog::spdlog_ex& exception) {
+    fail(path_ / "log.txt", exception.what());
+  }
+  log_->set_pattern("%Y-%m-%d %H:%M:%S.%e  %l  %v");
+  log_->set_level(spdlog::level::debug);
+  log_->flush_on(spdlog::level::info);
+}
+
+void RunFolder::log(LogLevel level, std::string_view text) const {
+  log_->log(level_of(level), text);
+  if (level == LogLevel::kWarning) console_.line("warning: " + std::string(text));
+  if (level == LogLevel::kError) console_.line("error: " + std::string(text));
+}
+
+std::vector<std::string> RunFolder::contents() const {
+  std::vector<std::string> names;
+  for (const fs::directory_entry& entry : fs::directory_iterator(path_))
+    names.push_back(entry.path().filename().string() + (entry.is_directory() ? "/" : ""));
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+void RunFolder::remove_earlier_results() const {
+  std::error_code error;
+  bool found = false;
+  for (const char* name : kResults) {
+    found = fs::remove(path_ / name, error) || found;
+    if (error) fail(path_ / name, error.message());
+  }
+  if (found)
+    console_.line("note: " + path_.string() + " holds an earlier run, which is overwritten");
+}
+
+}  // namespace stillpoint

@@ -1,0 +1,40 @@
+// The folder a run writes into.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "console.hpp"
+#include "stillpoint/plugin.hpp"
+
+namespace spdlog {
+class logger;
+}
+
+namespace stillpoint {
+
+/// Made with its parents; results of an earlier run in it are removed. Holds pipeline.yaml and
+/// log.txt from the start.
+class RunFolder {
+ public:
+  /// Throws Error(kUsage) when the folder cannot be written.
+  RunFolder(std::filesystem::path path, const std::string& effective_yaml, Console& console);
+
+  const std::filesystem::path& path() const { return path_; }
+  /// Into log.txt; warnings and errors also to the console. May be called from any thread.
+  void log(LogLevel level, std::string_view text) const;
+  /// Names of what is in it, sorted; folders end with '/'.
+  std::vector<std::string> contents() const;
+
+ private:
+  void remove_earlier_results() const;
+
+  std::filesystem::path path_;
+  Console& console_;
+  std::shared_ptr<spdlog::logger> log_;
+};
+
+}  // namespace stillpoint
