@@ -203,12 +203,12 @@ class LocalProblem {
   static Measurement measurement(const KeyFrame& keyframe, std::uint32_t feature) {
     const Features& features = *keyframe.features;
     const cv::KeyPoint& k = features.keypoints[feature];
-    const double scale = ScalePyramid(features).scale(k.octave);
-    const double trust = std::sqrt(keyframe.track_weights[feature] / 255.0) / scale;
+    const double trust = std::sqrt(keyframe.track_weights[feature] / 255.0);
+    const double sigma = ScalePyramid(features).pixel_sigma(k.octave);
     const double depth = features.depth[feature];
     const Camera& c = *keyframe.camera;
     return {c.fx, c.fy, c.cx, c.cy, k.pt.x, k.pt.y, depth > 0 ? 1.0 / depth : 0.0,
-            trust, depth > 0 ? trust / c.depth_noise : 0.0};
+            trust / sigma, depth > 0 ? trust / c.depth_noise : 0.0};
   }
 
   static void drop_outliers(MapEdit& edit, LandmarkId id) {

@@ -5,7 +5,7 @@ namespace {
 
 // Landmarks of the reference key frame that others have seen, too; in a young map, all.
 int established_landmarks(const KeyFrame& keyframe, const SparseMap& map) {
-  const std::size_t min_observations = map.keyframe_count() <= 2 ? 2 : 3;
+  const std::size_t min_observations = map.keyframe_count() <= 2 ? 1 : 2;
   int count = 0;
   for (const LandmarkId id : keyframe.landmarks)
     if (id != kNoId && map.landmark(id)->observations.size() >= min_observations) ++count;

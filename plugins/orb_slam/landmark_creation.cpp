@@ -68,7 +68,7 @@ class ViewPair {
   bool on_epipolar_line(const Eigen::Vector3d& line, std::uint32_t j) const {
     const Eigen::Vector3d x = ray(b_, j);
     const double distance = line.dot(x) / std::hypot(line.x(), line.y()) * b_.camera->fx;
-    const double sigma = pyramid_.scale(b_.features->keypoints[j].octave);
+    const double sigma = pyramid_.pixel_sigma(b_.features->keypoints[j].octave);
     return distance * distance <= kChiSquare1 * sigma * sigma;
   }
   Eigen::Vector3d epipolar_line(std::uint32_t i) const { return essential_ * ray(a_, i); }

@@ -60,13 +60,13 @@ ObservationError observation_error(const Eigen::Vector3d& point_in_world,
   const Eigen::Vector3d p = camera_from_world * point_in_world;
   if (p.z() <= 0) return {std::numeric_limits<double>::infinity(), kChiSquare2};
   const cv::KeyPoint& k = keyframe.features->keypoints[feature];
-  const double scale = ScalePyramid(*keyframe.features).scale(k.octave);
+  const double sigma = ScalePyramid(*keyframe.features).pixel_sigma(k.octave);
   const Eigen::Vector2d pixel = keyframe.camera->project(p);
-  ObservationError error{(pixel - Eigen::Vector2d(k.pt.x, k.pt.y)).squaredNorm() / (scale * scale),
+  ObservationError error{(pixel - Eigen::Vector2d(k.pt.x, k.pt.y)).squaredNorm() / (sigma * sigma),
                          kChiSquare2};
   const double depth = keyframe.features->depth[feature];
   if (depth > 0) {
-    const double r = (1.0 / p.z() - 1.0 / depth) / (keyframe.camera->depth_noise * scale);
+    const double r = (1.0 / p.z() - 1.0 / depth) / keyframe.camera->depth_noise;
     error.squared += r * r;
     error.bound = kChiSquare3;
   }

@@ -66,12 +66,12 @@ int solve_pose(ObservedFrame& observed, const SparseMap& map) {
     const Landmark* landmark = map.landmark(observed.landmarks[i]);
     if (!landmark) continue;
     const cv::KeyPoint& k = features.keypoints[i];
-    const double scale = pyramid.scale(k.octave);
+    const double sigma = pyramid.pixel_sigma(k.octave);
     observations.push_back({.point_in_world = landmark->position_in_world,
                             .pixel = {k.pt.x, k.pt.y},
                             .inverse_depth = features.depth[i] > 0 ? 1.0 / features.depth[i] : 0.0,
-                            .pixel_sigma = scale,
-                            .inverse_depth_sigma = observed.frame->camera->depth_noise * scale,
+                            .pixel_sigma = sigma,
+                            .inverse_depth_sigma = observed.frame->camera->depth_noise,
                             .weight = observed.track_weights[i] / 255.0});
     index.push_back(i);
   }

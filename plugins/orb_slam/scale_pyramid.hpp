@@ -19,9 +19,10 @@ class ScalePyramid {
   }
 
   int levels() const { return levels_; }
-  /// Size of a pixel of that level in pixels of the full image; also the standard deviation of a
-  /// keypoint's position.
+  /// Size of a pixel of that level in pixels of the full image.
   double scale(int level) const { return scale_[level]; }
+  /// Standard deviation of a keypoint's position in px of the full image.
+  double pixel_sigma(int level) const { return scale_[level]; }
 
   /// Level at which a landmark appears from `distance` metres, as it was described at.
   int predict_level(const Landmark& landmark, double distance) const {

@@ -20,8 +20,10 @@ struct STILLPOINT_EXPORT Camera {
   double cx = 319.5;  ///< px
   double cy = 239.5;  ///< px
   /// Standard deviation of a depth measurement at 1 m, in metres. That of a structured-light
-  /// sensor grows with the square of the distance (Khoshelham and Elberink, Sensors 2012).
-  double depth_noise = 0.003;
+  /// sensor grows with the square of the distance (Khoshelham and Elberink, Sensors 2012). Besides
+  /// the sensor's own noise (0.002) it stands for what a point feature suffers in a real recording:
+  /// depth edges, registration, and depth images taken some milliseconds off the colour images.
+  double depth_noise = 0.02;
 
   /// Pixel of a point in the camera frame; z must be positive.
   Eigen::Vector2d project(const Eigen::Vector3d& point_in_camera) const {
@@ -55,7 +57,7 @@ struct STILLPOINT_EXPORT CameraModel {
   double depth_factor = 5000.0;  ///< depth image value of one metre
   double min_depth = 0.3;        ///< metres; nearer measurements are dropped
   double max_depth = 10.0;       ///< metres; farther measurements are dropped
-  double depth_noise = 0.003;    ///< metres at 1 m, see Camera::depth_noise
+  double depth_noise = 0.02;    ///< metres at 1 m, see Camera::depth_noise
   /// x, y, width, height in px of the part of the undistorted image that is used; empty: all of it.
   std::vector<double> crop;
 
