@@ -26,7 +26,4 @@ class Relocaliser {
   KeyFrameId next_ = 0;  // where the way round the map goes on
 };
 
-/// Features of a key frame that show a landmark, to be searched for in another image.
-std::vector<Query> landmark_queries(const KeyFrame& keyframe, const SparseMap& map);
-
 }  // namespace stillpoint::orb

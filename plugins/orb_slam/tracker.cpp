@@ -2,11 +2,14 @@
 
 #include <algorithm>
 
+#include "orb_slam/appearance.hpp"
+
 namespace stillpoint::orb {
 namespace {
 
 constexpr int kMinMotionMatches = 20;   // fewer: search again in a wider window
-constexpr int kMinFirstInliers = 10;    // to go on to the local map
+constexpr int kMinMotionInliers = 20;   // fewer, or a smaller share: do not trust the prediction
+constexpr double kMinMotionShare = 0.5;
 
 std::vector<TrackedFeature> describe(const ObservedFrame& frame) {
   std::vector<TrackedFeature> tracked(frame.features->size());
@@ -51,7 +54,7 @@ TrackResult OrbTracker::track(FramePtr, const StaticWeights& weights, const Spar
 
   follow_map(map);
   bool found = false;
-  if (state_ == TrackState::kTracking) found = track_with_motion(map) || track_reference(map);
+  if (state_ == TrackState::kTracking) found = track_with_motion(map) || track_by_appearance(map);
   if (!found) found = relocaliser_.find(current_, map);
   if (found) found = track_local_map(map);
   return found ? tracked(map, hints) : not_tracked(TrackState::kLost);
@@ -119,23 +122,17 @@ bool OrbTracker::track_with_motion(const SparseMap& map) {
   current_.assign(matches);
   const int inliers = solve_pose(current_, map);
   current_.drop_outliers();
-  return inliers >= kMinFirstInliers;
+  return inliers >= kMinMotionInliers &&
+         inliers >= kMinMotionShare * static_cast<double>(matches.size());
 }
 
-bool OrbTracker::track_reference(const SparseMap& map) {
+// Independent of any prediction: for fast turns, and where the prediction led to a false minimum.
+bool OrbTracker::track_by_appearance(const SparseMap& map) {
+  if (locate_by_appearance(current_, landmark_queries(last_, map), map) >= options_.min_inliers)
+    return true;
   const KeyFrame* reference = map.keyframe(last_.reference);
-  if (!reference) return false;
-  const auto usable = [&](std::uint32_t i) { return current_.usable(i); };
-  const std::vector<Match> matches =
-      match_anywhere(landmark_queries(*reference, map), *current_.features, usable,
-                     {.max_distance = kNear, .ratio = 0.7, .consistent_angles = true});
-  if (static_cast<int>(matches.size()) < 15) return false;
-  current_.clear_landmarks();
-  current_.assign(matches);
-  current_.world_from_camera = last_.world_from_camera;
-  const int inliers = solve_pose(current_, map);
-  current_.drop_outliers();
-  return inliers >= kMinFirstInliers;
+  return reference && locate_by_appearance(current_, landmark_queries(*reference, map), map) >=
+                          options_.min_inliers;
 }
 
 bool OrbTracker::track_local_map(const SparseMap& map) {

@@ -37,7 +37,7 @@ class OrbTracker final : public Tracker {
   bool start();
   void follow_map(const SparseMap& map);
   bool track_with_motion(const SparseMap& map);
-  bool track_reference(const SparseMap& map);
+  bool track_by_appearance(const SparseMap& map);
   bool track_local_map(const SparseMap& map);
   void count_evidence(const std::vector<LandmarkId>& visible);
 
