@@ -10,14 +10,13 @@ namespace {
 
 constexpr int kMaxTaps = 3;  // along the longer axis of a footprint
 
-/// Weighted mean of four 8-bit channels at once; `weight` of b in 1/256.
-std::uint32_t lerp(std::uint32_t a, std::uint32_t b, std::uint32_t weight) {
-  constexpr std::uint32_t kMask = 0x00ff00ffU;
-  const std::uint32_t even =
-      (((a & kMask) * (256 - weight) + (b & kMask) * weight + 0x00800080U) >> 8) & kMask;
-  const std::uint32_t odd =
-      (((a >> 8) & kMask) * (256 - weight) + ((b >> 8) & kMask) * weight + 0x00800080U) & ~kMask;
-  return even | odd;
+/// Four channels of two texels; compilers make one register of it.
+using TwoTexels = std::uint16_t __attribute__((vector_size(16)));
+
+TwoTexels widen(std::uint32_t first, std::uint32_t second) {
+  using Bytes = std::uint8_t __attribute__((vector_size(8)));
+  return __builtin_convertvector(std::bit_cast<Bytes>(first | std::uint64_t{second} << 32),
+                                 TwoTexels);
 }
 
 /// log2, linear between powers of two: mip levels need no more.
@@ -55,24 +54,26 @@ Eigen::Vector3f Texture::sample(const Eigen::Vector2f& uv, const Footprint& foot
   const float minor = std::max(footprint.minor, major / kMaxTaps);
   const float level = rough_log2(std::max(minor * texels_per_metre_, 1.0F));
   const int taps = std::clamp(static_cast<int>(major / minor + 0.3F), 1, kMaxTaps);
-  Eigen::Array3i sum = Eigen::Array3i::Zero();
+  if (taps == 1) return trilinear(uv, level);
+  Eigen::Vector3f sum = Eigen::Vector3f::Zero();
   for (int i = 0; i < taps; ++i) {
     const float along = static_cast<float>(2 * i + 1 - taps) / static_cast<float>(taps);
-    const auto c = static_cast<int>(trilinear(uv + along * footprint.major, level));
-    sum += Eigen::Array3i(c & 255, (c >> 8) & 255, (c >> 16) & 255);
+    sum += trilinear(uv + along * footprint.major, level);
   }
-  return sum.cast<float>() / static_cast<float>(taps);
+  return sum / static_cast<float>(taps);
 }
 
-std::uint32_t Texture::trilinear(const Eigen::Vector2f& uv, float level) const {
-  const auto fine = static_cast<std::size_t>(level);
-  if (fine + 1 >= levels_.size()) return bilinear(levels_.back(), uv);
-  const auto weight = static_cast<std::uint32_t>((level - static_cast<float>(fine)) * 256);
-  const std::uint32_t color = bilinear(levels_[fine], uv);
-  return weight == 0 ? color : lerp(color, bilinear(levels_[fine + 1], uv), weight);
+Eigen::Vector3f Texture::trilinear(const Eigen::Vector2f& uv, float level) const {
+  constexpr float kNegligible = 0.06F;  // weight of the other level
+  const auto fine = std::min(static_cast<std::size_t>(level), levels_.size() - 1);
+  const std::size_t coarse = std::min(fine + 1, levels_.size() - 1);
+  const float weight = level - static_cast<float>(fine);
+  if (weight < kNegligible) return bilinear(levels_[fine], uv);
+  if (weight > 1 - kNegligible) return bilinear(levels_[coarse], uv);
+  return (1 - weight) * bilinear(levels_[fine], uv) + weight * bilinear(levels_[coarse], uv);
 }
 
-std::uint32_t Texture::bilinear(const Level& level, const Eigen::Vector2f& uv) const {
+Eigen::Vector3f Texture::bilinear(const Level& level, const Eigen::Vector2f& uv) const {
   // 24.8 fixed point; the half texel shift puts sample positions at texel centres.
   const int u =
       floor_to_int(uv.x() * periods_per_metre_.x() * static_cast<float>(256 * level.width)) - 128;
@@ -84,9 +85,15 @@ std::uint32_t Texture::bilinear(const Level& level, const Eigen::Vector2f& uv) c
   const int y1 = (y0 + 1) & (level.height - 1);
   const std::uint32_t* upper = level.texels.data() + static_cast<std::ptrdiff_t>(y0) * level.width;
   const std::uint32_t* lower = level.texels.data() + static_cast<std::ptrdiff_t>(y1) * level.width;
-  const auto wx = static_cast<std::uint32_t>(u & 255);
-  return lerp(lerp(upper[x0], upper[x1], wx), lerp(lower[x0], lower[x1], wx),
-              static_cast<std::uint32_t>(v & 255));
+  const auto right = static_cast<std::uint16_t>(u & 255);
+  const auto left = static_cast<std::uint16_t>(256 - right);
+  // At most 255 * 256: fits into 16 bits.
+  const TwoTexels rows =
+      widen(upper[x0], lower[x0]) * left + widen(upper[x1], lower[x1]) * right;
+  const float down = static_cast<float>(v & 255) / 65536;
+  const float up = 1.0F / 256 - down;
+  return {up * rows[0] + down * rows[4], up * rows[1] + down * rows[5],
+          up * rows[2] + down * rows[6]};
 }
 
 }  // namespace stillpoint::simulation

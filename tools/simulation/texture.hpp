@@ -33,8 +33,8 @@ class Texture {
     std::vector<std::uint32_t> texels;
   };
 
-  std::uint32_t trilinear(const Eigen::Vector2f& uv, float level) const;
-  std::uint32_t bilinear(const Level& level, const Eigen::Vector2f& uv) const;
+  Eigen::Vector3f trilinear(const Eigen::Vector2f& uv, float level) const;
+  Eigen::Vector3f bilinear(const Level& level, const Eigen::Vector2f& uv) const;
 
   std::vector<Level> levels_;
   Eigen::Vector2f periods_per_metre_;
