@@ -11,7 +11,9 @@ SimulationSource::SimulationSource(const Options& options, const StageContext& c
 std::optional<Frame> SimulationSource::next() {
   if (next_ >= simulator_.size()) return std::nullopt;
   const simulation::SimulatedFrame image = simulator_.frame(next_);
-  Frame frame{.index = static_cast<std::uint32_t>(next_++), .time = image.time, .bgr = image.bgr,
+  Frame frame{.index = static_cast<std::uint32_t>(next_++),
+              .time = image.time,
+              .bgr = image.bgr,
               .camera = camera_};
   cv::cvtColor(frame.bgr, frame.gray, cv::COLOR_BGR2GRAY);
   image.depth.convertTo(frame.depth, CV_32F, 1 / simulator_.camera().depth_factor);

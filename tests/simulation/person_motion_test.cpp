@@ -39,8 +39,9 @@ TEST(PersonMotion, SitsStillButGestures) {
   double reach = 0;
   for (double t = 0; t < 20; t += 0.1) {
     EXPECT_TRUE(motion(t)[kPelvis].isApprox(motion(0)[kPelvis], 1e-12));
-    reach = std::max(reach, (motion(t)[kLeftForearm].translation() -
-                             motion(0)[kLeftForearm].translation()).norm());
+    reach = std::max(
+        reach,
+        (motion(t)[kLeftForearm].translation() - motion(0)[kLeftForearm].translation()).norm());
   }
   EXPECT_GT(reach, 0.05);
   EXPECT_LT(reach, 0.6);
@@ -57,7 +58,8 @@ TEST(Ball, FliesFreelyBetweenTheHands) {
   const double h = 1e-3;
   const Eigen::Vector3d acceleration =
       (ball_position(options, 0.4 + h) - 2 * ball_position(options, 0.4) +
-       ball_position(options, 0.4 - h)) / (h * h);
+       ball_position(options, 0.4 - h)) /
+      (h * h);
   EXPECT_TRUE(acceleration.isApprox(Eigen::Vector3d(0, 0, -9.81), 1e-4));
 }
 

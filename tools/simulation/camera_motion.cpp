@@ -61,7 +61,8 @@ Pose CameraMotion::wanted(double t) const {
       return Eigen::Translation3d(e * Vector3d(0.42, 0.36, 0.46).cwiseProduct(shift)) * start;
     }
     case MotionOptions::Kind::kRpy: {
-      const Vector3d angle = e * Vector3d(0.42, 0.32, 0.44).cwiseProduct(one_after_the_other(t / 4.2));
+      const Vector3d angle =
+          e * Vector3d(0.42, 0.32, 0.44).cwiseProduct(one_after_the_other(t / 4.2));
       // Camera axes: z forward (roll), x right (pitch), y down (yaw).
       return start * Pose(Eigen::AngleAxisd(angle.z(), Vector3d::UnitY()) *
                           Eigen::AngleAxisd(angle.y(), Vector3d::UnitX()) *
@@ -105,8 +106,8 @@ Pose CameraMotion::trembling(double t) const {
                             -1 - axis - 6 * static_cast<int>(i));
       const double frequency = kBands[i].frequency * (0.8 + 0.4 * random.uniform(0));
       const double size = axis < 3 ? kBands[i].translation : kBands[i].rotation;
-      twist[axis] += options_.jitter * size *
-                     std::sin(2 * M_PI * (frequency * t + random.uniform(1)));
+      twist[axis] +=
+          options_.jitter * size * std::sin(2 * M_PI * (frequency * t + random.uniform(1)));
     }
   }
   return exp_se3(twist);

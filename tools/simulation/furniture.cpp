@@ -15,8 +15,7 @@ Furnisher::Furnisher(World& world, int seed)
       white_(texture(painter_.metal({512, 512}, {222, 224, 224}), 0.8F, 0.8F)),
       cloth_(texture(painter_.fabric({512, 512}, {120, 70, 50}, 0.2), 0.6F, 0.6F)) {}
 
-std::uint16_t Furnisher::texture(const cv::Mat& image, float width, float height,
-                                 float infrared) {
+std::uint16_t Furnisher::texture(const cv::Mat& image, float width, float height, float infrared) {
   return world_.add_texture({image, {width, height}, infrared});
 }
 
@@ -135,8 +134,8 @@ void Furnisher::plant(const Place& place) {
             .instance = world_.add_instance()};
   Skin pot = skin(texture(painter_.metal({256, 256}, {60, 85, 150}), 0.4F, 0.4F), kPottedPlant);
   pot.instance = leaf.instance;
-  upright(place,
-          {{{0, 0, 0}, 0.11F, 0.11F}, {{0, 0, 0.26F}, 0.15F, 0.15F}, {{0, 0, 0.26F}, 0, 0}}, pot);
+  upright(place, {{{0, 0, 0}, 0.11F, 0.11F}, {{0, 0, 0.26F}, 0.15F, 0.15F}, {{0, 0, 0.26F}, 0, 0}},
+          pot);
   for (int i = 0; i < 6; ++i) {
     const auto spread = [&] { return static_cast<float>(painter_.uniform(-18, 19)) * 0.01F; };
     const Vector3f centre(spread(), spread(), 0.5F + 0.1F * static_cast<float>(i));
@@ -148,16 +147,24 @@ void Furnisher::bottle(const Place& place) {
   Skin glass = skin(texture(painter_.poster({256, 256}), 0.22F, 0.25F, 0.6F), kBottle);
   glass.instance = world_.add_instance();
   upright(place,
-          {{{0, 0, 0}, 0, 0}, {{0, 0, 0}, 0.034F, 0.034F}, {{0, 0, 0.18F}, 0.034F, 0.034F},
-           {{0, 0, 0.23F}, 0.013F, 0.013F}, {{0, 0, 0.27F}, 0.013F, 0.013F}, {{0, 0, 0.27F}, 0, 0}},
+          {{{0, 0, 0}, 0, 0},
+           {{0, 0, 0}, 0.034F, 0.034F},
+           {{0, 0, 0.18F}, 0.034F, 0.034F},
+           {{0, 0, 0.23F}, 0.013F, 0.013F},
+           {{0, 0, 0.27F}, 0.013F, 0.013F},
+           {{0, 0, 0.27F}, 0, 0}},
           glass);
 }
 
 void Furnisher::mug(const Place& place) {
   const Skin china{.texture = texture(painter_.ball({256, 256}), 0.25F, 0.25F)};
   upright(place,
-          {{{0, 0, 0}, 0, 0}, {{0, 0, 0}, 0.04F, 0.04F}, {{0, 0, 0.1F}, 0.04F, 0.04F},
-           {{0, 0, 0.1F}, 0.034F, 0.034F}, {{0, 0, 0.02F}, 0.034F, 0.034F}, {{0, 0, 0.02F}, 0, 0}},
+          {{{0, 0, 0}, 0, 0},
+           {{0, 0, 0}, 0.04F, 0.04F},
+           {{0, 0, 0.1F}, 0.04F, 0.04F},
+           {{0, 0, 0.1F}, 0.034F, 0.034F},
+           {{0, 0, 0.02F}, 0.034F, 0.034F},
+           {{0, 0, 0.02F}, 0, 0}},
           china);
 }
 

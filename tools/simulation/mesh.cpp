@@ -18,8 +18,13 @@ void add_grid(Mesh& mesh, const std::vector<Corner>& corners, int columns, const
   const auto rows = static_cast<int>(corners.size()) / columns;
   for (const Corner& c : corners) mesh.vertices.push_back(c.position);
   const auto add = [&](int a, int b, int c) {
-    Face face{.normal = {}, .uv = {}, .tangent = {}, .texture = skin.texture,
-              .surface = mesh.surfaces, .label = skin.label, .instance = skin.instance,
+    Face face{.normal = {},
+              .uv = {},
+              .tangent = {},
+              .texture = skin.texture,
+              .surface = mesh.surfaces,
+              .label = skin.label,
+              .instance = skin.instance,
               .glows = skin.glows};
     const std::array<int, 3> ids = {a, b, c};
     for (std::size_t i = 0; i < 3; ++i) {
@@ -84,8 +89,8 @@ void add_panel(Mesh& mesh, const Eigen::Vector3f& top_left, const Eigen::Vector3
   add_grid(mesh, corners, columns, skin);
 }
 
-void add_box(Mesh& mesh, const Eigen::Affine3f& pose, const Eigen::Vector3f& size,
-             const Skin& skin, float cell) {
+void add_box(Mesh& mesh, const Eigen::Affine3f& pose, const Eigen::Vector3f& size, const Skin& skin,
+             float cell) {
   const Eigen::Vector3f h = 0.5F * size;
   const auto panel = [&](const Eigen::Vector3f& a, const Eigen::Vector3f& right,
                          const Eigen::Vector3f& down) {
@@ -94,12 +99,12 @@ void add_box(Mesh& mesh, const Eigen::Affine3f& pose, const Eigen::Vector3f& siz
   const Eigen::Vector3f x(size.x(), 0, 0);
   const Eigen::Vector3f y(0, size.y(), 0);
   const Eigen::Vector3f z(0, 0, size.z());
-  panel({-h.x(), -h.y(), h.z()}, x, -z);   // front, towards -y
-  panel({h.x(), h.y(), h.z()}, -x, -z);    // back
-  panel({-h.x(), h.y(), h.z()}, -y, -z);   // left, towards -x
-  panel({h.x(), -h.y(), h.z()}, y, -z);    // right
-  panel({-h.x(), h.y(), h.z()}, x, -y);    // top
-  panel({-h.x(), -h.y(), -h.z()}, x, y);   // bottom
+  panel({-h.x(), -h.y(), h.z()}, x, -z);  // front, towards -y
+  panel({h.x(), h.y(), h.z()}, -x, -z);   // back
+  panel({-h.x(), h.y(), h.z()}, -y, -z);  // left, towards -x
+  panel({h.x(), -h.y(), h.z()}, y, -z);   // right
+  panel({-h.x(), h.y(), h.z()}, x, -y);   // top
+  panel({-h.x(), -h.y(), -h.z()}, x, y);  // bottom
 }
 
 void add_loft(Mesh& mesh, const Eigen::Affine3f& pose, const std::vector<Ring>& rings,
@@ -134,11 +139,11 @@ std::vector<Ring> ellipsoid(const Eigen::Vector3f& centre, const Eigen::Vector3f
                             int count) {
   std::vector<Ring> rings;
   for (int i = 0; i < count; ++i) {
-    const float angle = static_cast<float>(M_PI) * static_cast<float>(i) /
-                        static_cast<float>(count - 1);
+    const float angle =
+        static_cast<float>(M_PI) * static_cast<float>(i) / static_cast<float>(count - 1);
     const float sine = i == 0 || i == count - 1 ? 0 : std::sin(angle);
-    rings.push_back({centre - Eigen::Vector3f(0, 0, radii.z() * std::cos(angle)),
-                     radii.x() * sine, radii.y() * sine});
+    rings.push_back({centre - Eigen::Vector3f(0, 0, radii.z() * std::cos(angle)), radii.x() * sine,
+                     radii.y() * sine});
   }
   return rings;
 }

@@ -32,10 +32,10 @@ struct Skin {
 
 /// One triangle, with everything that shading needs close together in memory.
 struct Face {
-  std::array<Eigen::Vector3f, 3> normal;  ///< at the corners, unit length
-  std::array<Eigen::Vector2f, 3> uv;      ///< at the corners, metres on the texture
+  std::array<Eigen::Vector3f, 3> normal;   ///< at the corners, unit length
+  std::array<Eigen::Vector2f, 3> uv;       ///< at the corners, metres on the texture
   std::array<float, 3> light = {1, 1, 1};  ///< at the corners, baked for what does not move
-  Eigen::Vector3f tangent;                ///< direction of growing u
+  Eigen::Vector3f tangent;                 ///< direction of growing u
   std::uint16_t texture = 0;
   std::uint16_t surface = 0;  ///< same for all faces of one smooth shape
   std::uint8_t label = 0;
@@ -56,8 +56,8 @@ void add_panel(Mesh& mesh, const Eigen::Vector3f& top_left, const Eigen::Vector3
                const Eigen::Vector3f& down, const Skin& skin, float cell = 0.2F);
 
 /// A box of `size` metres, centred on the origin of `pose`.
-void add_box(Mesh& mesh, const Eigen::Affine3f& pose, const Eigen::Vector3f& size,
-             const Skin& skin, float cell = 0.2F);
+void add_box(Mesh& mesh, const Eigen::Affine3f& pose, const Eigen::Vector3f& size, const Skin& skin,
+             float cell = 0.2F);
 
 /// Cross-section of a loft: an ellipse around `centre`, parallel to the x-y plane of its pose.
 struct Ring {

@@ -20,8 +20,7 @@ cv::Mat Painter::noise(cv::Size size, cv::Size coarsest_cells, int octaves, doub
     const double fx = static_cast<double>(size.width) / cells.width;
     const double fy = static_cast<double>(size.height) / cells.height;
     cv::Mat fine;
-    cv::resize(padded, fine,
-               cv::Size(cvRound(padded.cols * fx), cvRound(padded.rows * fy)), 0, 0,
+    cv::resize(padded, fine, cv::Size(cvRound(padded.cols * fx), cvRound(padded.rows * fy)), 0, 0,
                cv::INTER_CUBIC);
     sum += amplitude * fine(cv::Rect({cvRound(kPad * fx), cvRound(kPad * fy)}, size));
   }
@@ -149,8 +148,8 @@ cv::Mat Painter::whiteboard(cv::Size size) {
     const cv::Scalar pen = pens[static_cast<std::size_t>(uniform(0, 4))];
     const cv::Point at(uniform(20, size.width - 200), uniform(20, size.height - 150));
     if (i % 3 == 0) {
-      cv::ellipse(image, at + cv::Point(80, 60), {uniform(30, 90), uniform(20, 60)}, 0, 0, 360,
-                  pen, 3, cv::LINE_AA);
+      cv::ellipse(image, at + cv::Point(80, 60), {uniform(30, 90), uniform(20, 60)}, 0, 0, 360, pen,
+                  3, cv::LINE_AA);
     } else if (i % 3 == 1) {
       write_lines(image, {at.x, at.y, uniform(120, 300), uniform(40, 120)}, uniform(14, 26), pen);
     } else {
@@ -219,8 +218,8 @@ cv::Mat Painter::cardboard(cv::Size size) {
                 cv::FILLED);
   write_lines(image, {size.width / 12, size.height / 10, size.width / 2, size.height / 4},
               size.height / 14.0, {40, 60, 80});
-  picture(image(cv::Rect(size.width * 6 / 10, size.height * 6 / 10, size.width / 4,
-                         size.height / 4)));
+  picture(
+      image(cv::Rect(size.width * 6 / 10, size.height * 6 / 10, size.width / 4, size.height / 4)));
   return image;
 }
 

@@ -36,8 +36,8 @@ Clothes dress(World& world, const PersonOptions& options) {
   };
   const double dark = painter.uniform(40, 110);
   return {.shirt = worn(shirt, {0.6F, 0.6F}),
-          .trousers = worn(painter.fabric({512, 512}, {dark * 1.3, dark, dark * 0.8}, 0.22),
-                           {0.6F, 0.6F}),
+          .trousers =
+              worn(painter.fabric({512, 512}, {dark * 1.3, dark, dark * 0.8}, 0.22), {0.6F, 0.6F}),
           // As large as the skin over the head: see ellipsoid() in body_mesh.
           .face = worn(painter.face({512, 512}), {0.69F, 0.345F}),
           .arms = worn(painter.fabric({256, 256}, {120, 150, 205}, 0.06), {0.3F, 0.3F}),
@@ -45,9 +45,7 @@ Clothes dress(World& world, const PersonOptions& options) {
 }
 
 void add_torso(Mesh& mesh, float h, const Skin& skin) {
-  const auto ring = [&](float z, float x, float y) {
-    return Ring{{0, 0, z * h}, x * h, y * h};
-  };
+  const auto ring = [&](float z, float x, float y) { return Ring{{0, 0, z * h}, x * h, y * h}; };
   add_loft(mesh, Affine3f::Identity(),
            {ring(-0.03F, 0, 0), ring(-0.03F, 0.062F, 0.092F), ring(0.04F, 0.060F, 0.086F),
             ring(0.12F, 0.062F, 0.090F), ring(0.19F, 0.067F, 0.102F), ring(0.235F, 0.062F, 0.112F),
@@ -70,14 +68,12 @@ void add_foot(Mesh& mesh, float h, const Skin& skin) {
 Mesh part_mesh(int part, float h, const Clothes& clothes) {
   Mesh mesh;
   const Affine3f origin = Affine3f::Identity();
-  const auto add_limb = [&](float length, float top, float middle, float bottom,
-                            const Skin& skin) {
+  const auto add_limb = [&](float length, float top, float middle, float bottom, const Skin& skin) {
     add_loft(mesh, origin, limb(length * h, top * h, middle * h, bottom * h), skin);
   };
   switch (part) {
     case kPelvis:
-      add_loft(mesh, origin,
-               ellipsoid({0, 0, 0.005F * h}, {0.066F * h, 0.097F * h, 0.062F * h}),
+      add_loft(mesh, origin, ellipsoid({0, 0, 0.005F * h}, {0.066F * h, 0.097F * h, 0.062F * h}),
                clothes.trousers, 24);
       break;
     case kTorso:
@@ -108,8 +104,7 @@ Mesh part_mesh(int part, float h, const Clothes& clothes) {
     case kRightForearm: {
       add_limb(0.146F, 0.025F, 0.024F, 0.018F, clothes.arms);
       const Affine3f hand = Translation3f(0, 0, -0.19F * h) * Affine3f::Identity();
-      add_loft(mesh, hand, ellipsoid({0, 0, 0}, {0.022F * h, 0.013F * h, 0.05F * h}),
-               clothes.arms);
+      add_loft(mesh, hand, ellipsoid({0, 0, 0}, {0.022F * h, 0.013F * h, 0.05F * h}), clothes.arms);
       break;
     }
     default:
@@ -119,9 +114,8 @@ Mesh part_mesh(int part, float h, const Clothes& clothes) {
 }
 
 Mesh box_mesh(World& world) {
-  const Skin skin{
-      .texture = world.add_texture({Painter(77).cardboard({512, 512}), {0.42F, 0.30F}}),
-      .instance = world.add_instance()};
+  const Skin skin{.texture = world.add_texture({Painter(77).cardboard({512, 512}), {0.42F, 0.30F}}),
+                  .instance = world.add_instance()};
   Mesh mesh;
   add_box(mesh, Affine3f::Identity(), {0.30F, 0.42F, 0.30F}, skin);
   return mesh;
@@ -130,8 +124,8 @@ Mesh box_mesh(World& world) {
 }  // namespace
 
 void add_person(World& world, const PersonOptions& options) {
-  const auto motion = std::make_shared<const std::function<PersonPose(double)>>(
-      person_motion(options));
+  const auto motion =
+      std::make_shared<const std::function<PersonPose(double)>>(person_motion(options));
   const Clothes clothes = dress(world, options);
   for (int part = 0; part < kPersonParts; ++part) {
     if (part == kCarriedBox && !options.carries_box) continue;

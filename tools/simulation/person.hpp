@@ -9,9 +9,19 @@
 namespace stillpoint::simulation {
 
 enum PersonPart {
-  kPelvis, kTorso, kHead,
-  kLeftThigh, kLeftShin, kLeftFoot, kRightThigh, kRightShin, kRightFoot,
-  kLeftUpperArm, kLeftForearm, kRightUpperArm, kRightForearm,
+  kPelvis,
+  kTorso,
+  kHead,
+  kLeftThigh,
+  kLeftShin,
+  kLeftFoot,
+  kRightThigh,
+  kRightShin,
+  kRightFoot,
+  kLeftUpperArm,
+  kLeftForearm,
+  kRightUpperArm,
+  kRightForearm,
   kCarriedBox,
   kPersonParts
 };

@@ -45,8 +45,7 @@ PersonPose assemble(const Joints& joints, const Affine3d& world_from_person, dou
     const double sign = side == 0 ? 1 : -1;
     const std::size_t leg = side == 0 ? kLeftThigh : kRightThigh;
     pose[leg] = pelvis * Translation3d(0, sign * 0.052 * height, 0) * flexion(joints.hip[side]);
-    pose[leg + 1] =
-        pose[leg] * Translation3d(0, 0, -0.245 * height) * flexion(-joints.knee[side]);
+    pose[leg + 1] = pose[leg] * Translation3d(0, 0, -0.245 * height) * flexion(-joints.knee[side]);
     pose[leg + 2] = pose[leg + 1] * Translation3d(0, 0, -0.246 * height) *
                     flexion(joints.knee[side] - joints.hip[side] + joints.foot[side]);
     const std::size_t arm = side == 0 ? kLeftUpperArm : kRightUpperArm;
@@ -126,12 +125,12 @@ std::function<PersonPose(double time)> person_motion(const PersonOptions& option
   }
   const auto path = std::make_shared<const WalkingPath>(options.path);
   return [=](double time) {
-    constexpr double kHaste = 0.5;                  // share by which the speed varies
+    constexpr double kHaste = 0.5;                 // share by which the speed varies
     constexpr double kFrequency = 2 * M_PI / 7.0;  // of that variation, rad/s
     const double way =
         options.start +
-        options.speed * (time - kHaste / kFrequency * (std::cos(kFrequency * time + rhythm) -
-                                                       std::cos(rhythm)));
+        options.speed * (time - kHaste / kFrequency *
+                                    (std::cos(kFrequency * time + rhythm) - std::cos(rhythm)));
     const double stride = 0.74 * options.height;  // metres, two steps
     const double phase = 2 * M_PI * way / stride;
     return assemble(walking(phase, options.height, options.carries_box),

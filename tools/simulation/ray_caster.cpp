@@ -9,8 +9,8 @@
 namespace stillpoint::simulation {
 namespace {
 
-constexpr unsigned kRoomId = 0;      // of the top scene's instances; bodies follow
-constexpr unsigned kTimeSteps = 3;   // begin, middle, end: the middle is exact
+constexpr unsigned kRoomId = 0;     // of the top scene's instances; bodies follow
+constexpr unsigned kTimeSteps = 3;  // begin, middle, end: the middle is exact
 constexpr float kNear = 0.02F;
 
 template <auto Release>

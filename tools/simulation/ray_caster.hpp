@@ -19,11 +19,11 @@ struct RayPacket {
 };
 
 struct Hit {
-  float distance = 0;       ///< multiples of the direction; 0 = nothing there
-  std::int32_t body = -1;   ///< index into World::bodies; -1 = the room
-  std::uint32_t face = 0;   ///< of the mesh
-  float u = 0;              ///< weight of the face's second corner
-  float v = 0;              ///< weight of the face's third corner
+  float distance = 0;      ///< multiples of the direction; 0 = nothing there
+  std::int32_t body = -1;  ///< index into World::bodies; -1 = the room
+  std::uint32_t face = 0;  ///< of the mesh
+  float u = 0;             ///< weight of the face's second corner
+  float v = 0;             ///< weight of the face's third corner
 };
 
 /// The world must outlive the caster. Casting is const and may be done by several threads.
@@ -43,8 +43,7 @@ class RayCaster {
             std::span<Hit, kPacket> hits) const;
 
   /// Whether something is nearer than `reach` along a unit vector, at moment 0.
-  bool occluded(const Eigen::Vector3f& origin, const Eigen::Vector3f& direction,
-                float reach) const;
+  bool occluded(const Eigen::Vector3f& origin, const Eigen::Vector3f& direction, float reach) const;
 
  private:
   class Impl;

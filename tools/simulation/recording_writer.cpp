@@ -74,15 +74,16 @@ void RecordingWriter::write(const SimulatedFrame& frame) {
   colors_ << color << '\n';
   depths_ << depth << '\n';
   associations_ << color << ' ' << depth << '\n';
-  if (!colors_ || !depths_ || !associations_)
+  // Flushed, so that what an interrupted run has written is a recording.
+  if (!colors_.flush() || !depths_.flush() || !associations_.flush())
     throw Error(Fault::kUsage, "cannot write the lists of images", folder_.string(),
                 "is the disk full?");
 }
 
 void RecordingWriter::write_ground_truth(const Simulator& simulator, int frames) {
   constexpr double kRate = 100;  // Hz
-  std::ofstream file = open("groundtruth.txt",
-                            "# ground truth trajectory\n# timestamp tx ty tz qx qy qz qw\n");
+  std::ofstream file =
+      open("groundtruth.txt", "# ground truth trajectory\n# timestamp tx ty tz qx qy qz qw\n");
   const auto first = static_cast<long>(std::floor(simulator.stamp(0) * kRate)) - 5;
   const auto last = static_cast<long>(std::ceil(simulator.stamp(frames - 1) * kRate)) + 5;
   for (long i = first; i <= last; ++i) {

@@ -15,8 +15,8 @@ using Eigen::Vector3f;
 
 constexpr int kPacketWidth = 4;  // px
 constexpr int kPacketHeight = 2;
-constexpr int kFew = 4;    // samples at an edge
-constexpr int kMany = 8;   // samples at a fast edge; the most anywhere
+constexpr int kFew = 4;   // samples at an edge
+constexpr int kMany = 8;  // samples at a fast edge; the most anywhere
 
 /// Columns and rows of the samples of an edge pixel in a grid of kFew or kMany: each is used once,
 /// so that the mean stays at the pixel's centre, and in an order that has nothing to do with time.
@@ -69,12 +69,15 @@ struct Renderer::Job {
   Eye middle;
   Eye begin;
   Eye end;
-  std::array<std::vector<Eye>, kMany + 1> eyes;  // [n]: n moments, evenly spread
+  std::array<std::vector<Eye>, kMany + 1> eyes;    // [n]: n moments, evenly spread
   std::vector<Eigen::Affine3d> begin_from_middle;  // per body, of points in the world
   std::vector<Eigen::Affine3d> end_from_middle;
 
   Job(const Renderer& r, double t, double e, bool with_color)
-      : renderer(r), time(t), exposure(e), colored(with_color),
+      : renderer(r),
+        time(t),
+        exposure(e),
+        colored(with_color),
         shader(r.world_, t, static_cast<float>(1 / r.camera_.fx)) {
     const cv::Size size(r.camera_.width, r.camera_.height);
     if (colored) view.color.create(size, CV_32FC3);
@@ -106,8 +109,7 @@ struct Renderer::Job {
     for (int i = 0; i < kPacket; ++i) {
       const auto k = static_cast<std::size_t>(i);
       pixels.x[k] = std::min(column * kPacketWidth + i % kPacketWidth, renderer.camera_.width - 1);
-      pixels.y[k] =
-          std::min(row * kPacketHeight + i / kPacketWidth, renderer.camera_.height - 1);
+      pixels.y[k] = std::min(row * kPacketHeight + i / kPacketWidth, renderer.camera_.height - 1);
     }
     return pixels;
   }
@@ -155,7 +157,8 @@ struct Renderer::Job {
       cast(pixels, middle, 0, 0, directions, hits);
       float& moved = motion.at<float>(row, column);
       if (colored && exposure > 0)
-        moved = std::max(image_motion(hits[0], directions[0]), image_motion(hits[7], directions[7]));
+        moved =
+            std::max(image_motion(hits[0], directions[0]), image_motion(hits[7], directions[7]));
       for (std::size_t i = 0; i < kPacket; ++i)
         keep(hits[i], directions[i], pixels.x[i], pixels.y[i], colored && moved <= 1);
     }
@@ -175,8 +178,8 @@ struct Renderer::Job {
     view.labels.at<std::uint8_t>(y, x) = face.label;
     view.instances.at<std::uint8_t>(y, x) = face.instance;
     surfaces.at<int>(y, x) = static_cast<int>(surface_key(hit, face));
-    view.infrared.at<float>(y, x) = shader.cosine(hit, direction) *
-                                    renderer.world_.textures[face.texture].infrared();
+    view.infrared.at<float>(y, x) =
+        shader.cosine(hit, direction) * renderer.world_.textures[face.texture].infrared();
     if (with_color) set_color(x, y, shader.shade(hit, direction));
   }
 

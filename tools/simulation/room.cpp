@@ -29,8 +29,8 @@ void add_shell(World& world, Painter& painter) {
     const cv::Mat image = painter.plaster({2048, 1024}, color, 0.035);
     return Skin{.texture = world.add_texture({image, {6.0F, 3.0F}})};
   };
-  const Skin floor{
-      .texture = world.add_texture({painter.carpet({2048, 2048}), {3.5F, 3.5F}, 0.9F})};
+  const Skin floor{.texture =
+                       world.add_texture({painter.carpet({2048, 2048}), {3.5F, 3.5F}, 0.9F})};
   const Skin ceiling{.texture = world.add_texture({painter.ceiling({512, 512}), {0.6F, 0.6F}})};
   const Skin pale = wall({205, 212, 214});
   const Skin grey = wall({176, 172, 165});
@@ -50,8 +50,7 @@ void add_lamps(World& world) {
     for (const float y : {-2.2F, 0.2F, 2.6F}) {
       const Lamp lamp{{x, y, kHeight - 0.03F}, {0.25F, 1.2F}};
       world.lamps.push_back(lamp);
-      add_panel(world.room,
-                lamp.centre - Vector3f(lamp.size.x() / 2, lamp.size.y() / 2, 0),
+      add_panel(world.room, lamp.centre - Vector3f(lamp.size.x() / 2, lamp.size.y() / 2, 0),
                 {lamp.size.x(), 0, 0}, {0, lamp.size.y(), 0}, tube);
     }
   }

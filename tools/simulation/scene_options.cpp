@@ -46,7 +46,9 @@ void SensorOptions::visit(OptionVisitor& v) {
   v("depth_offset", depth_offset,
     {.min = -0.1, .max = 0.1, .unit = "s", .help = "time of depth after colour"});
   v("depth_offset_drift", depth_offset_drift,
-    {.min = -0.01, .max = 0.01, .unit = "s/s",
+    {.min = -0.01,
+     .max = 0.01,
+     .unit = "s/s",
      .help = "growth of depth_offset; rolls over at half a frame"});
   v.require(min_range < max_range, "min_range must be smaller than max_range");
 }

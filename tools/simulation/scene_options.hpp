@@ -21,18 +21,18 @@ struct MotionOptions {
   enum class Kind { kStatic, kXyz, kRpy, kHalfsphere, kLoop } kind = Kind::kXyz;
   std::vector<double> position = {-0.1, -1.75, 1.4};  ///< metres, centre of the motion
   std::vector<double> look_at = {0.05, 1.2, 0.85};    ///< metres
-  double extent = 1.0;  ///< scales the size of the motion
-  double speed = 1.0;   ///< scales its rate
-  double jitter = 1.0;  ///< scales the trembling of the hand
+  double extent = 1.0;                                ///< scales the size of the motion
+  double speed = 1.0;                                 ///< scales its rate
+  double jitter = 1.0;                                ///< scales the trembling of the hand
 
   void visit(OptionVisitor& v);
 };
 
 struct SensorOptions {
-  bool ideal = false;  ///< geometry and colours as they are: no noise, no blur, no holes
-  double exposure = 0.008;          ///< s
-  double exposure_drift = 0.05;     ///< relative amplitude
-  double color_noise = 0.9;         ///< grey levels, standard deviation at middle grey
+  bool ideal = false;            ///< geometry and colours as they are: no noise, no blur, no holes
+  double exposure = 0.008;       ///< s
+  double exposure_drift = 0.05;  ///< relative amplitude
+  double color_noise = 0.9;      ///< grey levels, standard deviation at middle grey
   double disparity_noise = 0.055;   ///< px, standard deviation
   double disparity_step = 0.125;    ///< px
   double baseline_focal = 43.5;     ///< px·m: baseline times focal length of the infrared camera
@@ -47,10 +47,10 @@ struct SensorOptions {
 struct PersonOptions {
   enum class Pose { kWalk, kSit } pose = Pose::kWalk;
   std::vector<double> path = {-2, 0, 2, 0, 2, 0.6, -2, 0.6};  ///< x, y, x, y, … of a closed walk
-  double speed = 0.9;       ///< m/s, mean
-  double start = 0.0;       ///< metres along the path at the first frame
-  double heading = 0.0;     ///< degrees from +x towards +y, of who sits
-  double height = 1.76;     ///< m
+  double speed = 0.9;                                         ///< m/s, mean
+  double start = 0.0;    ///< metres along the path at the first frame
+  double heading = 0.0;  ///< degrees from +x towards +y, of who sits
+  double height = 1.76;  ///< m
   std::string shirt = "plaid";
   bool carries_box = false;
   int seed = 1;  ///< of rhythm and clothes

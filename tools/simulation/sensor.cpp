@@ -73,9 +73,9 @@ class LatticeNoise {
 float Sensor::gain(double time) const {
   const RowNoise random(seed_, 0, Stream::kColor, -1);
   const double phase = 2 * M_PI * random.uniform(0);
-  return static_cast<float>(1 + options_.exposure_drift *
-                                    (0.7 * std::sin(0.35 * time + phase) +
-                                     0.3 * std::sin(1.13 * time + 2 * phase)));
+  return static_cast<float>(
+      1 + options_.exposure_drift *
+              (0.7 * std::sin(0.35 * time + phase) + 0.3 * std::sin(1.13 * time + 2 * phase)));
 }
 
 cv::Mat Sensor::color_image(const View& view, int frame, double time) const {
@@ -150,10 +150,10 @@ void Sensor::measure_row(const View& view, int frame, int y, std::uint16_t* out)
     const float lattice = shared.at(x);
     if (shadow[static_cast<std::size_t>(x)]) continue;
     const std::uint32_t bits = jitter.bits(x);
-    const int from_x = std::clamp(
-        x + round_to_int(kWander * normal_from_bits(bits)), 0, depth.cols - 1);
-    const int from_y = std::clamp(
-        y + round_to_int(kWander * normal_from_bits(mix(bits))), 0, depth.rows - 1);
+    const int from_x =
+        std::clamp(x + round_to_int(kWander * normal_from_bits(bits)), 0, depth.cols - 1);
+    const int from_y =
+        std::clamp(y + round_to_int(kWander * normal_from_bits(mix(bits))), 0, depth.rows - 1);
     const float here = depth.at<float>(y, x);
     float z = depth.at<float>(from_y, from_x);
     // Sub-pixel wander matters at edges only; on a surface it would add noise of its own.

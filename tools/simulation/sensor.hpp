@@ -9,7 +9,9 @@ namespace stillpoint::simulation {
 class Sensor {
  public:
   Sensor(const SensorOptions& options, int seed, double depth_factor, int threads)
-      : options_(options), seed_(static_cast<std::uint32_t>(seed)), depth_factor_(depth_factor),
+      : options_(options),
+        seed_(static_cast<std::uint32_t>(seed)),
+        depth_factor_(depth_factor),
         threads_(threads) {}
 
   /// CV_8UC3, BGR. `time` in seconds from the first frame.

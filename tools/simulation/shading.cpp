@@ -50,10 +50,9 @@ Vector3f Shader::shade(const Hit& hit, const Vector3f& direction) const {
   if (length > 1e-6F)
     footprint.major = along_uv * (0.5F * size / std::max(cosine, kGrazing) / length);
 
-  const float light = f.glows ? 1.0F
-                      : hit.body < 0
-                          ? w * f.light[0] + hit.u * f.light[1] + hit.v * f.light[2]
-                          : light_on_body(n);
+  const float light = f.glows        ? 1.0F
+                      : hit.body < 0 ? w * f.light[0] + hit.u * f.light[1] + hit.v * f.light[2]
+                                     : light_on_body(n);
   return world_.textures[f.texture].sample(uv, footprint) * light;
 }
 

@@ -23,7 +23,11 @@ CameraModel checked(const CameraModel& camera) {
 }  // namespace
 
 CameraModel default_camera() {
-  return {.name = "simulated", .fx = 535.4, .fy = 539.2, .cx = 320.1, .cy = 247.6,
+  return {.name = "simulated",
+          .fx = 535.4,
+          .fy = 539.2,
+          .cx = 320.1,
+          .cy = 247.6,
           .depth_noise = 0.0016};
 }
 

@@ -13,10 +13,10 @@ struct SimulatedFrame {
   double time = 0;        ///< s, of the colour image: middle of its exposure, whole microseconds
   double depth_time = 0;  ///< s, of the depth image
   Pose world_from_camera = Pose::Identity();  ///< at `time`
-  cv::Mat bgr;        ///< CV_8UC3
-  cv::Mat depth;      ///< CV_16UC1, 0 = no measurement
-  cv::Mat labels;     ///< CV_8UC1, PASCAL VOC, of the colour image
-  cv::Mat instances;  ///< CV_8UC1, of the colour image, 0 = none
+  cv::Mat bgr;                                ///< CV_8UC3
+  cv::Mat depth;                              ///< CV_16UC1, 0 = no measurement
+  cv::Mat labels;                             ///< CV_8UC1, PASCAL VOC, of the colour image
+  cv::Mat instances;                          ///< CV_8UC1, of the colour image, 0 = none
 };
 
 /// Two simulators of the same options give the same bytes, whatever their number of threads and

@@ -88,8 +88,7 @@ Eigen::Vector3f Texture::bilinear(const Level& level, const Eigen::Vector2f& uv)
   const auto right = static_cast<std::uint16_t>(u & 255);
   const auto left = static_cast<std::uint16_t>(256 - right);
   // At most 255 * 256: fits into 16 bits.
-  const TwoTexels rows =
-      widen(upper[x0], lower[x0]) * left + widen(upper[x1], lower[x1]) * right;
+  const TwoTexels rows = widen(upper[x0], lower[x0]) * left + widen(upper[x1], lower[x1]) * right;
   const float down = static_cast<float>(v & 255) / 65536;
   const float up = 1.0F / 256 - down;
   return {up * rows[0] + down * rows[4], up * rows[1] + down * rows[5],

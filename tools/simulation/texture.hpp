@@ -1,5 +1,5 @@
-// A picture on a surface, filtered by the size of a pixel on that surface (mip levels), so that fine
-// detail neither aliases nor shimmers when the camera moves.
+// A picture on a surface, filtered by the size of a pixel on that surface (mip levels), so that
+// fine detail neither aliases nor shimmers when the camera moves.
 #pragma once
 
 #include <Eigen/Core>

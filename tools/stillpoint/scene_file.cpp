@@ -18,7 +18,8 @@ void check_sections(const ConfigNode& tree, const std::string& file, FaultList& 
   if (!source && faults.empty())
     faults.add({file, 1, 1}, "has no source section, as in 'source: {type: simulation}'");
   if (type && type->scalar != "simulation")
-    faults.add(type->location, "source.type of a scene is 'simulation', not '" + type->scalar + "'");
+    faults.add(type->location,
+               "source.type of a scene is 'simulation', not '" + type->scalar + "'");
 }
 
 template <OptionGroup T>
