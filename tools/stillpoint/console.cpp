@@ -1,5 +1,6 @@
 #include "console.hpp"
 
+#include <sys/ioctl.h>
 #include <unistd.h>
 
 #include <iostream>
@@ -12,6 +13,11 @@ constexpr const char* kClearLine = "\r\033[K";
 }  // namespace
 
 Console::Console() : is_terminal_(isatty(STDERR_FILENO) == 1) {}
+
+int Console::columns() const {
+  winsize size{};
+  return ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : 80;
+}
 
 void Console::line(const std::string& text) {
   const std::lock_guard lock(mutex_);

@@ -12,6 +12,8 @@ class Console {
   Console();
 
   bool is_terminal() const { return is_terminal_; }
+  /// Of the terminal as it is now: a status line must not be longer.
+  int columns() const;
   void line(const std::string& text);
   /// Replaces the status line; empty: removes it. Does nothing without a terminal.
   void status(const std::string& text);

@@ -9,13 +9,16 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr int kBarWidth = 30;
+constexpr int kLargestBar = 30;
 
-std::string bar(double share) {
-  const int full = static_cast<int>(share * kBarWidth + 0.5);
-  std::string text;
-  for (int i = 0; i < kBarWidth; ++i) text += i < full ? "█" : "░";
-  return text;
+// The text, cut to the width of the terminal, behind as much of a bar as has room.
+std::string with_bar(double share, const std::string& text, int columns) {
+  const int room = columns - 3 - static_cast<int>(text.size());
+  const int width = std::clamp(room, 0, kLargestBar);
+  const int full = static_cast<int>(share * width + 0.5);
+  std::string line;
+  for (int i = 0; i < width; ++i) line += i < full ? "█" : "░";
+  return line + "  " + text.substr(0, static_cast<std::size_t>(std::max(0, columns - 3)));
 }
 
 std::string minutes(double seconds) {
@@ -55,7 +58,7 @@ void Progress::frame(const FrameReport& report) {
   if (!console_.is_terminal())
     console_.line(text);
   else
-    console_.status(frames_ ? bar(share()) + "  " + text : text);
+    console_.status(with_bar(share(), text, console_.columns()));
 }
 
 bool Progress::due(Clock::time_point now) const {

@@ -31,6 +31,7 @@ FrameFeed::FrameFeed(Stage<Source> source, const RuntimeOptions& options, PaceCl
     : pace_(options.pace),
       clock_(clock),
       stop_(stop),
+      times_(times),
       source_(std::move(source), "source", times),
       queue_(kFramesAhead) {
   if (options.mode == Mode::kThreaded || pace_ == RuntimeOptions::Pace::kSensor)
@@ -54,8 +55,12 @@ FramePtr FrameFeed::next() {
 }
 
 FramePtr FrameFeed::read() {
-  std::optional<Frame> frame = source_.call("source", frames_read_, &Source::next);
-  if (!frame) return nullptr;
+  ScopedTime time(times_, "source", frames_read_);
+  std::optional<Frame> frame = source_.call_unmeasured(frames_read_, &Source::next);
+  if (!frame) {
+    time.discard();  // the end is no frame
+    return nullptr;
+  }
   ++frames_read_;
   return std::make_shared<const Frame>(std::move(*frame));
 }

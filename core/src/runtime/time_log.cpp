@@ -32,6 +32,7 @@ ScopedTime::ScopedTime(TimeLog& log, const char* stage, std::uint32_t frame)
       cpu_start_(thread_cpu_seconds()) {}
 
 ScopedTime::~ScopedTime() {
+  if (discarded_) return;
   const std::chrono::duration<double, std::milli> wall =
       std::chrono::steady_clock::now() - wall_start_;
   log_.add({stage_, wall.count(), 1e3 * (thread_cpu_seconds() - cpu_start_), frame_});

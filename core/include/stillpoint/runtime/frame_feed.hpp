@@ -41,6 +41,7 @@ class FrameFeed {
   const RuntimeOptions::Pace pace_;
   PaceClock& clock_;
   StopSignal& stop_;
+  TimeLog& times_;
   StageCaller<Source> source_;
   std::uint32_t frames_read_ = 0;
   std::size_t dropped_ = 0;

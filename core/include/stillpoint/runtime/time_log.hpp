@@ -21,7 +21,8 @@ class TimeLog {
   std::vector<StageTime> times_;  // guarded by mutex_
 };
 
-/// Adds the time from its construction to its end. Both must be on the same thread.
+/// Adds the time from its construction to its end, unless discarded. Both must be on the same
+/// thread.
 class ScopedTime {
  public:
   ScopedTime(TimeLog& log, const char* stage, std::uint32_t frame);
@@ -29,12 +30,15 @@ class ScopedTime {
   ScopedTime(const ScopedTime&) = delete;
   ScopedTime& operator=(const ScopedTime&) = delete;
 
+  void discard() { discarded_ = true; }
+
  private:
   TimeLog& log_;
   const char* stage_;
   std::uint32_t frame_;
   std::chrono::steady_clock::time_point wall_start_;
   double cpu_start_;  // seconds
+  bool discarded_ = false;
 };
 
 double thread_cpu_seconds();   ///< processor time of the calling thread
