@@ -13,14 +13,15 @@ constexpr int kMaxDistance = 70;      // Hamming
 constexpr double kRansacPixels = 5;   // reprojection error of an inlier
 constexpr int kRansacIterations = 200;
 constexpr double kWindow = 10;        // px, of the guided search
+constexpr int kLevels = 2;            // of the pyramid, up and down, of the guided search
 
 // Perspective-n-point with RANSAC; OpenCV seeds it with a constant, so it repeats exactly.
-std::optional<Pose> camera_from_world(const ObservedFrame& frame, std::span<const Match> matches,
-                                      const SparseMap& map) {
+std::optional<Pose> camera_from_world(const ObservedFrame& frame, std::span<const Target> targets,
+                                      std::span<const Match> matches) {
   std::vector<cv::Point3d> points;
   std::vector<cv::Point2d> pixels;
   for (const Match& m : matches) {
-    const Eigen::Vector3d& p = map.landmark(m.id)->position_in_world;
+    const Eigen::Vector3d& p = targets[m.id].point_in_world;
     points.emplace_back(p.x(), p.y(), p.z());
     pixels.emplace_back(frame.features->keypoints[m.feature].pt);
   }
@@ -41,55 +42,27 @@ std::optional<Pose> camera_from_world(const ObservedFrame& frame, std::span<cons
   return pose;
 }
 
-Query query_of(const Features& features, std::uint32_t feature, LandmarkId landmark) {
-  return {.id = landmark,
-          .descriptor = features.descriptors[feature],
-          .angle = features.keypoints[feature].angle};
-}
-
-std::vector<Query> predictions(std::span<const Query> landmarks, const ObservedFrame& frame,
-                               const Pose& camera_from_world, const SparseMap& map) {
-  const ScalePyramid pyramid(*frame.features);
+std::vector<Query> anywhere(std::span<const Target> targets) {
   std::vector<Query> queries;
-  for (const Query& landmark : landmarks)
-    if (auto query = predict(*map.landmark(landmark.id), camera_from_world, *frame.frame->camera,
-                             pyramid, kWindow))
-      queries.push_back(*query);
+  for (std::uint32_t i = 0; i < targets.size(); ++i)
+    queries.push_back(
+        {.id = i, .descriptor = targets[i].descriptor, .angle = targets[i].angle});
   return queries;
 }
 
 }  // namespace
 
-std::vector<Query> landmark_queries(const KeyFrame& keyframe, const SparseMap& map) {
-  std::vector<Query> queries;
-  for (std::uint32_t i = 0; i < keyframe.landmarks.size(); ++i)
-    if (map.landmark(keyframe.landmarks[i]))
-      queries.push_back(query_of(*keyframe.features, i, keyframe.landmarks[i]));
-  return queries;
-}
-
-std::vector<Query> landmark_queries(const ObservedFrame& frame, const SparseMap& map) {
-  std::vector<Query> queries;
-  for (std::uint32_t i = 0; i < frame.landmarks.size(); ++i)
-    if (map.landmark(frame.landmarks[i]))
-      queries.push_back(query_of(*frame.features, i, frame.landmarks[i]));
-  return queries;
-}
-
-int locate_by_appearance(ObservedFrame& frame, std::span<const Query> landmarks,
+int locate_by_appearance(ObservedFrame& frame, std::span<const Target> targets,
                          const SparseMap& map) {
-  const auto usable = [&](std::uint32_t i) { return frame.usable(i); };
   const std::vector<Match> matches = match_anywhere(
-      landmarks, *frame.features, usable,
+      anywhere(targets), *frame.features, [&](std::uint32_t i) { return frame.usable(i); },
       {.max_distance = kMaxDistance, .ratio = kRatio, .consistent_angles = true});
   if (static_cast<int>(matches.size()) < kMinMatches) return 0;
-  const std::optional<Pose> pose = camera_from_world(frame, matches, map);
+  const std::optional<Pose> pose = camera_from_world(frame, targets, matches);
   if (!pose) return 0;
 
   frame.world_from_camera = pose->inverse();
-  frame.clear_landmarks();
-  frame.assign(match_near(predictions(landmarks, frame, *pose, map), *frame.features, frame.grid,
-                          usable, {.ratio = 0.9}));
+  match_projected(frame, targets, *pose, kWindow, kLevels);
   const int inliers = solve_pose(frame, map);
   frame.drop_outliers();
   return inliers;

@@ -2,23 +2,15 @@
 #pragma once
 
 #include <span>
-#include <vector>
 
-#include "orb_slam/observed_frame.hpp"
+#include "orb_slam/targets.hpp"
 
 namespace stillpoint::orb {
 
-/// Features of a key frame that show a landmark, to be searched for in another image.
-std::vector<Query> landmark_queries(const KeyFrame& keyframe, const SparseMap& map);
-
-/// The same for a tracked frame.
-std::vector<Query> landmark_queries(const ObservedFrame& frame, const SparseMap& map);
-
-/// Matches landmarks by their descriptors alone, finds the pose by perspective-n-point with RANSAC,
-/// then searches the same landmarks again around the places that this pose predicts. On success the
-/// frame has its pose and the matched landmarks, outliers dropped. Returns the inliers, 0 when no
-/// pose was found.
-int locate_by_appearance(ObservedFrame& frame, std::span<const Query> landmarks,
+/// Matches targets by their descriptors alone, finds the pose by perspective-n-point with RANSAC,
+/// then searches the same targets again around the places that this pose predicts. On success the
+/// frame has its pose and the matches that fit it. Returns their number, 0 when no pose was found.
+int locate_by_appearance(ObservedFrame& frame, std::span<const Target> targets,
                          const SparseMap& map);
 
 }  // namespace stillpoint::orb

@@ -9,8 +9,8 @@
 namespace stillpoint::orb {
 
 struct BundleOptions {
-  int max_keyframes = 15;   ///< adjusted; others that see the same landmarks stay fixed
-  int max_iterations = 8;
+  int max_keyframes = 10;   ///< adjusted; others that see the same landmarks stay fixed
+  int max_iterations = 5;
   int threads = 1;
 };
 

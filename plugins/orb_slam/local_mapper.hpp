@@ -17,8 +17,8 @@ class OrbLocalMapper final : public LocalMapper {
     int min_landmarks = 100;
     int neighbours = 10;
     double redundant_share = 0.9;
-    int bundle_keyframes = 15;
-    int bundle_iterations = 8;
+    int bundle_keyframes = 10;
+    int bundle_iterations = 5;
 
     void visit(OptionVisitor& visitor);
   };

@@ -18,6 +18,7 @@ ObservedFrame observe(FramePtr frame, Features features) {
   observed.features = std::make_shared<Features>(std::move(features));
   observed.frame = std::move(frame);
   observed.landmarks.assign(count, kNoId);
+  observed.temporary.resize(count);
   observed.outlier.assign(count, false);
   observed.track_weights.assign(count, 255);
   observed.map_weights.assign(count, 255);
@@ -32,8 +33,9 @@ void ObservedFrame::set_weights(const StaticWeights& weights) {
   }
 }
 
-void ObservedFrame::clear_landmarks() {
+void ObservedFrame::clear_matches() {
   std::fill(landmarks.begin(), landmarks.end(), kNoId);
+  drop_temporary();
   std::fill(outlier.begin(), outlier.end(), false);
 }
 
@@ -48,8 +50,13 @@ void ObservedFrame::drop_outliers() {
   for (std::size_t i = 0; i < landmarks.size(); ++i) {
     if (!outlier[i]) continue;
     landmarks[i] = kNoId;
+    temporary[i].reset();
     outlier[i] = false;
   }
+}
+
+void ObservedFrame::drop_temporary() {
+  std::fill(temporary.begin(), temporary.end(), std::nullopt);
 }
 
 int ObservedFrame::matched() const {
@@ -64,10 +71,11 @@ int solve_pose(ObservedFrame& observed, const SparseMap& map) {
   std::vector<std::uint32_t> index;
   for (std::uint32_t i = 0; i < features.size(); ++i) {
     const Landmark* landmark = map.landmark(observed.landmarks[i]);
-    if (!landmark) continue;
+    if (!landmark && !observed.temporary[i]) continue;
     const cv::KeyPoint& k = features.keypoints[i];
     const double sigma = pyramid.pixel_sigma(k.octave);
-    observations.push_back({.point_in_world = landmark->position_in_world,
+    observations.push_back({.point_in_world = landmark ? landmark->position_in_world
+                                                       : *observed.temporary[i],
                             .pixel = {k.pt.x, k.pt.y},
                             .inverse_depth = features.depth[i] > 0 ? 1.0 / features.depth[i] : 0.0,
                             .pixel_sigma = sigma,

@@ -1,6 +1,7 @@
 // A frame with its features, as tracking works on it.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -20,7 +21,9 @@ struct ObservedFrame {
   std::vector<std::uint8_t> track_weights;  ///< per feature
   std::vector<std::uint8_t> map_weights;    ///< per feature
   std::vector<LandmarkId> landmarks;        ///< per feature, kNoId = none
-  std::vector<bool> outlier;                ///< per feature: its landmark does not fit the pose
+  /// Per feature: in world, the point that the frame before measured, where no landmark is known.
+  std::vector<std::optional<Eigen::Vector3d>> temporary;
+  std::vector<bool> outlier;                ///< per feature: its point does not fit the pose
   Pose world_from_camera = Pose::Identity();
   KeyFrameId reference = kNoId;
   Pose reference_from_camera = Pose::Identity();
@@ -34,18 +37,21 @@ struct ObservedFrame {
   }
 
   void set_weights(const StaticWeights& weights);
-  void clear_landmarks();
+  /// Adds landmarks; the ids of the matches are theirs.
   void assign(std::span<const Match> matches);
-  /// Takes away the landmarks that do not fit.
+  void clear_matches();
+  /// Takes away the points that do not fit.
   void drop_outliers();
-  int matched() const;
+  /// Takes away the temporary points.
+  void drop_temporary();
+  int matched() const;  ///< features with a landmark
 };
 
 /// Samples depth at the keypoints.
 ObservedFrame observe(FramePtr frame, Features features);
 
-/// Pose from the landmarks assigned so far, starting from the frame's own; marks the outliers and
-/// returns the number of inliers.
+/// Pose from the landmarks and temporary points assigned so far, starting from the frame's own; marks
+/// the outliers and returns the number of inliers.
 int solve_pose(ObservedFrame& frame, const SparseMap& map);
 
 }  // namespace stillpoint::orb

@@ -32,12 +32,12 @@ std::vector<KeyFrameId> Relocaliser::candidates(const SparseMap& map) {
 
 bool Relocaliser::find(ObservedFrame& frame, const SparseMap& map) {
   for (const KeyFrameId id : candidates(map)) {
-    if (locate_by_appearance(frame, landmark_queries(*map.keyframe(id), map), map) < kMinInliers)
+    if (locate_by_appearance(frame, targets_of(*map.keyframe(id), map), map) < kMinInliers)
       continue;
     frame.reference = id;
     return true;
   }
-  frame.clear_landmarks();
+  frame.clear_matches();
   return false;
 }
 

@@ -15,7 +15,8 @@ class ScalePyramid {
  public:
   explicit ScalePyramid(const Features& features)
       : levels_(std::min(features.levels, kMaxLevels)), log_factor_(std::log(features.scale_factor)) {
-    for (int i = 0; i < levels_; ++i) scale_[i] = std::pow(features.scale_factor, i);
+    scale_[0] = 1.0;
+    for (int i = 1; i < levels_; ++i) scale_[i] = scale_[i - 1] * features.scale_factor;
   }
 
   int levels() const { return levels_; }

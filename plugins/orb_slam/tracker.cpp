@@ -1,6 +1,7 @@
 #include "orb_slam/tracker.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "orb_slam/appearance.hpp"
 
@@ -31,6 +32,9 @@ void OrbTracker::Options::visit(OptionVisitor& v) {
   v("min_start_points", min_start_points,
     {.min = 20, .help = "features with depth that the first key frame needs"});
   v("min_inliers", min_inliers, {.min = 6, .help = "with fewer fitting landmarks tracking is lost"});
+  v("min_bridge_points", min_bridge_points,
+    {.min = 6,
+     .help = "points that must fit where the map is not enough and the last frame's depth helps"});
   v("local_keyframes", local_keyframes,
     {.min = 1, .help = "key frames whose landmarks are searched for in a frame"});
   v("motion_window", motion_window,
@@ -88,57 +92,46 @@ bool OrbTracker::track_with_motion(const SparseMap& map) {
   const double seconds = current_.frame->time - last_.frame->time;
   const Pose motion = exp_se3(log_se3(*velocity_) * (seconds / velocity_seconds_));
   current_.world_from_camera = last_.world_from_camera * motion.inverse();
-  const Pose camera_from_world = current_.world_from_camera.inverse();
-  const Camera& camera = *current_.frame->camera;
-  const ScalePyramid pyramid(*current_.features);
+  const Pose prediction = current_.world_from_camera.inverse();
 
-  std::vector<Query> queries;
-  for (std::uint32_t i = 0; i < last_.landmarks.size(); ++i) {
-    const Landmark* landmark = map.landmark(last_.landmarks[i]);
-    if (!landmark || last_.outlier[i]) continue;
-    const Eigen::Vector3d p = camera_from_world * landmark->position_in_world;
-    if (p.z() <= 0) continue;
-    const Eigen::Vector2d pixel = camera.project(p);
-    if (!camera.contains(pixel.x(), pixel.y())) continue;
-    const cv::KeyPoint& k = last_.features->keypoints[i];
-    queries.push_back({.id = landmark->id,
-                       .descriptor = last_.features->descriptors[i],
-                       .u = pixel.x(),
-                       .v = pixel.y(),
-                       .radius = options_.motion_window * pyramid.scale(k.octave),
-                       .min_level = k.octave - 1,
-                       .max_level = k.octave + 1,
-                       .angle = k.angle});
-  }
-  const auto usable = [&](std::uint32_t i) { return current_.usable(i); };
-  const MatchRules rules{.max_distance = kFar, .consistent_angles = true};
-  std::vector<Match> matches = match_near(queries, *current_.features, current_.grid, usable, rules);
-  if (static_cast<int>(matches.size()) < kMinMotionMatches) {
-    for (Query& q : queries) q.radius *= 2;
-    matches = match_near(queries, *current_.features, current_.grid, usable, rules);
-  }
-  if (static_cast<int>(matches.size()) < kMinMotionMatches) return false;
-  current_.clear_landmarks();
-  current_.assign(matches);
+  const std::vector<Target> targets = targets_of(last_, map);
+  int matches = match_projected(current_, targets, prediction, options_.motion_window, 1);
+  if (matches < kMinMotionMatches)
+    matches = match_projected(current_, targets, prediction, 2 * options_.motion_window, 1);
   const int inliers = solve_pose(current_, map);
   current_.drop_outliers();
-  return inliers >= kMinMotionInliers &&
-         inliers >= kMinMotionShare * static_cast<double>(matches.size());
+  return inliers >= kMinMotionInliers && inliers >= kMinMotionShare * matches;
 }
 
 // Independent of any prediction: for fast turns, and where the prediction led to a false minimum.
 bool OrbTracker::track_by_appearance(const SparseMap& map) {
-  if (locate_by_appearance(current_, landmark_queries(last_, map), map) >= options_.min_inliers)
+  if (locate_by_appearance(current_, targets_of(last_, map), map) >= options_.min_inliers)
     return true;
   const KeyFrame* reference = map.keyframe(last_.reference);
-  return reference && locate_by_appearance(current_, landmark_queries(*reference, map), map) >=
+  return reference && locate_by_appearance(current_, targets_of(*reference, map), map) >=
                           options_.min_inliers;
 }
 
 bool OrbTracker::track_local_map(const SparseMap& map) {
+  search_local_map(map);
+  const Pose prior = current_.world_from_camera;
+  const auto temporary =
+      std::exchange(current_.temporary, decltype(current_.temporary)(current_.features->size()));
+  inliers_ = solve_pose(current_, map);
+  bridged_ = inliers_ < options_.min_inliers;
+  if (!bridged_) return true;
+  // A view that the map hardly knows: carried by what the last frame measured, it becomes a key
+  // frame and the map knows it from then on.
+  current_.temporary = temporary;
+  current_.world_from_camera = prior;
+  return current_.reference != kNoId && solve_pose(current_, map) >= options_.min_bridge_points;
+}
+
+void OrbTracker::search_local_map(const SparseMap& map) {
   const LocalMap local = local_map_around(current_.landmarks, map, options_.local_keyframes);
-  if (local.reference == kNoId) return false;
   current_.reference = local.reference;
+  if (local.reference == kNoId && map.keyframe(last_.reference))
+    current_.reference = last_.reference;
 
   std::vector<bool> matched(map.landmark_id_end());
   for (const LandmarkId id : current_.landmarks)
@@ -160,16 +153,7 @@ bool OrbTracker::track_local_map(const SparseMap& map) {
   }
   current_.assign(match_near(queries, *current_.features, current_.grid,
                              [&](std::uint32_t i) { return current_.free(i); }, {.ratio = 0.8}));
-  inliers_ = solve_pose(current_, map);
-  count_evidence(visible);
-  return inliers_ >= options_.min_inliers;
-}
-
-void OrbTracker::count_evidence(const std::vector<LandmarkId>& visible) {
   for (const LandmarkId id : visible) ++evidence_[id].visible;
-  for (std::size_t i = 0; i < current_.landmarks.size(); ++i)
-    if (current_.landmarks[i] != kNoId && !current_.outlier[i])
-      ++evidence_[current_.landmarks[i]].found;
 }
 
 TrackResult OrbTracker::tracked(const SparseMap& map, TrackHints hints) {
@@ -183,8 +167,13 @@ TrackResult OrbTracker::tracked(const SparseMap& map, TrackHints hints) {
   const TrackingQuality quality = tracking_quality(
       current_, map, inliers_, static_cast<int>(current_.frame->index - last_keyframe_index_),
       options_.keyframe);
-  const bool keep = map.empty() || needs_keyframe(quality, hints, options_.keyframe);
+  const bool unknown_view = bridged_ && last_keyframe_ == kNoId;  // the last one is in the map
+  const bool keep =
+      map.empty() || unknown_view || needs_keyframe(quality, hints, options_.keyframe);
   current_.drop_outliers();
+  current_.drop_temporary();
+  for (const LandmarkId id : current_.landmarks)
+    if (id != kNoId) ++evidence_[id].found;
   last_keyframe_ = kNoId;
   if (keep) {
     result.keyframe = make_keyframe();
@@ -211,7 +200,7 @@ TrackResult OrbTracker::tracked(const SparseMap& map, TrackHints hints) {
 TrackResult OrbTracker::not_tracked(TrackState state) {
   TrackResult result{.state = state};
   result.features = static_cast<int>(current_.features->size());
-  current_.clear_landmarks();
+  current_.clear_matches();
   result.tracked = describe(current_);
   if (state_ == TrackState::kTracking) relocaliser_.begin(last_.reference);
   state_ = state;

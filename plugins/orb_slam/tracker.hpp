@@ -20,6 +20,7 @@ class OrbTracker final : public Tracker {
     KeyFrameOptions keyframe;
     int min_start_points = 100;
     int min_inliers = 30;
+    int min_bridge_points = 50;
     int local_keyframes = 80;
     double motion_window = 15.0;
     double local_window = 3.0;
@@ -39,7 +40,7 @@ class OrbTracker final : public Tracker {
   bool track_with_motion(const SparseMap& map);
   bool track_by_appearance(const SparseMap& map);
   bool track_local_map(const SparseMap& map);
-  void count_evidence(const std::vector<LandmarkId>& visible);
+  void search_local_map(const SparseMap& map);
 
   TrackResult tracked(const SparseMap& map, TrackHints hints);
   TrackResult not_tracked(TrackState state);
@@ -55,7 +56,8 @@ class OrbTracker final : public Tracker {
   std::optional<Pose> velocity_;      // last camera from the one before it
   double velocity_seconds_ = 0.0;     // over which velocity_ was measured
   TrackState state_ = TrackState::kWaiting;
-  int inliers_ = 0;
+  int inliers_ = 0;       // landmarks
+  bool bridged_ = false;  // the pose of this frame needed temporary points
 
   KeyFrameId next_keyframe_ = 0;
   std::uint32_t last_keyframe_index_ = 0;  // frame index of the newest key frame
