@@ -9,7 +9,6 @@
 namespace stillpoint::simulation {
 namespace {
 
-constexpr unsigned kRoomId = 0;     // of the top scene's instances; bodies follow
 constexpr unsigned kTimeSteps = 3;  // begin, middle, end: the middle is exact
 constexpr float kNear = 0.02F;
 
@@ -24,6 +23,12 @@ using Device = std::unique_ptr<RTCDeviceTy, Releaser<rtcReleaseDevice>>;
 using Scene = std::unique_ptr<RTCSceneTy, Releaser<rtcReleaseScene>>;
 using Geometry = std::unique_ptr<RTCGeometryTy, Releaser<rtcReleaseGeometry>>;
 
+Scene new_scene(RTCDevice device) {
+  Scene scene(rtcNewScene(device));
+  rtcSetSceneFlags(scene.get(), RTC_SCENE_FLAG_ROBUST);
+  return scene;
+}
+
 Scene mesh_scene(RTCDevice device, const Mesh& mesh) {
   const Geometry geometry(rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE));
   void* vertices =
@@ -36,8 +41,8 @@ Scene mesh_scene(RTCDevice device, const Mesh& mesh) {
   std::memcpy(vertices, mesh.vertices.data(), mesh.vertices.size() * sizeof(Eigen::Vector3f));
   std::memcpy(triangles, mesh.triangles.data(), mesh.triangles.size() * 3 * sizeof(std::uint32_t));
   rtcCommitGeometry(geometry.get());
-  Scene scene(rtcNewScene(device));
-  rtcSetSceneFlags(scene.get(), RTC_SCENE_FLAG_ROBUST);
+  Scene scene = new_scene(device);
+  rtcSetSceneBuildQuality(scene.get(), RTC_BUILD_QUALITY_HIGH);
   rtcAttachGeometry(scene.get(), geometry.get());
   rtcCommitScene(scene.get());
   return scene;
@@ -49,16 +54,18 @@ class RayCaster::Impl {
  public:
   explicit Impl(const Mesh& room) : device_(rtcNewDevice("threads=1,set_affinity=0")) {
     if (!device_) throw Error(Fault::kStage, "Embree cannot be started", "simulation");
-    top_.reset(rtcNewScene(device_.get()));
-    rtcSetSceneFlags(top_.get(), RTC_SCENE_FLAG_ROBUST);
-    add_instance(room, kRoomId, 1);
-    set_transform(kRoomId, 0, Eigen::Affine3f::Identity());
-    commit();
+    room_ = mesh_scene(device_.get(), room);
+    moving_ = new_scene(device_.get());
   }
 
   void add_bodies(const std::vector<Body>& bodies) {
     for (const Body& body : bodies) {
-      add_instance(body.mesh, static_cast<unsigned>(instances_.size()), kTimeSteps);
+      parts_.push_back(mesh_scene(device_.get(), body.mesh));
+      RTCGeometry instance = rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_INSTANCE);
+      instances_.emplace_back(instance);
+      rtcSetGeometryInstancedScene(instance, parts_.back().get());
+      rtcSetGeometryTimeStepCount(instance, kTimeSteps);
+      rtcAttachGeometryByID(moving_.get(), instance, static_cast<unsigned>(bodies_.size()));
       bodies_.push_back(&body);
     }
   }
@@ -67,36 +74,25 @@ class RayCaster::Impl {
     for (std::size_t i = 0; i < bodies_.size(); ++i) {
       for (unsigned step = 0; step < kTimeSteps; ++step) {
         const double time = begin + (end - begin) * step / (kTimeSteps - 1);
-        set_transform(static_cast<unsigned>(i) + 1, step,
-                      bodies_[i]->world_from_body(time).cast<float>());
+        const Eigen::Matrix<float, 3, 4> world_from_body =
+            bodies_[i]->world_from_body(time).matrix().topRows<3>().cast<float>();
+        rtcSetGeometryTransform(instances_[i].get(), step, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR,
+                                world_from_body.data());
       }
+      rtcCommitGeometry(instances_[i].get());
     }
-    commit();
+    rtcCommitScene(moving_.get());
   }
 
-  RTCScene top() const { return top_.get(); }
+  RTCScene room() const { return room_.get(); }
+  /// Null where nothing moves.
+  RTCScene moving() const { return bodies_.empty() ? nullptr : moving_.get(); }
 
  private:
-  void add_instance(const Mesh& mesh, unsigned id, unsigned time_steps) {
-    scenes_.push_back(mesh_scene(device_.get(), mesh));
-    instances_.emplace_back(rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_INSTANCE));
-    rtcSetGeometryInstancedScene(instances_.back().get(), scenes_.back().get());
-    rtcSetGeometryTimeStepCount(instances_.back().get(), time_steps);
-    rtcAttachGeometryByID(top_.get(), instances_.back().get(), id);
-  }
-
-  void set_transform(unsigned id, unsigned step, const Eigen::Affine3f& world_from_body) {
-    const Eigen::Matrix<float, 3, 4> columns = world_from_body.matrix().topRows<3>();
-    rtcSetGeometryTransform(instances_[id].get(), step, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR,
-                            columns.data());
-    rtcCommitGeometry(instances_[id].get());
-  }
-
-  void commit() { rtcCommitScene(top_.get()); }
-
   Device device_;
-  Scene top_;
-  std::vector<Scene> scenes_;
+  Scene room_;
+  Scene moving_;
+  std::vector<Scene> parts_;
   std::vector<Geometry> instances_;
   std::vector<const Body*> bodies_;
 };
@@ -133,11 +129,12 @@ void RayCaster::cast(const Eigen::Vector3f& origin, const RayPacket& directions,
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
   context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
-  rtcIntersect8(kAll.data(), impl_->top(), &context, &packet);
+  rtcIntersect8(kAll.data(), impl_->room(), &context, &packet);
+  if (impl_->moving()) rtcIntersect8(kAll.data(), impl_->moving(), &context, &packet);
   for (std::size_t i = 0; i < kPacket; ++i) {
     const bool nothing = packet.hit.geomID[i] == RTC_INVALID_GEOMETRY_ID;
     hits[i] = nothing ? Hit{}
-                      : Hit{packet.ray.tfar[i], static_cast<int>(packet.hit.instID[0][i]) - 1,
+                      : Hit{packet.ray.tfar[i], static_cast<int>(packet.hit.instID[0][i]),
                             packet.hit.primID[i], packet.hit.u[i], packet.hit.v[i]};
   }
 }
@@ -155,7 +152,7 @@ bool RayCaster::occluded(const Eigen::Vector3f& origin, const Eigen::Vector3f& d
   ray.mask = ~0U;
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
-  rtcOccluded1(impl_->top(), &context, &ray);
+  rtcOccluded1(impl_->room(), &context, &ray);
   return ray.tfar < 0;
 }
 

@@ -42,7 +42,7 @@ class RayCaster {
   void cast(const Eigen::Vector3f& origin, const RayPacket& directions, float moment,
             std::span<Hit, kPacket> hits) const;
 
-  /// Whether something is nearer than `reach` along a unit vector, at moment 0.
+  /// Whether the room is nearer than `reach` along a unit vector.
   bool occluded(const Eigen::Vector3f& origin, const Eigen::Vector3f& direction, float reach) const;
 
  private:

@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 #include <vector>
 
+#include "simulation/motion_blur.hpp"
 #include "simulation/parallel.hpp"
 #include "simulation/shading.hpp"
 
@@ -15,8 +17,8 @@ using Eigen::Vector3f;
 
 constexpr int kPacketWidth = 4;  // px
 constexpr int kPacketHeight = 2;
-constexpr int kFew = 4;   // samples at an edge
-constexpr int kMany = 8;  // samples at a fast edge; the most anywhere
+constexpr std::size_t kFew = 4;   // samples at an edge
+constexpr std::size_t kMany = 8;  // samples at a fast edge; the most anywhere
 
 /// Columns and rows of the samples of an edge pixel in a grid of kFew or kMany: each is used once,
 /// so that the mean stays at the pixel's centre, and in an order that has nothing to do with time.
@@ -43,15 +45,34 @@ Eye eye_at(const CameraMotion& motion, double time, double exposure, double mome
           static_cast<float>(moment)};
 }
 
-/// Two views of the same surface point on different sides of this differ by an edge.
-std::uint32_t surface_key(const Hit& hit, const Face& face) {
-  return static_cast<std::uint32_t>(hit.body + 1) << 16 | face.surface;
-}
-
 /// Pixels whose rays are cast together; those near each other are faster.
 struct Pixels {
   std::array<int, kPacket> x;
   std::array<int, kPacket> y;
+};
+
+/// A packet of rays and what they meet.
+struct Bundle {
+  std::array<Vector3f, kPacket> directions;
+  std::array<Hit, kPacket> hits;
+};
+
+/// Remembers how the surface met last is seen: mostly, the next pixel shows it as well.
+class AspectMemory {
+ public:
+  explicit AspectMemory(const Shader& shader) : shader_(shader) {}
+
+  const Aspect& of(const Hit& hit, const Vector3f& direction) {
+    const std::int32_t key = shader_.surface_key(hit);
+    if (key != key_) aspect_ = shader_.aspect(hit, direction);
+    key_ = key;
+    return aspect_;
+  }
+
+ private:
+  const Shader& shader_;
+  std::int32_t key_ = -1;
+  Aspect aspect_;
 };
 
 }  // namespace
@@ -59,44 +80,43 @@ struct Pixels {
 /// One image on its way.
 struct Renderer::Job {
   const Renderer& renderer;
-  double time;
   double exposure;
-  bool colored;
   View view;
   Shader shader;
-  cv::Mat surfaces;  // CV_32SC1, surface_key per pixel
-  cv::Mat motion;    // CV_32FC1, px during the exposure, per packet
+  cv::Mat sharp;     // CV_32FC3, colours in the middle of the exposure
+  cv::Mat surfaces;  // CV_32SC1, Shader::surface_key per pixel
+  MotionMap motion;
   Eye middle;
   Eye begin;
   Eye end;
   std::array<std::vector<Eye>, kMany + 1> eyes;    // [n]: n moments, evenly spread
-  std::vector<Eigen::Affine3d> begin_from_middle;  // per body, of points in the world
-  std::vector<Eigen::Affine3d> end_from_middle;
+  std::vector<Eigen::Affine3f> begin_from_middle;  // per body, of points in the world
+  std::vector<Eigen::Affine3f> end_from_middle;
 
-  Job(const Renderer& r, double t, double e, bool with_color)
+  Job(const Renderer& r, double t, double e)
       : renderer(r),
-        time(t),
         exposure(e),
-        colored(with_color),
-        shader(r.world_, t, static_cast<float>(1 / r.camera_.fx)) {
+        shader(r.world_, t, static_cast<float>(1 / r.camera_.fx)),
+        motion(packet_columns(), packet_rows()),
+        middle(eye_at(r.motion_, t, e, 0.5)),
+        begin(eye_at(r.motion_, t, e, 0)),
+        end(eye_at(r.motion_, t, e, 1)) {
     const cv::Size size(r.camera_.width, r.camera_.height);
-    if (colored) view.color.create(size, CV_32FC3);
     view.depth.create(size, CV_32F);
     view.infrared.create(size, CV_32F);
     view.labels.create(size, CV_8U);
     view.instances.create(size, CV_8U);
     surfaces.create(size, CV_32S);
-    motion = cv::Mat::zeros(packet_rows(), packet_columns(), CV_32F);
-    middle = eye_at(r.motion_, t, e, 0.5);
-    begin = eye_at(r.motion_, t, e, 0);
-    end = eye_at(r.motion_, t, e, 1);
-    for (int n = 2; colored && n <= kMany; ++n)
-      for (int i = 0; i < n; ++i)
-        eyes[static_cast<std::size_t>(n)].push_back(eye_at(r.motion_, t, e, (i + 0.5) / n));
+    for (const std::size_t n : {kFew, kMany})
+      for (std::size_t i = 0; i < n; ++i)
+        eyes[n].push_back(
+            eye_at(r.motion_, t, e, (static_cast<double>(i) + 0.5) / static_cast<double>(n)));
     for (const Body& body : r.world_.bodies) {
       const Eigen::Affine3d body_from_world = body.world_from_body(t).inverse(Eigen::Isometry);
-      begin_from_middle.push_back(body.world_from_body(t - e / 2) * body_from_world);
-      end_from_middle.push_back(body.world_from_body(t + e / 2) * body_from_world);
+      begin_from_middle.emplace_back(
+          (body.world_from_body(t - e / 2) * body_from_world).cast<float>());
+      end_from_middle.emplace_back(
+          (body.world_from_body(t + e / 2) * body_from_world).cast<float>());
     }
   }
 
@@ -115,8 +135,7 @@ struct Renderer::Job {
   }
 
   /// Casts rays `dx`, `dy` px from the centres of pixels.
-  void cast(const Pixels& pixels, const Eye& eye, float dx, float dy,
-            std::array<Vector3f, kPacket>& directions, std::array<Hit, kPacket>& hits) const {
+  void cast(const Pixels& pixels, const Eye& eye, float dx, float dy, Bundle& bundle) const {
     const Camera& c = renderer.camera_;
     RayPacket rays;
     for (std::size_t i = 0; i < kPacket; ++i) {
@@ -125,66 +144,60 @@ struct Renderer::Job {
       const Vector3f ray((u - static_cast<float>(c.cx)) / static_cast<float>(c.fx),
                          (v - static_cast<float>(c.cy)) / static_cast<float>(c.fy), 1);
       const Vector3f d = eye.world_from_camera * ray;
-      directions[i] = d;
+      bundle.directions[i] = d;
       rays.x[i] = d.x();
       rays.y[i] = d.y();
       rays.z[i] = d.z();
     }
-    renderer.caster_.cast(eye.position, rays, eye.moment, hits);
+    renderer.caster_.cast(eye.position, rays, eye.moment, bundle.hits);
   }
 
-  /// How far the surface at a hit moves in the image during the exposure, px.
-  float image_motion(const Hit& hit, const Vector3f& direction) const {
-    if (hit.distance == 0) return 0;
+  /// How the surface at a hit moves in the image during the exposure.
+  MotionRange image_motion(const Hit& hit, const Vector3f& direction) const {
+    if (hit.distance == 0 || exposure == 0) return {};
     const Vector3f point = middle.position + hit.distance * direction;
     const auto pixel = [&](const Eye& eye, const Vector3f& p) -> Eigen::Vector2f {
       const Vector3f q = eye.world_from_camera.transpose() * (p - eye.position);
       return q.head<2>() * (static_cast<float>(renderer.camera_.fx) / std::max(q.z(), 0.05F));
     };
-    if (hit.body < 0) return (pixel(end, point) - pixel(begin, point)).norm();
     const auto body = static_cast<std::size_t>(hit.body);
-    return (pixel(end, end_from_middle[body].cast<float>() * point) -
-            pixel(begin, begin_from_middle[body].cast<float>() * point))
-        .norm();
+    const Eigen::Vector2f moved = hit.body < 0 ? pixel(end, point) - pixel(begin, point)
+                                               : pixel(end, end_from_middle[body] * point) -
+                                                     pixel(begin, begin_from_middle[body] * point);
+    return {moved, moved};
   }
 
-  /// Geometry of a row of packets, and colours where one sample will do.
-  void first_pass(int row) {
-    std::array<Vector3f, kPacket> directions;
-    std::array<Hit, kPacket> hits;
+  /// Geometry of a row of packets.
+  void find_surfaces(int row) {
+    Bundle bundle;
+    AspectMemory aspects(shader);
     for (int column = 0; column < packet_columns(); ++column) {
       const Pixels pixels = packet(column, row);
-      cast(pixels, middle, 0, 0, directions, hits);
-      float& moved = motion.at<float>(row, column);
-      if (colored && exposure > 0)
-        moved =
-            std::max(image_motion(hits[0], directions[0]), image_motion(hits[7], directions[7]));
+      cast(pixels, middle, 0, 0, bundle);
+      MotionRange& moved = motion.at(column, row);
+      moved = image_motion(bundle.hits[0], bundle.directions[0]);
+      moved.include(image_motion(bundle.hits[7], bundle.directions[7]));
       for (std::size_t i = 0; i < kPacket; ++i)
-        keep(hits[i], directions[i], pixels.x[i], pixels.y[i], colored && moved <= 1);
+        keep(bundle.hits[i], bundle.directions[i], pixels.x[i], pixels.y[i], aspects);
     }
   }
 
-  void keep(const Hit& hit, const Vector3f& direction, int x, int y, bool with_color) {
+  void keep(const Hit& hit, const Vector3f& direction, int x, int y, AspectMemory& aspects) {
+    const bool found = hit.distance > 0;
+    const Face* face = found ? &shader.face(hit) : nullptr;
     view.depth.at<float>(y, x) = hit.distance;
-    if (hit.distance == 0) {
-      view.labels.at<std::uint8_t>(y, x) = 0;
-      view.instances.at<std::uint8_t>(y, x) = 0;
-      view.infrared.at<float>(y, x) = 0;
-      surfaces.at<int>(y, x) = -1;
-      if (with_color) view.color.at<cv::Vec3f>(y, x) = {};
-      return;
-    }
-    const Face& face = shader.face(hit);
-    view.labels.at<std::uint8_t>(y, x) = face.label;
-    view.instances.at<std::uint8_t>(y, x) = face.instance;
-    surfaces.at<int>(y, x) = static_cast<int>(surface_key(hit, face));
-    view.infrared.at<float>(y, x) =
-        shader.cosine(hit, direction) * renderer.world_.textures[face.texture].infrared();
-    if (with_color) set_color(x, y, shader.shade(hit, direction));
+    view.labels.at<std::uint8_t>(y, x) = found ? face->label : 0;
+    view.instances.at<std::uint8_t>(y, x) = found ? face->instance : 0;
+    surfaces.at<int>(y, x) = found ? shader.surface_key(hit) : -1;
+    view.infrared.at<float>(y, x) = found ? shader.infrared(hit, aspects.of(hit, direction)) : 0;
+    if (sharp.empty()) return;
+    Vector3f color = Vector3f::Zero();
+    if (found) color = shader.color(hit, aspects.of(hit, direction));
+    set_color(sharp, x, y, color);
   }
 
-  void set_color(int x, int y, const Vector3f& c) {
-    view.color.at<cv::Vec3f>(y, x) = {c[0], c[1], c[2]};
+  static void set_color(cv::Mat& image, int x, int y, const Vector3f& c) {
+    image.at<cv::Vec3f>(y, x) = {c[0], c[1], c[2]};
   }
 
   bool is_edge(int x, int y) const {
@@ -196,61 +209,86 @@ struct Renderer::Job {
     return differs(x - 1, y) || differs(x + 1, y) || differs(x, y - 1) || differs(x, y + 1);
   }
 
-  /// Motion here or near enough to come here during the exposure.
-  float motion_around(int column, int row) const {
-    float most = 0;
-    for (int y = std::max(0, row - 2); y <= std::min(packet_rows() - 1, row + 2); ++y)
-      for (int x = std::max(0, column - 1); x <= std::min(packet_columns() - 1, column + 1); ++x)
-        most = std::max(most, motion.at<float>(y, x));
-    return most;
-  }
+  /// Nothing in sight moves farther than eyes can tell.
+  static bool is_still(const MotionRange& range) { return range.fastest() <= 1; }
+  /// Surfaces move past each other: a shifted image would not show what comes into view.
+  static bool is_torn(const MotionRange& range) { return !is_still(range) && range.spread() > 1; }
 
-  /// Colours of a row of packets where edges or motion need several samples.
-  void second_pass(int row) {
+  /// Smooth edges in `sharp`, and final colours where surfaces move past each other.
+  void refine(int row) {
     Pixels edges{};
     std::size_t waiting = 0;
     for (int column = 0; column < packet_columns(); ++column) {
       const Pixels pixels = packet(column, row);
-      // One sample per pixel of motion: textures are as smooth as a pixel is wide.
-      const int n = std::clamp(static_cast<int>(std::ceil(motion_around(column, row))), 1, kMany);
-      if (n > 1) {
-        bool edge = false;
-        for (std::size_t i = 0; i < kPacket; ++i) edge |= is_edge(pixels.x[i], pixels.y[i]);
-        const int count = !edge ? n : n <= kFew ? kFew : kMany;
-        resample(pixels, static_cast<std::size_t>(count), edge);
+      const MotionRange range = motion.around(column, row);
+      if (is_torn(range)) {
+        expose(pixels, range.fastest() <= kFew ? kFew : kMany);
         continue;
       }
       for (std::size_t i = 0; i < kPacket; ++i) {
         if (!is_edge(pixels.x[i], pixels.y[i])) continue;
         edges.x[waiting] = pixels.x[i];
         edges.y[waiting] = pixels.y[i];
-        if (++waiting < kPacket) continue;
-        resample(edges, kFew, true);
-        waiting = 0;
+        if (++waiting == kPacket) smooth(edges, std::exchange(waiting, 0));
       }
     }
-    if (waiting == 0) return;
-    for (std::size_t i = waiting; i < kPacket; ++i) {
-      edges.x[i] = edges.x[0];
-      edges.y[i] = edges.y[0];
-    }
-    resample(edges, kFew, true);
+    if (waiting > 0) smooth(edges, waiting);
   }
 
-  void resample(const Pixels& pixels, std::size_t count, bool edge) {
-    std::array<Vector3f, kPacket> directions;
-    std::array<Hit, kPacket> hits;
+  /// Several views spread over each pixel; one look at each surface's colour is enough.
+  void smooth(Pixels pixels, std::size_t count) {
+    for (std::size_t i = count; i < kPacket; ++i) {
+      pixels.x[i] = pixels.x[0];
+      pixels.y[i] = pixels.y[0];
+    }
+    Bundle bundle;
+    std::array<Vector3f, kPacket> sums;
+    sums.fill(Vector3f::Zero());
+    for (std::size_t s = 0; s < kFew; ++s) {
+      cast(pixels, middle, cell_offset(0, s, kFew), cell_offset(1, s, kFew), bundle);
+      for (std::size_t i = 0; i < count; ++i) {
+        const Hit& hit = bundle.hits[i];
+        if (hit.distance == 0) continue;
+        if (shader.surface_key(hit) == surfaces.at<int>(pixels.y[i], pixels.x[i]))
+          sums[i] += Vector3f(sharp.at<cv::Vec3f>(pixels.y[i], pixels.x[i]).val);
+        else
+          sums[i] += shader.color(hit, shader.aspect(hit, bundle.directions[i]));
+      }
+    }
+    for (std::size_t i = 0; i < count; ++i)
+      set_color(sharp, pixels.x[i], pixels.y[i], sums[i] / static_cast<float>(kFew));
+  }
+
+  /// Views spread over each pixel and the exposure.
+  void expose(const Pixels& pixels, std::size_t count) {
+    Bundle bundle;
     std::array<Vector3f, kPacket> sums;
     sums.fill(Vector3f::Zero());
     for (std::size_t s = 0; s < count; ++s) {
-      const float dx = edge ? cell_offset(0, s, count) : 0;
-      const float dy = edge ? cell_offset(1, s, count) : 0;
-      cast(pixels, eyes[count][s], dx, dy, directions, hits);
-      for (std::size_t i = 0; i < kPacket; ++i)
-        if (hits[i].distance > 0) sums[i] += shader.shade(hits[i], directions[i]);
+      cast(pixels, eyes[count][s], cell_offset(0, s, count), cell_offset(1, s, count), bundle);
+      AspectMemory aspects(shader);
+      for (std::size_t i = 0; i < kPacket; ++i) {
+        const Hit& hit = bundle.hits[i];
+        if (hit.distance > 0) sums[i] += shader.color(hit, aspects.of(hit, bundle.directions[i]));
+      }
     }
     for (std::size_t i = 0; i < kPacket; ++i)
-      set_color(pixels.x[i], pixels.y[i], sums[i] / static_cast<float>(count));
+      set_color(view.color, pixels.x[i], pixels.y[i], sums[i] / static_cast<float>(count));
+  }
+
+  /// Final colours where the image stands still or moves as a whole.
+  void blur(int row) {
+    for (int column = 0; column < packet_columns(); ++column) {
+      const MotionRange range = motion.around(column, row);
+      if (is_torn(range)) continue;
+      const Pixels pixels = packet(column, row);
+      for (std::size_t i = 0; i < kPacket; ++i) {
+        const int x = pixels.x[i];
+        const int y = pixels.y[i];
+        view.color.at<cv::Vec3f>(y, x) =
+            is_still(range) ? sharp.at<cv::Vec3f>(y, x) : mean_along(sharp, x, y, range.mean());
+      }
+    }
   }
 };
 
@@ -260,16 +298,19 @@ Renderer::Renderer(const World& world, const CameraMotion& motion, const Camera&
 
 View Renderer::render(double time, double exposure) {
   caster_.pose_bodies(time - exposure / 2, time + exposure / 2);
-  Job job(*this, time, exposure, true);
-  parallel_for(threads_, job.packet_rows(), [&](int row) { job.first_pass(row); });
-  parallel_for(threads_, job.packet_rows(), [&](int row) { job.second_pass(row); });
+  Job job(*this, time, exposure);
+  job.sharp.create(job.surfaces.size(), CV_32FC3);
+  job.view.color.create(job.surfaces.size(), CV_32FC3);
+  parallel_for(threads_, job.packet_rows(), [&](int row) { job.find_surfaces(row); });
+  parallel_for(threads_, job.packet_rows(), [&](int row) { job.refine(row); });
+  parallel_for(threads_, job.packet_rows(), [&](int row) { job.blur(row); });
   return job.view;
 }
 
 View Renderer::render_geometry(double time) {
   caster_.pose_bodies(time, time);
-  Job job(*this, time, 0, false);
-  parallel_for(threads_, job.packet_rows(), [&](int row) { job.first_pass(row); });
+  Job job(*this, time, 0);
+  parallel_for(threads_, job.packet_rows(), [&](int row) { job.find_surfaces(row); });
   return job.view;
 }
 

@@ -21,6 +21,10 @@ const Face& Shader::face(const Hit& hit) const {
   return mesh.faces[hit.face];
 }
 
+std::int32_t Shader::surface_key(const Hit& hit) const {
+  return (hit.body + 1) << 16 | face(hit).surface;
+}
+
 Vector3f Shader::normal(const Hit& hit, const Face& face) const {
   // Corners' normals are close to each other: what is between is as good as normalised.
   const Vector3f n =
@@ -28,18 +32,11 @@ Vector3f Shader::normal(const Hit& hit, const Face& face) const {
   return hit.body < 0 ? n : world_from_body_[static_cast<std::size_t>(hit.body)] * n;
 }
 
-float Shader::cosine(const Hit& hit, const Vector3f& direction) const {
-  return std::abs(normal(hit, face(hit)).dot(direction)) / direction.norm();
-}
-
-Vector3f Shader::shade(const Hit& hit, const Vector3f& direction) const {
+Aspect Shader::aspect(const Hit& hit, const Vector3f& direction) const {
   constexpr float kGrazing = 0.08F;  // footprints grow no longer than 1 / this
   const Face& f = face(hit);
-  const float w = 1 - hit.u - hit.v;
   const Vector3f n = normal(hit, f);
   const float cosine = std::abs(n.dot(direction)) / direction.norm();
-  const Vector2f uv = w * f.uv[0] + hit.u * f.uv[1] + hit.v * f.uv[2];
-
   const Vector3f tangent =
       hit.body < 0 ? f.tangent : world_from_body_[static_cast<std::size_t>(hit.body)] * f.tangent;
   const Vector3f along = direction - n * n.dot(direction);
@@ -49,11 +46,21 @@ Vector3f Shader::shade(const Hit& hit, const Vector3f& direction) const {
   Footprint footprint{Vector2f::Zero(), size};
   if (length > 1e-6F)
     footprint.major = along_uv * (0.5F * size / std::max(cosine, kGrazing) / length);
+  return {cosine, world_.textures[f.texture].filter(footprint)};
+}
 
+Vector3f Shader::color(const Hit& hit, const Aspect& aspect) const {
+  const Face& f = face(hit);
+  const float w = 1 - hit.u - hit.v;
+  const Vector2f uv = w * f.uv[0] + hit.u * f.uv[1] + hit.v * f.uv[2];
   const float light = f.glows        ? 1.0F
                       : hit.body < 0 ? w * f.light[0] + hit.u * f.light[1] + hit.v * f.light[2]
-                                     : light_on_body(n);
-  return world_.textures[f.texture].sample(uv, footprint) * light;
+                                     : light_on_body(normal(hit, f));
+  return world_.textures[f.texture].sample(uv, aspect.filter) * light;
+}
+
+float Shader::infrared(const Hit& hit, const Aspect& aspect) const {
+  return aspect.cosine * world_.textures[face(hit).texture].infrared();
 }
 
 }  // namespace stillpoint::simulation

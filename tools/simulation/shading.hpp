@@ -7,16 +7,25 @@
 
 namespace stillpoint::simulation {
 
+/// How a surface is seen from here; pixels a few px apart on one surface share it.
+struct Aspect {
+  float cosine = 0;  ///< between ray and surface normal, [0, 1]
+  TextureFilter filter;
+};
+
 class Shader {
  public:
   /// `pixel` is the size of a pixel at a distance of 1 m. Normals are those at `time`.
   Shader(const World& world, double time, float pixel);
 
   const Face& face(const Hit& hit) const;
+  /// Two hits of the same surface have the same key, of different ones different keys.
+  std::int32_t surface_key(const Hit& hit) const;
+  Aspect aspect(const Hit& hit, const Eigen::Vector3f& direction) const;
   /// b, g, r, 0…255 at normal exposure.
-  Eigen::Vector3f shade(const Hit& hit, const Eigen::Vector3f& direction) const;
-  /// Between ray and surface normal, [0, 1].
-  float cosine(const Hit& hit, const Eigen::Vector3f& direction) const;
+  Eigen::Vector3f color(const Hit& hit, const Aspect& aspect) const;
+  /// Share of the depth sensor's light that comes back.
+  float infrared(const Hit& hit, const Aspect& aspect) const;
 
  private:
   Eigen::Vector3f normal(const Hit& hit, const Face& face) const;

@@ -19,6 +19,14 @@ TwoTexels widen(std::uint32_t first, std::uint32_t second) {
                                  TwoTexels);
 }
 
+using Color = float __attribute__((vector_size(16)));
+
+template <int First>
+Color channels(TwoTexels texels) {
+  return __builtin_convertvector(
+      __builtin_shufflevector(texels, texels, First, First + 1, First + 2, First + 3), Color);
+}
+
 /// log2, linear between powers of two: mip levels need no more.
 float rough_log2(float x) {
   return static_cast<float>(std::bit_cast<std::int32_t>(x) - 0x3f800000) * 0x1p-23F;
@@ -29,56 +37,20 @@ int floor_to_int(float x) { return static_cast<int>(x) - (x < 0 ? 1 : 0); }
 
 int power_of_two(int size) { return static_cast<int>(std::bit_ceil(static_cast<unsigned>(size))); }
 
-}  // namespace
-
-Texture::Texture(const cv::Mat& bgr, Eigen::Vector2f size, float infrared)
-    : periods_per_metre_(size.cwiseInverse()), infrared_(infrared) {
-  cv::Mat image;
-  const cv::Size finest(power_of_two(bgr.cols), power_of_two(bgr.rows));
-  cv::resize(bgr, image, finest, 0, 0, cv::INTER_CUBIC);
-  texels_per_metre_ = std::max(static_cast<float>(finest.width) / size.x(),
-                               static_cast<float>(finest.height) / size.y());
-  for (;;) {
-    Level level{image.cols, image.rows, {}};
-    for (const cv::Vec3b& c : cv::Mat_<cv::Vec3b>(image))
-      level.texels.push_back(c[0] | std::uint32_t{c[1]} << 8 | std::uint32_t{c[2]} << 16);
-    levels_.push_back(std::move(level));
-    if (image.cols == 1 && image.rows == 1) break;
-    const cv::Size half(std::max(1, image.cols / 2), std::max(1, image.rows / 2));
-    cv::resize(image.clone(), image, half, 0, 0, cv::INTER_AREA);
-  }
+/// As far between two mip levels as half an octave is: bilinear look-ups add to the width of
+/// texels.
+cv::Mat half_octave_coarser(const cv::Mat& image) {
+  const cv::Matx13f kernel(1.0F / 8, 6.0F / 8, 1.0F / 8);
+  cv::Mat padded;
+  cv::copyMakeBorder(image, padded, 1, 1, 1, 1, cv::BORDER_WRAP);
+  cv::Mat smooth;
+  cv::sepFilter2D(padded, smooth, -1, kernel, kernel);
+  return smooth(cv::Rect(1, 1, image.cols, image.rows));
 }
 
-Eigen::Vector3f Texture::sample(const Eigen::Vector2f& uv, const Footprint& footprint) const {
-  const float major = 2 * footprint.major.norm();
-  const float minor = std::max(footprint.minor, major / kMaxTaps);
-  const float level = rough_log2(std::max(minor * texels_per_metre_, 1.0F));
-  const int taps = std::clamp(static_cast<int>(major / minor + 0.3F), 1, kMaxTaps);
-  if (taps == 1) return trilinear(uv, level);
-  Eigen::Vector3f sum = Eigen::Vector3f::Zero();
-  for (int i = 0; i < taps; ++i) {
-    const float along = static_cast<float>(2 * i + 1 - taps) / static_cast<float>(taps);
-    sum += trilinear(uv + along * footprint.major, level);
-  }
-  return sum / static_cast<float>(taps);
-}
-
-Eigen::Vector3f Texture::trilinear(const Eigen::Vector2f& uv, float level) const {
-  constexpr float kNegligible = 0.06F;  // weight of the other level
-  const auto fine = std::min(static_cast<std::size_t>(level), levels_.size() - 1);
-  const std::size_t coarse = std::min(fine + 1, levels_.size() - 1);
-  const float weight = level - static_cast<float>(fine);
-  if (weight < kNegligible) return bilinear(levels_[fine], uv);
-  if (weight > 1 - kNegligible) return bilinear(levels_[coarse], uv);
-  return (1 - weight) * bilinear(levels_[fine], uv) + weight * bilinear(levels_[coarse], uv);
-}
-
-Eigen::Vector3f Texture::bilinear(const Level& level, const Eigen::Vector2f& uv) const {
-  // 24.8 fixed point; the half texel shift puts sample positions at texel centres.
-  const int u =
-      floor_to_int(uv.x() * periods_per_metre_.x() * static_cast<float>(256 * level.width)) - 128;
-  const int v =
-      floor_to_int(uv.y() * periods_per_metre_.y() * static_cast<float>(256 * level.height)) - 128;
+/// Mean of four texels, weighted by where between them (u, v), in 1/256 texels, lies.
+template <class Level>
+Color bilinear(const Level& level, int u, int v) {
   const int x0 = (u >> 8) & (level.width - 1);
   const int x1 = (x0 + 1) & (level.width - 1);
   const int y0 = (v >> 8) & (level.height - 1);
@@ -91,8 +63,65 @@ Eigen::Vector3f Texture::bilinear(const Level& level, const Eigen::Vector2f& uv)
   const TwoTexels rows = widen(upper[x0], lower[x0]) * left + widen(upper[x1], lower[x1]) * right;
   const float down = static_cast<float>(v & 255) / 65536;
   const float up = 1.0F / 256 - down;
-  return {up * rows[0] + down * rows[4], up * rows[1] + down * rows[5],
-          up * rows[2] + down * rows[6]};
+  return up * channels<0>(rows) + down * channels<4>(rows);
+}
+
+}  // namespace
+
+Texture::Texture(const cv::Mat& bgr, Eigen::Vector2f size, float infrared)
+    : size_(size), infrared_(infrared) {
+  cv::Mat image;
+  const cv::Size finest(power_of_two(bgr.cols), power_of_two(bgr.rows));
+  cv::resize(bgr, image, finest, 0, 0, cv::INTER_CUBIC);
+  texels_per_metre_ = std::max(static_cast<float>(finest.width) / size.x(),
+                               static_cast<float>(finest.height) / size.y());
+  for (;;) {
+    add_level(image);
+    if (image.cols == 1 && image.rows == 1) break;
+    add_level(half_octave_coarser(image));
+    const cv::Size half(std::max(1, image.cols / 2), std::max(1, image.rows / 2));
+    cv::resize(image.clone(), image, half, 0, 0, cv::INTER_AREA);
+  }
+}
+
+void Texture::add_level(const cv::Mat& image) {
+  const Eigen::Vector2f texels(static_cast<float>(image.cols), static_cast<float>(image.rows));
+  Level level{image.cols, image.rows, 256 * texels.cwiseQuotient(size_), {}};
+  level.texels.reserve(image.total());
+  for (const cv::Vec3b& c : cv::Mat_<cv::Vec3b>(image))
+    level.texels.push_back(c[0] | std::uint32_t{c[1]} << 8 | std::uint32_t{c[2]} << 16);
+  levels_.push_back(std::move(level));
+}
+
+TextureFilter Texture::filter(const Footprint& footprint) const {
+  const float major = 2 * footprint.major.norm();
+  const float minor = std::max(footprint.minor, major / kMaxTaps);
+  const float half_octaves = 2 * rough_log2(std::max(minor * texels_per_metre_, 1.0F));
+  // The nearest level is never more than 19 % off, which nobody sees; no need to mix two.
+  TextureFilter filter{.level = std::min(static_cast<int>(half_octaves + 0.5F),
+                                         static_cast<int>(levels_.size()) - 1),
+                       .taps = std::clamp(static_cast<int>(major / minor + 0.3F), 1, kMaxTaps)};
+  const auto taps = static_cast<float>(filter.taps);
+  filter.between_uv = footprint.major * (2 / taps);
+  filter.first_uv = footprint.major * (1 / taps - 1);
+  return filter;
+}
+
+Eigen::Vector3f Texture::sample(const Eigen::Vector2f& uv, const TextureFilter& filter) const {
+  const Level& level = levels_[static_cast<std::size_t>(filter.level)];
+  const Eigen::Vector2f at = (uv + filter.first_uv).cwiseProduct(level.from_uv);
+  const Eigen::Vector2f step = filter.between_uv.cwiseProduct(level.from_uv);
+  // The half texel shift puts sample positions at texel centres.
+  int u = floor_to_int(at.x()) - 128;
+  int v = floor_to_int(at.y()) - 128;
+  Color sum = bilinear(level, u, v);
+  for (int i = 1; i < filter.taps; ++i) {
+    u += static_cast<int>(step.x());
+    v += static_cast<int>(step.y());
+    sum += bilinear(level, u, v);
+  }
+  sum *= 1 / static_cast<float>(filter.taps);
+  return {sum[0], sum[1], sum[2]};
 }
 
 }  // namespace stillpoint::simulation

@@ -15,29 +15,38 @@ struct Footprint {
   float minor = 0;        ///< length of the shorter axis
 };
 
+/// How to sample a texture for a footprint; neighbouring pixels may share it.
+struct TextureFilter {
+  int level = 0;               ///< of the half octaves of detail
+  int taps = 1;                ///< along the longer axis
+  Eigen::Vector2f first_uv;    ///< metres from the middle to the first tap
+  Eigen::Vector2f between_uv;  ///< metres from one tap to the next
+};
+
 class Texture {
  public:
   /// `bgr` CV_8UC3 covers `size` metres and repeats beyond. `infrared` is the share of the depth
   /// sensor's light that comes back at right angles.
   Texture(const cv::Mat& bgr, Eigen::Vector2f size, float infrared = 1.0F);
 
-  /// Mean colour (b, g, r in 0…255) in a footprint around `uv`, metres.
-  Eigen::Vector3f sample(const Eigen::Vector2f& uv, const Footprint& footprint) const;
+  TextureFilter filter(const Footprint& footprint) const;
+  /// Mean colour (b, g, r in 0…255) around `uv`, metres.
+  Eigen::Vector3f sample(const Eigen::Vector2f& uv, const TextureFilter& filter) const;
 
   float infrared() const { return infrared_; }
 
  private:
   struct Level {
-    int width;   // a power of two
-    int height;  // a power of two
+    int width;                // a power of two
+    int height;               // a power of two
+    Eigen::Vector2f from_uv;  // 1/256 texels per metre
     std::vector<std::uint32_t> texels;
   };
 
-  Eigen::Vector3f trilinear(const Eigen::Vector2f& uv, float level) const;
-  Eigen::Vector3f bilinear(const Level& level, const Eigen::Vector2f& uv) const;
+  void add_level(const cv::Mat& image);
 
   std::vector<Level> levels_;
-  Eigen::Vector2f periods_per_metre_;
+  Eigen::Vector2f size_;    // metres
   float texels_per_metre_;  // of the finer axis, finest level
   float infrared_;
 };
