@@ -1,0 +1,112 @@
+#include "orb_slam/keyframe_policy.hpp"
+
+#include <gtest/gtest.h>
+
+#include "orb_slam/test_world.hpp"
+
+namespace stillpoint::orb {
+namespace {
+
+constexpr TrackHints kIdle{.mapping_waiting = false}, kBusy{.mapping_waiting = true};
+
+// Everything the reference sees is tracked, far and near.
+TrackingQuality good(const KeyFrameOptions& options) {
+  return {.inliers = 400,
+          .reference_matches = 400,
+          .close_tracked = options.min_close + 100,
+          .close_untracked = 0,
+          .frames_since_last = 3};
+}
+
+TEST(NeedsKeyFrame, NotWhileTheViewIsKnown) {
+  const KeyFrameOptions options;
+  EXPECT_FALSE(needs_keyframe(good(options), kIdle, options));
+}
+
+TEST(NeedsKeyFrame, WhenTheViewHasChanged) {
+  const KeyFrameOptions options;
+  TrackingQuality quality = good(options);
+  quality.inliers = static_cast<int>(options.min_tracked_ratio * quality.reference_matches) - 5;
+  EXPECT_TRUE(needs_keyframe(quality, kIdle, options));
+  quality.inliers += 10;
+  EXPECT_FALSE(needs_keyframe(quality, kIdle, options));
+}
+
+TEST(NeedsKeyFrame, WhenNearPointsRunOut) {
+  const KeyFrameOptions options;
+  TrackingQuality quality = good(options);
+  quality.close_tracked = options.min_close - 1;
+  EXPECT_FALSE(needs_keyframe(quality, kIdle, options)) << "no others are there";
+  quality.close_untracked = options.max_close_untracked + 1;
+  EXPECT_TRUE(needs_keyframe(quality, kIdle, options));
+  EXPECT_TRUE(needs_keyframe(quality, kBusy, options)) << "it is urgent";
+}
+
+TEST(NeedsKeyFrame, NeverFromAPoorPose) {
+  const KeyFrameOptions options;
+  TrackingQuality quality = good(options);
+  quality.inliers = options.min_inliers - 1;
+  quality.close_tracked = 0;
+  quality.close_untracked = 500;
+  quality.frames_since_last = 1000;
+  EXPECT_FALSE(needs_keyframe(quality, kIdle, options));
+}
+
+TEST(NeedsKeyFrame, BusyMapperIsSparedUnlessItIsUrgentOrLongAgo) {
+  const KeyFrameOptions options;
+  TrackingQuality quality = good(options);
+  quality.inliers = static_cast<int>(options.min_tracked_ratio * quality.reference_matches) - 5;
+  EXPECT_FALSE(needs_keyframe(quality, kBusy, options));
+  quality.frames_since_last = options.max_frames_between;
+  EXPECT_TRUE(needs_keyframe(quality, kBusy, options));
+  quality.frames_since_last = 1;
+  quality.inliers = 20;
+  EXPECT_TRUE(needs_keyframe(quality, kBusy, options)) << "tracking is nearly lost";
+}
+
+class TrackingQualityTest : public testing::Test {
+ protected:
+  TestWorld world_;
+  View view_ = world_.see(walk(0));
+  KnownMap known_ = known_map(world_, {view_, world_.see(walk(2)), world_.see(walk(4))});
+  ObservedFrame frame_ = observed(view_);
+  KeyFrameOptions options_;
+};
+
+TEST_F(TrackingQualityTest, CountsNearPointsByWhetherTheyAreTracked) {
+  frame_.landmarks = known_.map.keyframe(0)->landmarks;
+  int close = 0;
+  for (std::uint32_t i = 0; i < frame_.landmarks.size(); ++i) {
+    if (view_.features->depth[i] > options_.close_depth) continue;
+    ++close;
+    if (close <= 10)
+      frame_.landmarks[i] = kNoId;
+    else if (close <= 15)
+      frame_.outlier[i] = true;
+    else if (close <= 18)
+      frame_.track_weights[i] = 0;
+  }
+  ASSERT_GT(close, 20);
+  const TrackingQuality quality = tracking_quality(frame_, known_.map, 123, 7, options_);
+  EXPECT_EQ(quality.inliers, 123);
+  EXPECT_EQ(quality.frames_since_last, 7);
+  EXPECT_EQ(quality.close_untracked, 15) << "without landmark, or not fitting it";
+  EXPECT_EQ(quality.close_tracked, close - 18) << "moving ones count nowhere";
+}
+
+TEST_F(TrackingQualityTest, CountsWellEstablishedLandmarksOfTheReference) {
+  frame_.reference = 0;
+  int established = 0;
+  for (const LandmarkId id : known_.map.keyframe(0)->landmarks)
+    established += id != kNoId && known_.map.landmark(id)->observations.size() >= 2;
+  const TrackingQuality quality = tracking_quality(frame_, known_.map, 0, 0, options_);
+  EXPECT_EQ(quality.reference_matches, established);
+  EXPECT_LT(established, static_cast<int>(view_.features->size()));
+}
+
+TEST_F(TrackingQualityTest, WithoutReferenceThereIsNothingToCompareWith) {
+  EXPECT_EQ(tracking_quality(frame_, SparseMap{}, 0, 0, options_).reference_matches, 0);
+}
+
+}  // namespace
+}  // namespace stillpoint::orb
