@@ -3,11 +3,11 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
-#include <opencv2/imgcodecs.hpp>
 #include <string>
 #include <utility>
 
 #include "simulation/parallel.hpp"
+#include "simulation/png_file.hpp"
 #include "stillpoint/error.hpp"
 
 namespace stillpoint::simulation {
@@ -30,13 +30,6 @@ void make_folders(const std::filesystem::path& folder) {
       throw Error(Fault::kUsage, "cannot make the folder (" + error.message() + ")",
                   (folder / name).string(), "name another one");
   }
-}
-
-void save(const std::filesystem::path& file, const cv::Mat& image) {
-  // Without parameters OpenCV chooses the fastest compression and a single filter; a compression
-  // level, even the lowest, would make it try all filters.
-  if (!cv::imwrite(file.string(), image))
-    throw Error(Fault::kUsage, "cannot write the image", file.string(), "is the disk full?");
 }
 
 }  // namespace
@@ -67,7 +60,7 @@ void RecordingWriter::write(const SimulatedFrame& frame) {
   }};
   parallel_for(threads_, static_cast<int>(images.size()), [&](int i) {
     const auto& [file, image] = images[static_cast<std::size_t>(i)];
-    save(file, image);
+    write_png(file, image);
   });
   const std::string color = seconds(frame.time) + " rgb/" + color_name;
   const std::string depth = seconds(frame.depth_time) + " depth/" + depth_name;

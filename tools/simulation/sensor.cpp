@@ -153,7 +153,7 @@ void Sensor::measure_row(const View& view, int frame, int y, std::uint16_t* out)
     const int from_x =
         std::clamp(x + round_to_int(kWander * normal_from_bits(bits)), 0, depth.cols - 1);
     const int from_y =
-        std::clamp(y + round_to_int(kWander * normal_from_bits(mix(bits))), 0, depth.rows - 1);
+        std::clamp(y + round_to_int(kWander * normal_from_bits(bits << 16)), 0, depth.rows - 1);
     const float here = depth.at<float>(y, x);
     float z = depth.at<float>(from_y, from_x);
     // Sub-pixel wander matters at edges only; on a surface it would add noise of its own.
