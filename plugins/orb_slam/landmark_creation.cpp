@@ -133,23 +133,14 @@ void triangulate_pair(MapEdit& edit, KeyFrameId a_id, KeyFrameId b_id,
 
 }  // namespace
 
-std::vector<LandmarkId> create_from_depth(MapEdit& edit, KeyFrameId id, double close_depth,
-                                          int min_landmarks) {
+std::vector<LandmarkId> create_from_depth(MapEdit& edit, KeyFrameId id) {
   const std::shared_ptr<const KeyFrame> keyframe = edit.map().shared_keyframe(id);
-  const Features& features = *keyframe->features;
-  std::vector<std::uint32_t> order = open_features(*keyframe);
-  std::erase_if(order, [&](std::uint32_t i) { return features.depth[i] <= 0; });
-  std::stable_sort(order.begin(), order.end(),
-                   [&](auto a, auto b) { return features.depth[a] < features.depth[b]; });
-  auto seen = std::count_if(keyframe->landmarks.begin(), keyframe->landmarks.end(),
-                            [](LandmarkId l) { return l != kNoId; });
   std::vector<LandmarkId> created;
-  for (const std::uint32_t i : order) {
-    if (features.depth[i] > close_depth && seen >= min_landmarks) break;
-    const Eigen::Vector3d point =
-        keyframe->world_from_camera * (ray(*keyframe, i) * double{features.depth[i]});
+  for (const std::uint32_t i : open_features(*keyframe)) {
+    const double depth = keyframe->features->depth[i];
+    if (depth <= 0) continue;
+    const Eigen::Vector3d point = keyframe->world_from_camera * (ray(*keyframe, i) * depth);
     created.push_back(add_seen_by(edit, point, id, {{id, i}}));
-    ++seen;
   }
   return created;
 }

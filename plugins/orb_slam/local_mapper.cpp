@@ -22,10 +22,6 @@ void add_evidence(MapEdit& edit, const std::vector<LandmarkEvidence>& evidence) 
 }  // namespace
 
 void OrbLocalMapper::Options::visit(OptionVisitor& v) {
-  v("close_depth", close_depth,
-    {.min = 0.1, .unit = "m", .help = "every nearer feature with depth becomes a landmark"});
-  v("min_landmarks", min_landmarks,
-    {.min = 1, .help = "farther features become landmarks until a key frame sees this many"});
   v("neighbours", neighbours,
     {.min = 1, .help = "covisible key frames used for triangulation and fusion"});
   v("redundant_share", redundant_share,
@@ -50,7 +46,7 @@ SparseMap OrbLocalMapper::insert(SparseMap map, KeyFrame keyframe) {
   edit.add_keyframe(std::move(keyframe));
   for (const LandmarkId landmark : std::vector(edit.map().keyframe(id)->landmarks))
     if (landmark != kNoId) refresh_landmark(edit, landmark);
-  remember(create_from_depth(edit, id, options_.close_depth, options_.min_landmarks));
+  remember(create_from_depth(edit, id));
   edit.update_covisibility(id);
   return std::move(edit).finish();
 }

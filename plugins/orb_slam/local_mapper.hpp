@@ -13,8 +13,6 @@ namespace stillpoint::orb {
 class OrbLocalMapper final : public LocalMapper {
  public:
   struct Options {
-    double close_depth = 3.0;
-    int min_landmarks = 100;
     int neighbours = 10;
     double redundant_share = 0.9;
     int bundle_keyframes = 10;

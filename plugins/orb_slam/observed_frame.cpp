@@ -5,13 +5,33 @@
 #include "orb_slam/pose_solver.hpp"
 
 namespace stillpoint::orb {
+namespace {
+
+constexpr float kMaxDepthStep = 0.04f;  // of the depth; more around a keypoint is an edge
+constexpr int kDepthWindow = 3;         // px around a keypoint
+
+// Depth of the surface a keypoint lies on; 0 beside a depth edge, where it may be that of the other
+// side. Such features made estimated motions 0.5 to 1 % too small, since errors of that kind go
+// towards the foreground.
+float depth_at(const cv::Mat& depth, cv::Point2f pixel) {
+  const int u = cvRound(pixel.x), v = cvRound(pixel.y);
+  const float centre = depth.at<float>(v, u);
+  const float limit = kMaxDepthStep * centre;
+  for (int y = std::max(v - kDepthWindow, 0); y <= std::min(v + kDepthWindow, depth.rows - 1); ++y) {
+    const float* row = depth.ptr<float>(y);
+    for (int x = std::max(u - kDepthWindow, 0); x <= std::min(u + kDepthWindow, depth.cols - 1); ++x)
+      if (row[x] > 0 && std::abs(row[x] - centre) > limit) return 0.0f;
+  }
+  return centre;
+}
+
+}  // namespace
 
 ObservedFrame observe(FramePtr frame, Features features) {
   const std::size_t count = features.size();
   features.depth.resize(count);
   for (std::size_t i = 0; i < count; ++i) {
-    const cv::Point2f p = features.keypoints[i].pt;
-    features.depth[i] = frame->depth.at<float>(cvRound(p.y), cvRound(p.x));
+    features.depth[i] = depth_at(frame->depth, features.keypoints[i].pt);
   }
   ObservedFrame observed;
   observed.grid = FeatureGrid(features, *frame->camera);
