@@ -11,7 +11,7 @@ constexpr std::size_t kReportedImages = 20;
 
 CameraModel required_camera(const StageContext& context) {
   if (context.camera) return *context.camera;
-  throw Error(Fault::kUsage, "no camera is given", "source (tum_rgbd)",
+  throw Error(Fault::kUsage, "no camera is given", "",
               "name one of configs/cameras with --camera, such as --camera tum_fr1, or add a "
               "'camera:' section to the pipeline file");
 }
@@ -35,7 +35,7 @@ void select(std::vector<ImagePair>& pairs, const TumSource::Options& options) {
 
 Recording selected_recording(const TumSource::Options& options) {
   if (options.path.empty())
-    throw Error(Fault::kUsage, "no recording is given", "source (tum_rgbd)",
+    throw Error(Fault::kUsage, "no recording is given", "",
                 "name its folder with --dataset or as 'path'");
   Recording recording = open_recording(options.path, options.pairing);
   select(recording.pairs, options);
@@ -117,11 +117,13 @@ void TumSource::skip(const Error& reason) {
   const std::size_t total = recording_.pairs.size();
   const bool hopeless = given_ == 0 && report_.skipped >= std::min(kHopelessStart, total);
   if (hopeless || 2 * report_.skipped > total)
-    throw Error(Fault::kData,
-                std::string(hopeless ? "none of the first " + std::to_string(report_.skipped)
-                                     : "more than half of the " + std::to_string(total)) +
-                    " image pairs can be used; the last one: " + reason.what(),
-                recording_.folder.string());
+    throw Error(
+        Fault::kData,
+        (hopeless
+             ? "none of the first " + std::to_string(report_.skipped) + " image pairs can be used"
+             : "more than half of the " + std::to_string(total) + " image pairs cannot be used") +
+            "; the last one: " + reason.what(),
+        recording_.folder.string());
   const std::string warning = std::string("skipped: ") + reason.what();
   log_(LogLevel::kWarning, warning);
   if (report_.skipped <= kReportedImages) report_.warnings.push_back(warning);

@@ -208,7 +208,8 @@ TEST_F(TumSourceTest, GivesUpWhenMoreThanHalfFail) {
   for (int i = 1; i < 6; ++i) std::filesystem::remove(depth_files_[i]);
   TumSource source = open();
   EXPECT_THAT(message_of([&] { read_all(source); }),
-              AllOf(HasSubstr("more than half of the 8 image pairs"), HasSubstr("no such file")));
+              AllOf(HasSubstr("more than half of the 8 image pairs cannot be used"),
+                    HasSubstr("no such file")));
 }
 
 TEST_F(TumSourceTest, GivesUpWhenNoFrameHasDepth) {

@@ -1,0 +1,168 @@
+// Wrong usage, configuration and plugins, through the program.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "support/simulated_recording.hpp"
+
+namespace stillpoint::testing {
+namespace {
+
+namespace fs = std::filesystem;
+using ::testing::HasSubstr;
+
+constexpr int kStageFailed = 1;
+constexpr int kWrongUsage = 2;
+
+class BadSetup : public ::testing::Test {
+ protected:
+  Outcome run(const std::string& pipeline, std::vector<std::string> arguments,
+              const Surroundings& surroundings = {}) const {
+    arguments.insert(arguments.begin(),
+                     {"run", pipeline, "-o", out().string(), "--set", "source.limit=6"});
+    return call(std::move(arguments), surroundings);
+  }
+  static std::vector<std::string> on_recording(std::vector<std::string> more = {}) {
+    more.insert(more.begin(), {"--dataset", simulated_recording().string()});
+    return more;
+  }
+  static void expect_refused(const Outcome& outcome, const std::string& message) {
+    EXPECT_EQ(outcome.exit_code, kWrongUsage) << outcome.err;
+    EXPECT_THAT(outcome.err, HasSubstr("error: "));
+    EXPECT_THAT(outcome.err, HasSubstr(message));
+    EXPECT_EQ(outcome.out, "");
+  }
+  fs::path out() const { return folder_.path() / "out"; }
+
+  const TemporaryFolder folder_;
+};
+
+TEST_F(BadSetup, CommandLine) {
+  expect_refused(call({}), "Run 'stillpoint --help' for help.");
+  expect_refused(call({"run"}), "pipeline is required");
+  expect_refused(call({"run", "orb_baseline", "--fast"}), "--fast");
+  expect_refused(call({"evaluate", "--json"}), "--reference");
+  expect_refused(run("orb_baseline", {}), "no recording is given; name its folder with --dataset");
+}
+
+TEST_F(BadSetup, NamesThatDoNotExist) {
+  expect_refused(run("orb_baselin", on_recording()), "did you mean 'orb_baseline'?");
+  expect_refused(run((folder_.path() / "mine.yaml").string(), on_recording()),
+                 "mine.yaml: no such pipeline file");
+  expect_refused(run("orb_baseline", on_recording({"--camera", "tum_fr11"})),
+                 "no camera named 'tum_fr11'; did you mean 'tum_fr1'?");
+  expect_refused(run("orb_baseline", on_recording({"--set", "tracker.type=orbs"})),
+                 "no tracker named 'orbs'; did you mean 'orb'?");
+}
+
+TEST_F(BadSetup, FaultsOfThePipelineFileAreReportedTogether) {
+  const fs::path file = folder_.write("mine.yaml",
+                                      "version: 1\n"
+                                      "source: {type: tum_rgbd, strid: 2}\n"
+                                      "tracker: {type: orb, levels: 99}\n"
+                                      "local_mapper: {type: orb}\n"
+                                      "local_mapper: {type: orb}\n");
+  const Outcome outcome = run(file.string(), on_recording());
+  expect_refused(outcome, file.string() + ":2:26: error: source: unknown key 'strid'; did you");
+  EXPECT_THAT(outcome.err,
+              HasSubstr(file.string() + ":3:30: error: tracker.levels = 99 is outside"));
+  EXPECT_THAT(outcome.err,
+              HasSubstr(file.string() + ":5:1: error: key 'local_mapper' is given twice"));
+  EXPECT_FALSE(fs::exists(out())) << "a run folder, though nothing has run";
+}
+
+TEST_F(BadSetup, UnreadableYaml) {
+  const fs::path file = folder_.write("broken.yaml", "version: 1\nsource: {type: tum_rgbd\n");
+  expect_refused(run(file.string(), on_recording()), file.string() + ":3:1: error: not valid YAML");
+}
+
+TEST_F(BadSetup, RunFolderThatCannotBeWritten) {
+  const fs::path file = folder_.write("file", "");
+  const Outcome outcome = call({"run", "orb_baseline", "--dataset", simulated_recording().string(),
+                                "-o", (file / "out").string()});
+  expect_refused(outcome, (file / "out").string() + ": cannot write the run folder: ");
+  EXPECT_THAT(outcome.err, HasSubstr("choose another one with -o"));
+}
+
+TEST_F(BadSetup, SimulateDoesNotTouchARecording) {
+  const RecordingCopy recording(1);
+  expect_refused(call({"simulate", kScene, "--frames", "1", "-o", recording.path().string()}),
+                 recording.path().string());
+  expect_refused(call({"simulate", "fr3_wlking_xyz", "-o", out().string()}),
+                 "did you mean 'fr3_walking_xyz'?");
+}
+
+// Every bad plugin in one folder: each gives its own message and the good ones are still there.
+class BadPlugins : public BadSetup {
+ protected:
+  BadPlugins() {
+    for (const auto& file : fs::directory_iterator(kBuilt))
+      fs::copy_file(file.path(), folder_.path() / file.path().filename());
+    folder_.write("libstillpoint_text.so", "this is a letter, not a library\n");
+    fs::copy_file(kBuilt / "libstillpoint_good.so", truncated());
+    truncate_file(truncated(), 0.5);
+  }
+  fs::path truncated() const { return folder_.path() / "libstillpoint_truncated.so"; }
+  Surroundings with_plugins() const {
+    return {.environment = {{"STILLPOINT_PLUGIN_PATH", folder_.path().string()}}};
+  }
+
+  const fs::path kBuilt = fs::path(STILLPOINT_BINARY_DIR) / "tests/plugins_bad/plugins";
+};
+
+TEST_F(BadPlugins, AreListedWithTheirReasonsBesideTheGoodOnes) {
+  const Outcome outcome = call({"plugins", "list"}, with_plugins());
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  for (const char* reason :
+       {"libstillpoint_text.so: not a shared library", "libstillpoint_truncated.so: truncated",
+        "libstillpoint_no_symbol.so: does not export", "libstillpoint_older_api.so: built for",
+        "libstillpoint_newer_api.so: built for", "libstillpoint_wrong_tag.so: built with",
+        "libstillpoint_undefined_symbol.so: cannot be loaded: undefined symbol"})
+    EXPECT_THAT(outcome.out, HasSubstr(reason));
+  for (const char* type : {"tum_rgbd", "simulation", "orb", "trajectory", "good"})
+    EXPECT_THAT(outcome.out, ::testing::ContainsRegex(std::string(type) + " +[0-9.]+ +/"));
+  const Outcome run_among_them = run("orb_baseline", on_recording(), with_plugins());
+  EXPECT_EQ(run_among_them.exit_code, 0) << run_among_them.err;
+  EXPECT_EQ(count_poses(out() / "trajectory.txt"), 6u);
+}
+
+TEST_F(BadPlugins, ReasonsExplainWhyATypeIsMissing) {
+  const Outcome outcome =
+      run("orb_baseline", on_recording({"--set", "moving_checker.type=older_api"}), with_plugins());
+  expect_refused(outcome, "no moving_checker named 'older_api'");
+  EXPECT_THAT(outcome.err, HasSubstr("not usable: libstillpoint_"));
+  EXPECT_THAT(outcome.err, HasSubstr("rebuild it against Stillpoint"));
+  EXPECT_THAT(outcome.err, HasSubstr("searched:   " + folder_.path().string()));
+}
+
+TEST_F(BadPlugins, ThrowingConstructorIsNamed) {
+  const Outcome outcome =
+      run("orb_baseline", on_recording({"--set", "moving_checker.type=throws_in_constructor"}),
+          with_plugins());
+  EXPECT_EQ(outcome.exit_code, kStageFailed);
+  EXPECT_THAT(outcome.err,
+              HasSubstr("error: moving_checker (throws_in_constructor): no such model file"));
+}
+
+TEST_F(BadPlugins, FailingStageIsNamedAndResultsAreSaved) {
+  for (const char* mode : {"inline", "threaded"}) {
+    const Outcome outcome = run("orb_baseline",
+                                on_recording({"--set", "moving_checker.type=throws_later", "--set",
+                                              std::string("runtime.mode=") + mode}),
+                                with_plugins());
+    EXPECT_EQ(outcome.exit_code, kStageFailed);
+    const std::string message =
+        "moving check (throws_later) failed on frame 1: text inside the plugin";
+    EXPECT_THAT(outcome.err, HasSubstr("error: " + message));
+    const auto summary = json_file(out() / "summary.json");
+    EXPECT_FALSE(summary["complete"]);
+    EXPECT_EQ(summary["failure"], message);
+    EXPECT_EQ(count_poses(out() / "trajectory.txt"), 1u);
+  }
+}
+
+}  // namespace
+}  // namespace stillpoint::testing

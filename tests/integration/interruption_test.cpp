@@ -1,0 +1,84 @@
+// Ctrl-C, and frames in which nothing can be seen.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <csignal>
+#include <filesystem>
+#include <opencv2/core.hpp>
+#include <string>
+
+#include "support/simulated_recording.hpp"
+
+namespace stillpoint::testing {
+namespace {
+
+namespace fs = std::filesystem;
+using ::testing::HasSubstr;
+
+// The images of the short recording forth and back until a run of it takes long enough.
+void list_repeatedly(const RecordingCopy& recording, int images, int frames) {
+  std::string colors, depths;
+  for (int frame = 0; frame < frames; ++frame) {
+    const int phase = frame % (2 * images);
+    const int image = phase < images ? phase : 2 * images - 1 - phase;
+    const std::string stamp = stamp_text(1000.0 + frame / 30.0);
+    colors += stamp + " rgb/" + recording.color(image).filename().string() + "\n";
+    depths += stamp + " depth/" + recording.depth(image).filename().string() + "\n";
+  }
+  recording.write("rgb.txt", colors);
+  recording.write("depth.txt", depths);
+}
+
+class Interruption : public ::testing::TestWithParam<const char*> {};
+
+TEST_P(Interruption, LeavesWhatWasComputed) {
+  constexpr int kListed = 1000;
+  const TemporaryFolder folder;
+  const RecordingCopy recording(20);
+  list_repeatedly(recording, 20, kListed);
+  const fs::path out = folder.path() / "out";
+  Program program({"run", "orb_baseline", "--dataset", recording.path().string(), "-o",
+                   out.string(), "--set", std::string("runtime.mode=") + GetParam()});
+  ASSERT_TRUE(program.wait_for(" key frames  tracking")) << "no line of progress";
+  program.send(SIGINT);
+  const Outcome outcome = program.finish();
+  EXPECT_EQ(outcome.signal, SIGINT) << outcome.exit_code;
+  EXPECT_THAT(outcome.err, HasSubstr("stopped; what was computed until then is saved"));
+
+  const auto summary = json_file(out / "summary.json");
+  EXPECT_FALSE(summary["complete"]);
+  EXPECT_TRUE(summary["failure"].is_null());
+  const auto poses = count_poses(out / "trajectory.txt");
+  EXPECT_GT(poses, 0u);
+  EXPECT_LT(poses, std::size_t{kListed});
+  EXPECT_EQ(summary["tracked_frames"], poses);
+  EXPECT_GT(count_poses(out / "keyframes.txt"), 0u);
+}
+
+INSTANTIATE_TEST_SUITE_P(Modes, Interruption, ::testing::Values("inline", "threaded"),
+                         [](const auto& mode) { return std::string(mode.param); });
+
+// Depth stays: without any, a pair counts as unusable and tracking would never see the frame.
+TEST(Darkness, IsLostAndFoundAgain) {
+  constexpr int kBegin = kSimulatedFrames / 2, kDark = 10;
+  const TemporaryFolder folder;
+  const RecordingCopy recording(kSimulatedFrames);
+  for (int frame = kBegin; frame < kBegin + kDark; ++frame)
+    recording.replace(recording.color(frame), cv::Mat::zeros(480, 640, CV_8UC3));
+  const fs::path out = folder.path() / "out";
+  const Outcome outcome = call({"run", "orb_baseline", "--dataset", recording.path().string(), "-o",
+                                out.string(), "--set", "runtime.mode=inline"});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr("lost 1 time\n"));
+  const auto summary = json_file(out / "summary.json");
+  EXPECT_TRUE(summary["complete"]);
+  EXPECT_EQ(summary["times_lost"], 1);
+  EXPECT_EQ(summary["frames"], kSimulatedFrames);
+  const int tracked = summary["tracked_frames"];
+  EXPECT_LE(tracked, kSimulatedFrames - kDark);
+  EXPECT_GE(tracked, kSimulatedFrames - kDark - 2);
+  EXPECT_LT(absolute_error(recording.path(), out / "trajectory.txt"), 0.006);
+}
+
+}  // namespace
+}  // namespace stillpoint::testing

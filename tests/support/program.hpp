@@ -1,0 +1,141 @@
+// Calls the built program the way a user does: arguments, folder and environment in; text, exit
+// code and files out.
+#pragma once
+
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "support/recording_writer.hpp"
+
+namespace stillpoint::testing {
+
+inline std::filesystem::path program_file() {
+  return std::filesystem::path(STILLPOINT_BINARY_DIR) / "bin/stillpoint";
+}
+
+inline std::string text_of(const std::filesystem::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+struct Outcome {
+  int exit_code = -1;  ///< -1 when a signal ended the program
+  int signal = 0;
+  std::string out;
+  std::string err;
+};
+
+struct Surroundings {
+  std::filesystem::path folder = std::filesystem::temp_directory_path();
+  std::map<std::string, std::string> environment = {};  ///< besides that of the test
+};
+
+/// One call of the program. Standard error comes through a pipe, so that a test can wait for a line
+/// of it; standard output goes to a file.
+class Program {
+ public:
+  explicit Program(std::vector<std::string> arguments, const Surroundings& surroundings = {}) {
+    std::array<int, 2> pipe{};
+    if (::pipe2(pipe.data(), O_CLOEXEC) != 0) fail("no pipe", errno);
+    err_ = pipe[0];
+    posix_spawn_file_actions_t actions;
+    posix_spawn_file_actions_init(&actions);
+    posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, out_file().c_str(),
+                                     O_WRONLY | O_CREAT | O_TRUNC, 0600);
+    posix_spawn_file_actions_adddup2(&actions, pipe[1], STDERR_FILENO);
+    posix_spawn_file_actions_addchdir_np(&actions, surroundings.folder.c_str());
+    arguments.insert(arguments.begin(), program_file().string());
+    std::vector<std::string> variables = environment_with(surroundings.environment);
+    const int error = ::posix_spawn(&process_, program_file().c_str(), &actions, nullptr,
+                                    pointers(arguments).data(), pointers(variables).data());
+    posix_spawn_file_actions_destroy(&actions);
+    ::close(pipe[1]);
+    if (error != 0) fail("cannot start " + program_file().string(), error);
+  }
+  ~Program() {
+    if (process_ > 0) finish();
+    ::close(err_);
+  }
+  Program(const Program&) = delete;
+  Program& operator=(const Program&) = delete;
+
+  /// False when the program ended without having written `text` to standard error.
+  bool wait_for(const std::string& text) {
+    while (outcome_.err.find(text) == std::string::npos)
+      if (!read_more()) return false;
+    return true;
+  }
+  void send(int signal) const { ::kill(process_, signal); }
+
+  /// Waits for the end.
+  Outcome finish() {
+    while (read_more()) {
+    }
+    int status = 0;
+    while (::waitpid(process_, &status, 0) < 0 && errno == EINTR) {
+    }
+    process_ = -1;
+    if (WIFEXITED(status)) outcome_.exit_code = WEXITSTATUS(status);
+    if (WIFSIGNALED(status)) outcome_.signal = WTERMSIG(status);
+    outcome_.out = text_of(out_file());
+    // Their exit codes can be taken for those of the program.
+    for (const char* report : {"Sanitizer", "runtime error:"})
+      EXPECT_EQ(outcome_.err.find(report), std::string::npos) << outcome_.err;
+    return outcome_;
+  }
+
+ private:
+  [[noreturn]] static void fail(const std::string& what, int error) {
+    throw std::runtime_error(what + ": " + std::strerror(error));
+  }
+  static std::vector<std::string> environment_with(const std::map<std::string, std::string>& more) {
+    std::vector<std::string> variables;
+    for (char** variable = environ; *variable; ++variable) {
+      const std::string text = *variable;
+      if (!more.contains(text.substr(0, text.find('=')))) variables.push_back(text);
+    }
+    for (const auto& [name, value] : more) variables.push_back(name + "=" + value);
+    return variables;
+  }
+  static std::vector<char*> pointers(std::vector<std::string>& texts) {
+    std::vector<char*> result;
+    for (std::string& text : texts) result.push_back(text.data());
+    result.push_back(nullptr);
+    return result;
+  }
+  std::filesystem::path out_file() const { return output_.path() / "stdout"; }
+
+  // False at the end of standard error.
+  bool read_more() {
+    std::array<char, 4096> bytes{};
+    const ssize_t count = ::read(err_, bytes.data(), bytes.size());
+    if (count > 0) outcome_.err.append(bytes.data(), static_cast<std::size_t>(count));
+    return count > 0 || (count < 0 && errno == EINTR);
+  }
+
+  TemporaryFolder output_;
+  pid_t process_ = -1;
+  int err_ = -1;
+  Outcome outcome_;
+};
+
+inline Outcome call(std::vector<std::string> arguments, const Surroundings& surroundings = {}) {
+  return Program(std::move(arguments), surroundings).finish();
+}
+
+}  // namespace stillpoint::testing

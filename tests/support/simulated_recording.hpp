@@ -1,0 +1,143 @@
+// A short recording of fr3_walking_xyz_empty on disk, and copies of it in which something is wrong.
+#pragma once
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "support/program.hpp"
+
+namespace stillpoint::testing {
+
+// With sanitizers everything takes ten times as long.
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+constexpr bool kSanitized = true;
+#else
+constexpr bool kSanitized = false;
+#endif
+
+constexpr const char* kScene = "fr3_walking_xyz_empty";
+constexpr int kSimulatedFrames = kSanitized ? 30 : 60;
+
+/// Held while the file exists and until the end of the scope; other processes wait.
+class FileLock {
+ public:
+  explicit FileLock(const std::filesystem::path& file)
+      : descriptor_(::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0600)) {
+    if (descriptor_ < 0 || ::flock(descriptor_, LOCK_EX) != 0)
+      throw std::runtime_error("cannot lock " + file.string());
+  }
+  ~FileLock() { ::close(descriptor_); }
+  FileLock(const FileLock&) = delete;
+  FileLock& operator=(const FileLock&) = delete;
+
+ private:
+  int descriptor_;
+};
+
+inline std::filesystem::file_time_type newest_of_simulator() {
+  auto newest = std::filesystem::last_write_time(program_file());
+  for (const auto& file : std::filesystem::directory_iterator(
+           std::filesystem::path(STILLPOINT_SOURCE_DIR) / "configs/scenes"))
+    newest = std::max(newest, file.last_write_time());
+  return newest;
+}
+
+/// Rendering takes a while and ctest gives each test a process of its own: the recording stays in
+/// the build folder until the simulator is newer.
+inline const std::filesystem::path& simulated_recording() {
+  namespace fs = std::filesystem;
+  static const fs::path recording = [] {
+    const fs::path folder = fs::path(STILLPOINT_BINARY_DIR) / "tests/recording";
+    const fs::path done = folder / "done";
+    fs::create_directories(folder.parent_path());
+    const FileLock lock(folder.string() + ".lock");
+    if (fs::exists(done) && fs::last_write_time(done) > newest_of_simulator()) return folder;
+    fs::remove_all(folder);
+    const Outcome outcome = call(
+        {"simulate", kScene, "--frames", std::to_string(kSimulatedFrames), "-o", folder.string()});
+    if (outcome.exit_code != 0) throw std::runtime_error("simulate failed: " + outcome.err);
+    std::ofstream(done) << "complete\n";
+    return folder;
+  }();
+  return recording;
+}
+
+/// The first frames of the simulated recording in a folder of their own, to be changed by a test.
+class RecordingCopy {
+ public:
+  explicit RecordingCopy(int frames) {
+    namespace fs = std::filesystem;
+    const fs::path& original = simulated_recording();
+    for (const char* name : {"camera.yaml", "groundtruth.txt"})
+      fs::copy_file(original / name, path() / name);
+    colors_ = copy_images(original, "rgb", frames);
+    depths_ = copy_images(original, "depth", frames);
+  }
+  const std::filesystem::path& path() const { return folder_.path(); }
+  const std::filesystem::path& color(int frame) const { return colors_.at(frame); }
+  const std::filesystem::path& depth(int frame) const { return depths_.at(frame); }
+
+  std::string read(const std::string& name) const { return text_of(path() / name); }
+  void write(const std::string& name, const std::string& text) const { folder_.write(name, text); }
+  void replace(const std::filesystem::path& image, const cv::Mat& pixels) const {
+    cv::imwrite(image.string(), pixels);
+  }
+
+ private:
+  std::vector<std::filesystem::path> copy_images(const std::filesystem::path& original,
+                                                 const std::string& stream, int frames) const {
+    std::filesystem::create_directories(path() / stream);
+    std::ifstream list(original / (stream + ".txt"));
+    std::string copied_list;
+    std::vector<std::filesystem::path> images;
+    for (std::string line; images.size() < static_cast<std::size_t>(frames);) {
+      if (!std::getline(list, line)) throw std::runtime_error("the recording is too short");
+      copied_list += line + "\n";
+      if (line.starts_with("#")) continue;
+      const std::string name = line.substr(line.find(' ') + 1);
+      std::filesystem::copy_file(original / name, path() / name);
+      images.push_back(path() / name);
+    }
+    write(stream + ".txt", copied_list);
+    return images;
+  }
+
+  TemporaryFolder folder_;
+  std::vector<std::filesystem::path> colors_;
+  std::vector<std::filesystem::path> depths_;
+};
+
+inline nlohmann::json json_file(const std::filesystem::path& file) {
+  return nlohmann::json::parse(text_of(file));
+}
+
+/// Lines that are no comments.
+inline std::size_t count_poses(const std::filesystem::path& trajectory) {
+  std::istringstream stream(text_of(trajectory));
+  std::size_t count = 0;
+  for (std::string line; std::getline(stream, line);) count += !line.starts_with("#");
+  return count;
+}
+
+/// RMSE of the absolute trajectory error in metres, by `stillpoint evaluate`.
+inline double absolute_error(const std::filesystem::path& recording,
+                             const std::filesystem::path& trajectory) {
+  const Outcome outcome =
+      call({"evaluate", "--json", "--reference", (recording / "groundtruth.txt").string(),
+            "--estimate", trajectory.string()});
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  if (outcome.exit_code != 0) return 1e9;
+  return nlohmann::json::parse(outcome.out)["ate"]["se3_m"]["rmse"];
+}
+
+}  // namespace stillpoint::testing
