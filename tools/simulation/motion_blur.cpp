@@ -39,14 +39,15 @@ MotionRange MotionMap::around(int column, int row) const {
   return range;
 }
 
-cv::Vec3f mean_along(const cv::Mat& image, int x, int y, const Eigen::Vector2f& motion) {
+cv::Vec3f mean_along(const cv::Mat& image, const cv::Point& pixel, const Eigen::Vector2f& motion) {
   constexpr float kMostSamples = 24;
   // One sample per pixel of motion: the image is as smooth as a pixel is wide.
   const float count = std::clamp(std::ceil(motion.norm()), 2.0F, kMostSamples);
   cv::Vec3f sum;
   for (float i = 0.5F; i < count; ++i) {
     const Eigen::Vector2f shift = (i / count - 0.5F) * motion;
-    sum += bilinear(image, static_cast<float>(x) + shift.x(), static_cast<float>(y) + shift.y());
+    sum += bilinear(image, static_cast<float>(pixel.x) + shift.x(),
+                    static_cast<float>(pixel.y) + shift.y());
   }
   return sum * (1 / count);
 }

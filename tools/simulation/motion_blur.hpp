@@ -36,7 +36,7 @@ class MotionMap {
   std::vector<MotionRange> tiles_;
 };
 
-/// Mean of a CV_32FC3 image along `motion` px, centred on (x, y).
-cv::Vec3f mean_along(const cv::Mat& image, int x, int y, const Eigen::Vector2f& motion);
+/// Mean of a CV_32FC3 image along `motion` px, with `pixel` in the middle.
+cv::Vec3f mean_along(const cv::Mat& image, const cv::Point& pixel, const Eigen::Vector2f& motion);
 
 }  // namespace stillpoint::simulation

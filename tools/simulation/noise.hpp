@@ -7,7 +7,7 @@
 namespace stillpoint::simulation {
 
 /// What a random number is for; streams are independent of each other.
-enum class Stream : std::uint32_t { kColor, kDepthWhite, kDepthLattice, kDepthHole, kDepthJitter };
+enum class Stream : std::uint32_t { kColor, kDepthWhite, kDepthLattice, kDepthJitter };
 
 inline std::uint32_t mix(std::uint32_t x) {
   x ^= x >> 16;
@@ -36,7 +36,7 @@ class RowNoise {
   std::uint32_t key_;
 };
 
-/// Standard normal value of 32 random bits.
+/// Standard normal value of random bits, of which the uppermost 12 count.
 float normal_from_bits(std::uint32_t bits);
 
 inline float RowNoise::normal(int column) const { return normal_from_bits(bits(column)); }

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <utility>
 #include <vector>
 
 #include "simulation/motion_blur.hpp"
@@ -19,6 +18,8 @@ constexpr int kPacketWidth = 4;  // px
 constexpr int kPacketHeight = 2;
 constexpr std::size_t kFew = 4;   // samples at an edge
 constexpr std::size_t kMany = 8;  // samples at a fast edge; the most anywhere
+
+constexpr std::size_t kEdgePixels = kPacket / kFew;  // whose samples make a packet
 
 /// Columns and rows of the samples of an edge pixel in a grid of kFew or kMany: each is used once,
 /// so that the mean stays at the pixel's centre, and in an order that has nothing to do with time.
@@ -50,6 +51,21 @@ struct Pixels {
   std::array<int, kPacket> x;
   std::array<int, kPacket> y;
 };
+
+/// Points of the image, px; integers are centres of pixels.
+struct Points {
+  std::array<float, kPacket> x;
+  std::array<float, kPacket> y;
+};
+
+Points points_in(const Pixels& pixels, float dx, float dy) {
+  Points points{};
+  for (std::size_t i = 0; i < kPacket; ++i) {
+    points.x[i] = static_cast<float>(pixels.x[i]) + dx;
+    points.y[i] = static_cast<float>(pixels.y[i]) + dy;
+  }
+  return points;
+}
 
 /// A packet of rays and what they meet.
 struct Bundle {
@@ -86,6 +102,7 @@ struct Renderer::Job {
   cv::Mat sharp;     // CV_32FC3, colours in the middle of the exposure
   cv::Mat surfaces;  // CV_32SC1, Shader::surface_key per pixel
   MotionMap motion;
+  MotionMap motion_around;
   Eye middle;
   Eye begin;
   Eye end;
@@ -98,6 +115,7 @@ struct Renderer::Job {
         exposure(e),
         shader(r.world_, t, static_cast<float>(1 / r.camera_.fx)),
         motion(packet_columns(), packet_rows()),
+        motion_around(motion),
         middle(eye_at(r.motion_, t, e, 0.5)),
         begin(eye_at(r.motion_, t, e, 0)),
         end(eye_at(r.motion_, t, e, 1)) {
@@ -134,15 +152,13 @@ struct Renderer::Job {
     return pixels;
   }
 
-  /// Casts rays `dx`, `dy` px from the centres of pixels.
-  void cast(const Pixels& pixels, const Eye& eye, float dx, float dy, Bundle& bundle) const {
+  /// Casts rays through points of the image, px.
+  void cast(const Points& points, const Eye& eye, Bundle& bundle) const {
     const Camera& c = renderer.camera_;
     RayPacket rays;
     for (std::size_t i = 0; i < kPacket; ++i) {
-      const float u = static_cast<float>(pixels.x[i]) + dx;
-      const float v = static_cast<float>(pixels.y[i]) + dy;
-      const Vector3f ray((u - static_cast<float>(c.cx)) / static_cast<float>(c.fx),
-                         (v - static_cast<float>(c.cy)) / static_cast<float>(c.fy), 1);
+      const Vector3f ray((points.x[i] - static_cast<float>(c.cx)) / static_cast<float>(c.fx),
+                         (points.y[i] - static_cast<float>(c.cy)) / static_cast<float>(c.fy), 1);
       const Vector3f d = eye.world_from_camera * ray;
       bundle.directions[i] = d;
       rays.x[i] = d.x();
@@ -173,7 +189,7 @@ struct Renderer::Job {
     AspectMemory aspects(shader);
     for (int column = 0; column < packet_columns(); ++column) {
       const Pixels pixels = packet(column, row);
-      cast(pixels, middle, 0, 0, bundle);
+      cast(points_in(pixels, 0, 0), middle, bundle);
       MotionRange& moved = motion.at(column, row);
       moved = image_motion(bundle.hits[0], bundle.directions[0]);
       moved.include(image_motion(bundle.hits[7], bundle.directions[7]));
@@ -216,47 +232,51 @@ struct Renderer::Job {
 
   /// Smooth edges in `sharp`, and final colours where surfaces move past each other.
   void refine(int row) {
-    Pixels edges{};
+    std::array<cv::Point, kEdgePixels> edges;
     std::size_t waiting = 0;
     for (int column = 0; column < packet_columns(); ++column) {
       const Pixels pixels = packet(column, row);
       const MotionRange range = motion.around(column, row);
+      motion_around.at(column, row) = range;
       if (is_torn(range)) {
         expose(pixels, range.fastest() <= kFew ? kFew : kMany);
         continue;
       }
       for (std::size_t i = 0; i < kPacket; ++i) {
         if (!is_edge(pixels.x[i], pixels.y[i])) continue;
-        edges.x[waiting] = pixels.x[i];
-        edges.y[waiting] = pixels.y[i];
-        if (++waiting == kPacket) smooth(edges, std::exchange(waiting, 0));
+        edges[waiting] = {pixels.x[i], pixels.y[i]};
+        if (++waiting < kEdgePixels) continue;
+        smooth(edges);
+        waiting = 0;
       }
     }
-    if (waiting > 0) smooth(edges, waiting);
+    if (waiting == 0) return;
+    std::fill(edges.begin() + static_cast<std::ptrdiff_t>(waiting), edges.end(), edges[0]);
+    smooth(edges);
   }
 
   /// Several views spread over each pixel; one look at each surface's colour is enough.
-  void smooth(Pixels pixels, std::size_t count) {
-    for (std::size_t i = count; i < kPacket; ++i) {
-      pixels.x[i] = pixels.x[0];
-      pixels.y[i] = pixels.y[0];
+  void smooth(const std::array<cv::Point, kEdgePixels>& pixels) {
+    Points points{};
+    for (std::size_t i = 0; i < kPacket; ++i) {
+      points.x[i] = static_cast<float>(pixels[i / kFew].x) + cell_offset(0, i % kFew, kFew);
+      points.y[i] = static_cast<float>(pixels[i / kFew].y) + cell_offset(1, i % kFew, kFew);
     }
     Bundle bundle;
-    std::array<Vector3f, kPacket> sums;
+    cast(points, middle, bundle);
+    std::array<Vector3f, kEdgePixels> sums;
     sums.fill(Vector3f::Zero());
-    for (std::size_t s = 0; s < kFew; ++s) {
-      cast(pixels, middle, cell_offset(0, s, kFew), cell_offset(1, s, kFew), bundle);
-      for (std::size_t i = 0; i < count; ++i) {
-        const Hit& hit = bundle.hits[i];
-        if (hit.distance == 0) continue;
-        if (shader.surface_key(hit) == surfaces.at<int>(pixels.y[i], pixels.x[i]))
-          sums[i] += Vector3f(sharp.at<cv::Vec3f>(pixels.y[i], pixels.x[i]).val);
-        else
-          sums[i] += shader.color(hit, shader.aspect(hit, bundle.directions[i]));
-      }
+    for (std::size_t i = 0; i < kPacket; ++i) {
+      const Hit& hit = bundle.hits[i];
+      if (hit.distance == 0) continue;
+      const cv::Point& pixel = pixels[i / kFew];
+      if (shader.surface_key(hit) == surfaces.at<int>(pixel))
+        sums[i / kFew] += Vector3f(sharp.at<cv::Vec3f>(pixel).val);
+      else
+        sums[i / kFew] += shader.color(hit, shader.aspect(hit, bundle.directions[i]));
     }
-    for (std::size_t i = 0; i < count; ++i)
-      set_color(sharp, pixels.x[i], pixels.y[i], sums[i] / static_cast<float>(kFew));
+    for (std::size_t i = 0; i < kEdgePixels; ++i)
+      set_color(sharp, pixels[i].x, pixels[i].y, sums[i] / static_cast<float>(kFew));
   }
 
   /// Views spread over each pixel and the exposure.
@@ -265,7 +285,8 @@ struct Renderer::Job {
     std::array<Vector3f, kPacket> sums;
     sums.fill(Vector3f::Zero());
     for (std::size_t s = 0; s < count; ++s) {
-      cast(pixels, eyes[count][s], cell_offset(0, s, count), cell_offset(1, s, count), bundle);
+      cast(points_in(pixels, cell_offset(0, s, count), cell_offset(1, s, count)), eyes[count][s],
+           bundle);
       AspectMemory aspects(shader);
       for (std::size_t i = 0; i < kPacket; ++i) {
         const Hit& hit = bundle.hits[i];
@@ -279,14 +300,13 @@ struct Renderer::Job {
   /// Final colours where the image stands still or moves as a whole.
   void blur(int row) {
     for (int column = 0; column < packet_columns(); ++column) {
-      const MotionRange range = motion.around(column, row);
+      const MotionRange& range = motion_around.at(column, row);
       if (is_torn(range)) continue;
       const Pixels pixels = packet(column, row);
       for (std::size_t i = 0; i < kPacket; ++i) {
-        const int x = pixels.x[i];
-        const int y = pixels.y[i];
-        view.color.at<cv::Vec3f>(y, x) =
-            is_still(range) ? sharp.at<cv::Vec3f>(y, x) : mean_along(sharp, x, y, range.mean());
+        const cv::Point pixel(pixels.x[i], pixels.y[i]);
+        view.color.at<cv::Vec3f>(pixel) =
+            is_still(range) ? sharp.at<cv::Vec3f>(pixel) : mean_along(sharp, pixel, range.mean());
       }
     }
   }

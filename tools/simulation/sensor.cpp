@@ -104,8 +104,8 @@ cv::Mat Sensor::color_image(const View& view, int frame, double time) const {
       const std::uint32_t bits = noise.bits(x);
       for (int c = 0; c < 3; ++c) {
         const float value = std::min(in[x][c] * light, 255.0F);
-        const float error = sigma[static_cast<std::size_t>(value)] *
-                            normal_from_bits(mix(bits + static_cast<std::uint32_t>(c)));
+        const float error =
+            sigma[static_cast<std::size_t>(value)] * normal_from_bits(bits << (10 * c));
         out[x][c] = cv::saturate_cast<std::uint8_t>(value + error);
       }
     }
@@ -135,7 +135,6 @@ void Sensor::measure_row(const View& view, int frame, int y, std::uint16_t* out)
   constexpr float kBright = 0.12F;   // always above that
   const auto id = static_cast<std::uint32_t>(frame);
   const RowNoise white(seed_, id, Stream::kDepthWhite, y);
-  const RowNoise holes(seed_, id, Stream::kDepthHole, y);
   const RowNoise jitter(seed_, id, Stream::kDepthJitter, y);
   LatticeNoise shared(seed_, id, y);
   const cv::Mat& depth = view.depth;
@@ -159,14 +158,15 @@ void Sensor::measure_row(const View& view, int frame, int y, std::uint16_t* out)
     // Sub-pixel wander matters at edges only; on a surface it would add noise of its own.
     if (std::abs(z - here) < kEdge * here) z = here;
     if (z < options_.min_range || z > options_.max_range) continue;
-    const float random = holes.uniform(x);
+    const std::uint32_t chance = white.bits(x);
+    const float random = static_cast<float>(chance & 0xffff) / 0x1p16F;
     const float light = view.infrared.at<float>(from_y, from_x);
     if (light < kDark + (kBright - kDark) * random) continue;
     const float left = depth.at<float>(y, std::max(x - 1, 0));
     const float right = depth.at<float>(y, std::min(x + 1, depth.cols - 1));
     const bool edge = std::abs(left - right) > kEdge * here;
     if (edge && random < kEdgeLoss) continue;
-    float disparity = focal / z + sigma_white * white.normal(x) + sigma_shared * lattice;
+    float disparity = focal / z + sigma_white * normal_from_bits(chance) + sigma_shared * lattice;
     if (step > 0) disparity = step * static_cast<float>(round_to_int(disparity / step));
     if (disparity > 0) out[x] = encode(focal / disparity, depth_factor_);
   }
