@@ -6,6 +6,7 @@
 #include <cmath>
 #include <deque>
 #include <map>
+#include <set>
 
 #include "orb_slam/landmark_geometry.hpp"
 #include "orb_slam/pose_solver.hpp"
@@ -20,6 +21,7 @@ constexpr double kMinDepth = 0.05;  // metres; nearer points give no residual
 // rotation vector) multiplied from the left. Changes stay small, which keeps the parametrisation
 // far from its singularity and needs no manifold.
 struct CameraState {
+  KeyFrameId id = kNoId;
   Pose start;
   std::array<double, 6> change{};  // metres, radians
 
@@ -34,8 +36,8 @@ struct CameraState {
 // Normalised measurement of a landmark.
 struct Measurement {
   double fx, fy, cx, cy;
-  double u, v, inverse_depth;            // inverse_depth 0 = none
-  double pixel_weight, depth_weight;     // one over the standard deviation, times sqrt(weight)
+  double u, v, inverse_depth;         // inverse_depth 0 = none
+  double pixel_weight, depth_weight;  // one over the standard deviation, times sqrt(weight)
 };
 
 // Residuals at a point in the camera, with their derivatives by that point.
@@ -95,8 +97,7 @@ class FixedCameraCost final : public ceres::SizedCostFunction<3, 3> {
 
   bool Evaluate(const double* const* parameters, double* residuals,
                 double** jacobians) const override {
-    const Eigen::Vector3d p =
-        camera_from_world_ * Eigen::Map<const Eigen::Vector3d>(parameters[0]);
+    const Eigen::Vector3d p = camera_from_world_ * Eigen::Map<const Eigen::Vector3d>(parameters[0]);
     Eigen::Vector3d r;
     Eigen::Matrix3d by_point;
     evaluate(m_, p, r, jacobians ? &by_point : nullptr);
@@ -115,8 +116,7 @@ class StopCallback final : public ceres::IterationCallback {
  public:
   explicit StopCallback(std::stop_token hurry) : hurry_(std::move(hurry)) {}
   ceres::CallbackReturnType operator()(const ceres::IterationSummary&) override {
-    return hurry_.stop_requested() ? ceres::SOLVER_TERMINATE_SUCCESSFULLY
-                                   : ceres::SOLVER_CONTINUE;
+    return hurry_.stop_requested() ? ceres::SOLVER_TERMINATE_SUCCESSFULLY : ceres::SOLVER_CONTINUE;
   }
 
  private:
@@ -144,7 +144,7 @@ class LocalProblem {
     for (auto& [id, position] : points_)
       if (problem_.HasParameterBlock(position.data()))
         solver.linear_solver_ordering->AddElementToGroup(position.data(), 0);
-    for (auto& [id, camera] : moving_)
+    for (CameraState& camera : moving_)
       if (problem_.HasParameterBlock(camera.change.data()))
         solver.linear_solver_ordering->AddElementToGroup(camera.change.data(), 1);
     ceres::Solver::Summary summary;
@@ -156,8 +156,9 @@ class LocalProblem {
   std::vector<LandmarkId> store(MapEdit& edit) const {
     std::vector<LandmarkId> adjusted;
     if (!usable_) return adjusted;
-    for (const auto& [id, camera] : moving_)
-      edit.keyframe(id).world_from_camera = orthonormalised(camera.camera_from_world().inverse());
+    for (const CameraState& camera : moving_)
+      edit.keyframe(camera.id).world_from_camera =
+          orthonormalised(camera.camera_from_world().inverse());
     for (const auto& [id, position] : points_) {
       edit.landmark(id).position_in_world = position;
       adjusted.push_back(id);
@@ -171,26 +172,30 @@ class LocalProblem {
     std::vector<KeyFrameId> ids{centre};
     for (const Covisibility& c : map_.keyframe(centre)->covisible)
       if (static_cast<int>(ids.size()) < max_keyframes) ids.push_back(c.keyframe);
-    for (const KeyFrameId id : ids) {
-      local_.push_back(id);
-      if (id > 0) moving_[id].start = map_.keyframe(id)->world_from_camera.inverse();
-    }
+    local_ = ids;
+    std::erase(ids, KeyFrameId{0});  // the origin stays
+    for (const KeyFrameId id : ids)
+      moving_.push_back({id, map_.keyframe(id)->world_from_camera.inverse()});
   }
 
   void choose_points() {
+    std::set<LandmarkId> ids;
     for (const KeyFrameId keyframe : local_)
       for (const LandmarkId id : map_.keyframe(keyframe)->landmarks)
-        if (id != kNoId) points_.try_emplace(id, map_.landmark(id)->position_in_world);
+        if (id != kNoId) ids.insert(id);
+    for (const LandmarkId id : ids) points_.emplace_back(id, map_.landmark(id)->position_in_world);
   }
 
   void add_point(LandmarkId id, Eigen::Vector3d& position) {
     for (const Observation& o : map_.landmark(id)->observations) {
       const KeyFrame& keyframe = *map_.keyframe(o.keyframe);
       const Measurement m = measurement(keyframe, o.feature);
-      const auto moving = moving_.find(o.keyframe);
+      const auto moving =
+          std::find_if(moving_.begin(), moving_.end(),
+                       [&](const CameraState& camera) { return camera.id == o.keyframe; });
       if (moving != moving_.end()) {
-        auto& cost = moving_costs_.emplace_back(m, moving->second);
-        problem_.AddResidualBlock(&cost, &loss_, moving->second.change.data(), position.data());
+        auto& cost = moving_costs_.emplace_back(m, *moving);
+        problem_.AddResidualBlock(&cost, &loss_, moving->change.data(), position.data());
       } else {
         auto [fixed, is_new] = fixed_.try_emplace(o.keyframe);
         if (is_new) fixed->second = keyframe.world_from_camera.inverse();
@@ -207,8 +212,15 @@ class LocalProblem {
     const double sigma = ScalePyramid(features).pixel_sigma(k.octave);
     const double depth = features.depth[feature];
     const Camera& c = *keyframe.camera;
-    return {c.fx, c.fy, c.cx, c.cy, k.pt.x, k.pt.y, depth > 0 ? 1.0 / depth : 0.0,
-            trust / sigma, depth > 0 ? trust / c.depth_noise : 0.0};
+    return {c.fx,
+            c.fy,
+            c.cx,
+            c.cy,
+            k.pt.x,
+            k.pt.y,
+            depth > 0 ? 1.0 / depth : 0.0,
+            trust / sigma,
+            depth > 0 ? trust / c.depth_noise : 0.0};
   }
 
   static void drop_outliers(MapEdit& edit, LandmarkId id) {
@@ -218,7 +230,8 @@ class LocalProblem {
       if (!landmark) return;
       const KeyFrame& keyframe = *edit.map().keyframe(o.keyframe);
       if (!observation_error(landmark->position_in_world, keyframe.world_from_camera.inverse(),
-                             keyframe, o.feature).fits())
+                             keyframe, o.feature)
+               .fits())
         edit.remove_observation(id, o.keyframe);
     }
   }
@@ -233,9 +246,10 @@ class LocalProblem {
 
   const SparseMap& map_;
   std::vector<KeyFrameId> local_;
-  std::map<KeyFrameId, CameraState> moving_;
   std::map<KeyFrameId, Pose> fixed_;
-  std::map<LandmarkId, Eigen::Vector3d> points_;
+  // Parameters lie in arrays, because Ceres orders them by address: results repeat to the bit.
+  std::vector<CameraState> moving_;
+  std::vector<std::pair<LandmarkId, Eigen::Vector3d>> points_;
   std::deque<MovingCameraCost> moving_costs_;
   std::deque<FixedCameraCost> fixed_costs_;
   ceres::HuberLoss loss_{std::sqrt(kChiSquare3)};
