@@ -15,17 +15,39 @@ Features features_at(std::initializer_list<cv::Point2f> pixels) {
   return features;
 }
 
-TEST(Observe, SamplesDepthAtTheNearestPixel) {
+// Nothing measured but in what a test paints.
+std::shared_ptr<Frame> frame_without_depth() {
   auto frame = std::make_shared<Frame>();
   frame->camera = std::make_shared<Camera>();
   frame->depth = cv::Mat::zeros(480, 640, CV_32FC1);
+  return frame;
+}
+
+TEST(Observe, SamplesDepthAtTheNearestPixel) {
+  const auto frame = frame_without_depth();
   frame->depth.at<float>(200, 100) = 1.5f;
-  frame->depth.at<float>(201, 101) = 2.5f;
+  frame->depth.at<float>(301, 101) = 2.5f;
   const ObservedFrame seen =
-      observe(frame, features_at({{100.4f, 199.6f}, {100.6f, 200.6f}, {300, 300}}));
+      observe(frame, features_at({{100.4f, 199.6f}, {100.6f, 300.6f}, {300, 300}}));
   EXPECT_THAT(seen.features->depth, testing::ElementsAre(1.5f, 2.5f, 0.0f));
   EXPECT_EQ(seen.matched(), 0);
   for (std::uint32_t i = 0; i < 3; ++i) EXPECT_TRUE(seen.usable(i) && seen.free(i));
+}
+
+TEST(Observe, NoDepthBesideADepthEdge) {
+  const auto frame = frame_without_depth();
+  frame->depth.colRange(0, 320) = 1.0f;
+  frame->depth.colRange(320, 640) = 2.0f;
+  const ObservedFrame seen =
+      observe(frame, features_at({{300, 100}, {319, 100}, {320, 100}, {340, 100}}));
+  EXPECT_THAT(seen.features->depth, testing::ElementsAre(1.0f, 0.0f, 0.0f, 2.0f));
+}
+
+TEST(Observe, SlantedSurfacesKeepTheirDepth) {
+  const auto frame = frame_without_depth();
+  for (int u = 0; u < 640; ++u) frame->depth.col(u) = 1.0f + 0.003f * static_cast<float>(u);
+  const ObservedFrame seen = observe(frame, features_at({{50, 100}, {0, 0}, {639, 479}}));
+  for (const float depth : seen.features->depth) EXPECT_GT(depth, 0);
 }
 
 TEST(ObservedFrame, WeightsDecideWhoMayBeUsed) {

@@ -1,0 +1,254 @@
+#include "orb_slam/tracker.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "orb_slam/local_mapper.hpp"
+#include "orb_slam/test_scene.hpp"
+#include "orb_slam/test_world.hpp"
+
+namespace stillpoint::orb {
+namespace {
+
+using Use = TrackedFeature::Use;
+
+// Tracker and mapper in turns, as `mode: inline` runs them.
+class TrackerTest : public testing::Test {
+ protected:
+  TrackResult step(FramePtr frame, const StaticWeights& weights = {}) {
+    tracker_.prepare(frame);
+    TrackResult result = tracker_.track(frame, weights, map_, {});
+    if (result.keyframe) {
+      const KeyFrameId id = result.keyframe->id;
+      EXPECT_EQ(id, map_.keyframe_id_end()) << "ids count up without gaps";
+      map_ = mapper_.insert(std::move(map_), *result.keyframe);
+      EXPECT_EQ(map_.check(), std::nullopt);
+      map_ = mapper_.refine(std::move(map_), id, {});
+      EXPECT_EQ(map_.check(), std::nullopt);
+    }
+    return result;
+  }
+  TrackResult step(const Pose& pose, const StaticWeights& weights = {}) {
+    return step(scene_.see(pose, next_++), weights);
+  }
+  static void expect_at(const TrackResult& result, const Pose& truth, double metres = 0.006,
+                        double radians = 0.003) {
+    ASSERT_EQ(result.state, TrackState::kTracking);
+    EXPECT_LT(metres_between(result.world_from_camera, truth), metres);
+    EXPECT_LT(radians_between(result.world_from_camera, truth), radians);
+  }
+  void track_along(const std::function<Pose(double)>& path, int frames) {
+    for (int i = 0; i < frames; ++i) {
+      SCOPED_TRACE(i);
+      expect_at(step(path(static_cast<double>(i) / (frames - 1))), path(1.0 * i / (frames - 1)));
+    }
+  }
+
+  TestScene scene_;
+  OrbTracker tracker_{OrbTracker::Options{}};
+  OrbLocalMapper mapper_{OrbLocalMapper::Options{}, StageContext{}};
+  SparseMap map_;
+  std::uint32_t next_ = 0;
+};
+
+TEST_F(TrackerTest, FollowsTranslation) {
+  track_along([](double t) { return pose_at({0.6 * t, -0.2 * t, 0.4 * t}); }, 25);
+  EXPECT_GT(map_.keyframe_count(), 1u);
+}
+
+TEST_F(TrackerTest, FollowsRotation) {
+  track_along([](double t) { return pose_at({0, 0, 0}, {0.1 * t, 0.5 * t, 0.4 * t}); }, 25);
+  EXPECT_GT(map_.keyframe_count(), 1u);
+}
+
+TEST_F(TrackerTest, FollowsAFlatWall) {
+  scene_ = TestScene({{-4, -3, 8, 6, 2.0}});
+  track_along([](double t) { return pose_at({0.8 * t, 0, 0.1 * t}, {0, -0.3 * t, 0}); }, 25);
+}
+
+TEST_F(TrackerTest, FirstFrameIsTheOrigin) {
+  const TrackResult result = step(Pose::Identity());
+  EXPECT_EQ(result.state, TrackState::kTracking);
+  ASSERT_TRUE(result.keyframe);
+  EXPECT_EQ(result.keyframe->id, 0u);
+  EXPECT_EQ(result.keyframe->frame, 0u);
+  EXPECT_EQ(result.reference, 0u);
+  EXPECT_EQ(result.world_from_camera.matrix(), Pose::Identity().matrix());
+  EXPECT_EQ(result.reference_from_camera.matrix(), Pose::Identity().matrix());
+}
+
+TEST_F(TrackerTest, ResultsAreInAgreementWithEachOther) {
+  for (int i = 0; i < 12; ++i) {
+    const SparseMap before = map_;
+    const TrackResult result = step(pose_at({0.04 * i, 0, 0}));
+    ASSERT_EQ(result.state, TrackState::kTracking);
+    EXPECT_EQ(static_cast<std::size_t>(result.features), result.tracked.size());
+    EXPECT_LE(result.inliers, result.matches);
+    EXPECT_LE(result.matches, result.features);
+    const auto inliers = std::count_if(result.tracked.begin(), result.tracked.end(),
+                                       [](const auto& f) { return f.use == Use::kInlier; });
+    EXPECT_EQ(inliers, result.inliers);
+    const Pose reference = result.keyframe ? result.keyframe->world_from_camera
+                                           : before.world_from_keyframe(result.reference);
+    EXPECT_TRUE(
+        (reference * result.reference_from_camera).isApprox(result.world_from_camera, 1e-9));
+    if (result.keyframe) {
+      EXPECT_EQ(result.reference, result.keyframe->id);
+    }
+  }
+}
+
+TEST_F(TrackerTest, WithoutDepthItWaits) {
+  for (int i = 0; i < 3; ++i) {
+    auto frame = std::make_shared<Frame>(*scene_.see(Pose::Identity(), next_++));
+    frame->depth = cv::Mat::zeros(frame->depth.size(), CV_32FC1);
+    const TrackResult result = step(frame);
+    EXPECT_EQ(result.state, TrackState::kWaiting);
+    EXPECT_FALSE(result.keyframe);
+  }
+  expect_at(step(pose_at({0.5, 0, 0})), Pose::Identity());  // the world begins where it starts
+  expect_at(step(pose_at({0.52, 0, 0})), pose_at({0.02, 0, 0}));
+}
+
+TEST_F(TrackerTest, BlackFirstFrameWaits) {
+  EXPECT_EQ(step(scene_.black(next_++)).state, TrackState::kWaiting);
+  expect_at(step(Pose::Identity()), Pose::Identity());
+}
+
+TEST_F(TrackerTest, BlackFrameIsLostAndThenFoundAgain) {
+  for (int i = 0; i < 5; ++i) expect_at(step(pose_at({0.02 * i, 0, 0})), pose_at({0.02 * i, 0, 0}));
+  for (int i = 0; i < 3; ++i) {
+    const TrackResult result = step(scene_.black(next_++));
+    EXPECT_EQ(result.state, TrackState::kLost);
+    EXPECT_FALSE(result.keyframe);
+  }
+  for (int i = 5; i < 10; ++i) {
+    SCOPED_TRACE(i);
+    expect_at(step(pose_at({0.02 * i, 0, 0})), pose_at({0.02 * i, 0, 0}));
+  }
+}
+
+TEST_F(TrackerTest, LostFarAwayIsFoundWhereTheMapIsKnown) {
+  for (int i = 0; i < 20; ++i) step(pose_at({0.05 * i, 0, 0}));
+  EXPECT_EQ(step(scene_.black(next_++)).state, TrackState::kLost);
+  TrackResult result;
+  for (int i = 0; i < 20 && result.state != TrackState::kTracking; ++i)
+    result = step(pose_at({0.03, 0.02, 0}));
+  expect_at(result, pose_at({0.03, 0.02, 0}));
+}
+
+TEST_F(TrackerTest, UnknownViewIsLost) {
+  for (int i = 0; i < 5; ++i) step(pose_at({0.02 * i, 0, 0}));
+  EXPECT_EQ(step(TestScene({{-6, -6, 15, 15, 2.7}}).see(pose_at({3, 3, 0}), next_++)).state,
+            TrackState::kLost);
+}
+
+TEST_F(TrackerTest, JumpIsFoundByAppearance) {
+  for (int i = 0; i < 6; ++i) step(pose_at({0.01 * i, 0, 0}));
+  const Pose jump = pose_at({0.25, 0.1, 0.1}, {0.05, 0.15, 0.2});
+  expect_at(step(jump), jump);
+  expect_at(step(pose_at({0.01, 0, 0})), pose_at({0.01, 0, 0}));
+}
+
+TEST_F(TrackerTest, FeaturesOfNoWeightAreNotUsed) {
+  StaticWeights weights;
+  weights.track = cv::Mat(480, 640, CV_8UC1, cv::Scalar(255));
+  weights.track(cv::Rect(200, 100, 250, 300)) = 0;
+  for (int i = 0; i < 8; ++i) {
+    const TrackResult result = step(pose_at({0.03 * i, 0, 0}), weights);
+    expect_at(result, pose_at({0.03 * i, 0, 0}));
+    int inside = 0;
+    for (const TrackedFeature& f : result.tracked) {
+      const bool moving =
+          weights.track.at<std::uint8_t>(cvRound(f.pixel.y), cvRound(f.pixel.x)) == 0;
+      EXPECT_EQ(f.use == Use::kMoving, moving);
+      inside += moving;
+    }
+    EXPECT_GT(inside, 50);
+    if (!result.keyframe) continue;
+    for (std::uint32_t f = 0; f < result.tracked.size(); ++f)
+      if (result.tracked[f].use == Use::kMoving) {
+        EXPECT_EQ(result.keyframe->landmarks[f], kNoId);
+      }
+  }
+}
+
+TEST_F(TrackerTest, MovingThingWithoutWeightDoesNotPull) {
+  // The near panel goes its own way; its pixels have no weight.
+  const auto scene_at = [](int i) {
+    return TestScene({{-4, -3, 8, 6, 3.0}, {-0.6 + 0.04 * i, -0.6, 1.1, 1.2, 1.8}});
+  };
+  for (int i = 0; i < 10; ++i) {
+    const Pose truth = pose_at({0, 0.02 * i, 0});
+    const FramePtr frame = scene_at(i).see(truth, next_++);
+    StaticWeights weights;
+    weights.track = frame->depth > 2.5;
+    cv::erode(weights.track, weights.track, cv::Mat(), {-1, -1}, 15);
+    weights.map = weights.track;
+    SCOPED_TRACE(i);
+    expect_at(step(frame, weights), truth);
+  }
+}
+
+TEST_F(TrackerTest, EverythingMovingAtTheStartWaits) {
+  StaticWeights weights;
+  weights.track = cv::Mat::zeros(480, 640, CV_8UC1);
+  EXPECT_EQ(step(Pose::Identity(), weights).state, TrackState::kWaiting);
+}
+
+TEST_F(TrackerTest, FollowsWhenMappingMovesTheMap) {
+  for (int i = 0; i < 6; ++i) step(pose_at({0.03 * i, 0, 0}));
+  const Pose shift = pose_at({0.3, -0.2, 0.1}, {0, 0.2, 0});  // as after a loop closure
+  MapEdit edit(map_);
+  for (KeyFrameId id = 0; id < map_.keyframe_id_end(); ++id)
+    if (map_.keyframe(id)) {
+      Pose& pose = edit.keyframe(id).world_from_camera;
+      pose = shift * pose;
+    }
+  for (LandmarkId id = 0; id < map_.landmark_id_end(); ++id)
+    if (map_.landmark(id)) {
+      Landmark& landmark = edit.landmark(id);
+      landmark.position_in_world = shift * landmark.position_in_world;
+      landmark.mean_view = shift.linear() * landmark.mean_view;
+    }
+  map_ = std::move(edit).finish();
+  expect_at(step(pose_at({0.18, 0, 0})), shift * pose_at({0.18, 0, 0}));
+}
+
+TEST_F(TrackerTest, TwoFramesOfOneTimeAreNoCrash) {
+  for (int i = 0; i < 6; ++i) {
+    auto frame = std::make_shared<Frame>(*scene_.see(pose_at({0.01 * i, 0, 0}), next_++));
+    frame->time = i < 3 ? 0.1 * i : 0.3;
+    expect_at(step(frame), pose_at({0.01 * i, 0, 0}));
+  }
+}
+
+TEST_F(TrackerTest, CountsOnAnExistingMap) {
+  for (int i = 0; i < 12; ++i) step(pose_at({0.05 * i, 0, 0}));
+  const auto end = map_.keyframe_id_end();
+  OrbTracker fresh{OrbTracker::Options{}};
+  tracker_ = std::move(fresh);
+  TrackResult result;
+  for (int i = 0; i < 10 && result.state != TrackState::kTracking; ++i)
+    result = step(pose_at({0.3, 0, 0}));
+  expect_at(result, pose_at({0.3, 0, 0}));
+  for (int i = 0; i < 30 && map_.keyframe_id_end() == end; ++i) step(pose_at({0.3, 0.03 * i, 0}));
+  EXPECT_GT(map_.keyframe_id_end(), end);  // step() checks the ids
+}
+
+TEST_F(TrackerTest, SameFramesSameBits) {
+  const auto run = [this] {
+    std::vector<Pose> poses;
+    tracker_ = OrbTracker{OrbTracker::Options{}};
+    mapper_ = OrbLocalMapper{OrbLocalMapper::Options{}, StageContext{}};
+    map_ = {};
+    next_ = 0;
+    for (int i = 0; i < 8; ++i) poses.push_back(step(pose_at({0.05 * i, 0, 0})).world_from_camera);
+    return poses;
+  };
+  const auto first = run(), second = run();
+  for (std::size_t i = 0; i < first.size(); ++i) EXPECT_EQ(first[i].matrix(), second[i].matrix());
+}
+
+}  // namespace
+}  // namespace stillpoint::orb
