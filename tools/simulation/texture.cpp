@@ -10,21 +10,26 @@ namespace {
 
 constexpr int kMaxTaps = 3;  // along the longer axis of a footprint
 
-/// Four channels of two texels; compilers make one register of it.
+/// Four channels of two texels; compilers make one register of it. Bytes and words are widened by
+/// mixing them with zeros, which compilers turn into one instruction.
 using TwoTexels = std::uint16_t __attribute__((vector_size(16)));
-
-TwoTexels widen(std::uint32_t first, std::uint32_t second) {
-  using Bytes = std::uint8_t __attribute__((vector_size(8)));
-  return __builtin_convertvector(std::bit_cast<Bytes>(first | std::uint64_t{second} << 32),
-                                 TwoTexels);
-}
-
 using Color = float __attribute__((vector_size(16)));
 
+TwoTexels widen(std::uint32_t first, std::uint32_t second) {
+  using Bytes = std::uint8_t __attribute__((vector_size(16)));
+  using Words = std::uint32_t __attribute__((vector_size(16)));
+  const auto bytes = std::bit_cast<Bytes>(Words{first, second});
+  return std::bit_cast<TwoTexels>(__builtin_shufflevector(bytes, Bytes{}, 0, 16, 1, 17, 2, 18, 3,
+                                                          19, 4, 20, 5, 21, 6, 22, 7, 23));
+}
+
+/// Of the first or the second texel.
 template <int First>
 Color channels(TwoTexels texels) {
-  return __builtin_convertvector(
-      __builtin_shufflevector(texels, texels, First, First + 1, First + 2, First + 3), Color);
+  using Integers = std::int32_t __attribute__((vector_size(16)));
+  const TwoTexels wide = __builtin_shufflevector(texels, TwoTexels{}, First, 8, First + 1, 9,
+                                                 First + 2, 10, First + 3, 11);
+  return __builtin_convertvector(std::bit_cast<Integers>(wide), Color);
 }
 
 /// log2, linear between powers of two: mip levels need no more.
