@@ -18,8 +18,8 @@
 
 namespace stillpoint::testing {
 
-// With sanitizers everything takes ten times as long.
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+// Under a sanitizer the program takes many times as long.
+#ifdef STILLPOINT_SANITIZED
 constexpr bool kSanitized = true;
 #else
 constexpr bool kSanitized = false;
