@@ -94,10 +94,10 @@ Pose CameraMotion::trembling(double t) const {
     double translation;  // m
     double rotation;     // rad
   };
-  constexpr std::array<Band, 5> kBands = {{{0.23, 0.0050, 0.0050},
-                                           {0.61, 0.0022, 0.0050},
-                                           {1.30, 0.0010, 0.0030},
-                                           {2.70, 0.0004, 0.0012},
+  constexpr std::array<Band, 5> kBands = {{{0.23, 0.0050, 0.0080},
+                                           {0.61, 0.0022, 0.0080},
+                                           {1.30, 0.0010, 0.0048},
+                                           {2.70, 0.0004, 0.0018},
                                            {6.10, 0.0001, 0.0004}}};
   Vector6d twist = Vector6d::Zero();
   for (int axis = 0; axis < 6; ++axis) {
