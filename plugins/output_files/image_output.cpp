@@ -1,12 +1,33 @@
 #include "output_files/image_output.hpp"
 
+#include <algorithm>
 #include <array>
+#include <cctype>
 #include <cstdio>
 #include <opencv2/imgcodecs.hpp>
 
 #include "output_files/atomic_file.hpp"
 
 namespace stillpoint {
+namespace {
+
+namespace fs = std::filesystem;
+
+bool is_picture_of_a_run(const fs::path& file) {
+  const std::string name = file.stem().string();
+  return (file.extension() == ".jpg" || file.extension() == ".png") && name.size() >= 6 &&
+         std::all_of(name.begin(), name.end(), [](unsigned char c) { return std::isdigit(c); });
+}
+
+// Pictures of an earlier run would stand among those of this one.
+void remove_pictures(const fs::path& folder) {
+  std::vector<fs::path> pictures;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder))
+    if (is_picture_of_a_run(entry.path())) pictures.push_back(entry.path());
+  for (const fs::path& picture : pictures) fs::remove(picture);
+}
+
+}  // namespace
 
 ImageOutput::ImageOutput(const Options& options, const StageContext& context)
     : options_(options), folder_(context.output_directory / options.folder) {
@@ -14,6 +35,7 @@ ImageOutput::ImageOutput(const Options& options, const StageContext& context)
   std::filesystem::create_directories(folder_, error);
   if (error)
     throw Error(Fault::kUsage, "cannot make the folder: " + error.message(), folder_.string());
+  remove_pictures(folder_);
 }
 
 void ImageOutput::frame(const FrameReport& report) {

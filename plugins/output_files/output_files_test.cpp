@@ -185,6 +185,8 @@ TEST(Distribution, PercentilesOfAKnownSeries) {
 }
 
 TEST_F(OutputFiles, PicturesAreMadeOfEveryNthFrame) {
+  std::filesystem::create_directories(context.output_directory / "images");
+  std::ofstream(context.output_directory / "images/000010.jpg") << "of an earlier run";
   ImageOutput output({.every = 20, .format = ImageOutput::Options::Format::kPng}, context);
   Report report;
   output.frame(report());
