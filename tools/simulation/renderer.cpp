@@ -228,7 +228,10 @@ struct Renderer::Job {
   /// Nothing in sight moves farther than eyes can tell.
   static bool is_still(const MotionRange& range) { return range.fastest() <= 1; }
   /// Surfaces move past each other: a shifted image would not show what comes into view.
-  static bool is_torn(const MotionRange& range) { return !is_still(range) && range.spread() > 1; }
+  static bool is_torn(const MotionRange& range) {
+    constexpr float kApart = 1.5F;  // px; less is lost in the blur
+    return !is_still(range) && range.spread() > kApart;
+  }
 
   /// Smooth edges in `sharp`, and final colours where surfaces move past each other.
   void refine(int row) {
