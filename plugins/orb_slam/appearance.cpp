@@ -7,13 +7,13 @@
 namespace stillpoint::orb {
 namespace {
 
-constexpr int kMinMatches = 15;       // to try a pose
-constexpr double kRatio = 0.8;        // of the best to the second best descriptor distance
-constexpr int kMaxDistance = 70;      // Hamming
-constexpr double kRansacPixels = 5;   // reprojection error of an inlier
+constexpr int kMinMatches = 15;      // to try a pose
+constexpr double kRatio = 0.8;       // of the best to the second best descriptor distance
+constexpr int kMaxDistance = 70;     // Hamming
+constexpr double kRansacPixels = 5;  // reprojection error of an inlier
 constexpr int kRansacIterations = 200;
-constexpr double kWindow = 10;        // px, of the guided search
-constexpr int kLevels = 2;            // of the pyramid, up and down, of the guided search
+constexpr double kWindow = 10;  // px, of the guided search
+constexpr int kLevels = 2;      // of the pyramid, up and down, of the guided search
 
 // Perspective-n-point with RANSAC; OpenCV seeds it with a constant, so it repeats exactly.
 std::optional<Pose> camera_from_world(const ObservedFrame& frame, std::span<const Target> targets,
@@ -45,8 +45,7 @@ std::optional<Pose> camera_from_world(const ObservedFrame& frame, std::span<cons
 std::vector<Query> anywhere(std::span<const Target> targets) {
   std::vector<Query> queries;
   for (std::uint32_t i = 0; i < targets.size(); ++i)
-    queries.push_back(
-        {.id = i, .descriptor = targets[i].descriptor, .angle = targets[i].angle});
+    queries.push_back({.id = i, .descriptor = targets[i].descriptor, .angle = targets[i].angle});
   return queries;
 }
 

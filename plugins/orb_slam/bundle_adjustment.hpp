@@ -9,15 +9,15 @@
 namespace stillpoint::orb {
 
 struct BundleOptions {
-  int max_keyframes = 10;   ///< adjusted; others that see the same landmarks stay fixed
+  int max_keyframes = 10;  ///< adjusted; others that see the same landmarks stay fixed
   int max_iterations = 5;
   int threads = 1;
 };
 
 /// Adjusts a key frame, its most covisible neighbours and the landmarks they see, over reprojection
-/// and inverse depth, weighted by pyramid level, depth noise and static weight, with a Huber kernel;
-/// then removes the observations that do not fit. The first key frame always stays. Ends after the
-/// current iteration when `hurry` is requested. Returns the landmarks that were adjusted.
+/// and inverse depth, weighted by pyramid level, depth noise and static weight, with a Huber
+/// kernel; then removes the observations that do not fit. The first key frame always stays. Ends
+/// after the current iteration when `hurry` is requested. Returns the landmarks that were adjusted.
 std::vector<LandmarkId> adjust_locally(MapEdit& edit, KeyFrameId centre,
                                        const BundleOptions& options, std::stop_token hurry);
 

@@ -18,7 +18,8 @@ void KeyFrameOptions::visit(OptionVisitor& v) {
   v("keyframe_max_frames", max_frames_between,
     {.min = 1, .unit = "frames", .help = "a new key frame is allowed after this long in any case"});
   v("keyframe_tracked_ratio", min_tracked_ratio,
-    {.min = 0, .max = 1,
+    {.min = 0,
+     .max = 1,
      .help = "new key frame when less than this share of the reference's landmarks is tracked"});
   v("keyframe_min_inliers", min_inliers,
     {.min = 6, .help = "no key frame from a pose on fewer landmarks"});

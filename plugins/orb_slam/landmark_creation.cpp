@@ -38,8 +38,7 @@ double median_depth(const KeyFrame& keyframe) {
 
 LandmarkId add_seen_by(MapEdit& edit, const Eigen::Vector3d& position, KeyFrameId creator,
                        std::initializer_list<Observation> observations) {
-  const LandmarkId id =
-      edit.add_landmark({.position_in_world = position, .created_by = creator});
+  const LandmarkId id = edit.add_landmark({.position_in_world = position, .created_by = creator});
   for (const Observation& o : observations) edit.add_observation(id, o);
   refresh_landmark(edit, id);
   return id;
@@ -118,7 +117,8 @@ void triangulate_pair(MapEdit& edit, KeyFrameId a_id, KeyFrameId b_id,
     for (const std::uint32_t j : open_b) {
       if (used[j] || std::abs(b->features->keypoints[j].octave - level) > 1) continue;
       if (!views.on_epipolar_line(line, j)) continue;
-      const int distance = hamming_distance(a->features->descriptors[i], b->features->descriptors[j]);
+      const int distance =
+          hamming_distance(a->features->descriptors[i], b->features->descriptors[j]);
       if (distance >= best_distance) continue;
       best_distance = distance;
       best = j;

@@ -10,7 +10,8 @@ namespace stillpoint::orb {
 /// Landmarks from measured depth, for all features that have none yet.
 std::vector<LandmarkId> create_from_depth(MapEdit& edit, KeyFrameId id);
 
-/// Landmarks from two views, for features that have neither a landmark nor depth, matched along epipolar lines with the `neighbours` most covisible key frames.
+/// Landmarks from two views, for features that have neither a landmark nor depth, matched along
+/// epipolar lines with the `neighbours` most covisible key frames.
 std::vector<LandmarkId> triangulate(MapEdit& edit, KeyFrameId id, int neighbours);
 
 }  // namespace stillpoint::orb

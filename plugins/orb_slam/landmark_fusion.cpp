@@ -39,8 +39,9 @@ void fuse_into(MapEdit& edit, const std::vector<LandmarkId>& landmarks, KeyFrame
   for (const Match& m :
        match_near(queries, *keyframe->features, grid, usable, {.max_distance = kNear})) {
     const Landmark* landmark = edit.map().landmark(m.id);
-    if (!landmark || !observation_error(landmark->position_in_world, camera_from_world, *keyframe,
-                                        m.feature).fits())
+    if (!landmark ||
+        !observation_error(landmark->position_in_world, camera_from_world, *keyframe, m.feature)
+             .fits())
       continue;
     const LandmarkId there = edit.map().keyframe(target)->landmarks[m.feature];
     if (there == kNoId) {

@@ -9,8 +9,8 @@ namespace stillpoint::orb {
 /// Does nothing when the landmark is gone.
 void refresh_landmark(MapEdit& edit, LandmarkId id);
 
-/// Squared, normalised error of an observation, and the 95 % bound it should keep. Infinite when the
-/// point is behind the camera.
+/// Squared, normalised error of an observation, and the 95 % bound it should keep. Infinite when
+/// the point is behind the camera.
 struct ObservationError {
   double squared = 0.0;
   double bound = 0.0;

@@ -8,9 +8,9 @@
 namespace stillpoint::orb {
 
 struct LocalMap {
-  KeyFrameId reference = kNoId;         ///< shares most landmarks with the frame
-  std::vector<KeyFrameId> keyframes;    ///< those that share landmarks, and their neighbours
-  std::vector<LandmarkId> landmarks;    ///< seen by them, each once
+  KeyFrameId reference = kNoId;       ///< shares most landmarks with the frame
+  std::vector<KeyFrameId> keyframes;  ///< those that share landmarks, and their neighbours
+  std::vector<LandmarkId> landmarks;  ///< seen by them, each once
 };
 
 /// Around the landmarks that a frame has matched; empty when there are none.

@@ -25,7 +25,8 @@ void OrbLocalMapper::Options::visit(OptionVisitor& v) {
   v("neighbours", neighbours,
     {.min = 1, .help = "covisible key frames used for triangulation and fusion"});
   v("redundant_share", redundant_share,
-    {.min = 0, .max = 1,
+    {.min = 0,
+     .max = 1,
      .help = "key frames of whose landmarks more than this share is seen by others are removed"});
   v("bundle_keyframes", bundle_keyframes,
     {.min = 2, .help = "key frames that the local bundle adjustment moves"});

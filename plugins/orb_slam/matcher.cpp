@@ -8,10 +8,10 @@
 namespace stillpoint::orb {
 namespace {
 
-constexpr double kMinViewCosine = 0.5;     // 60 degrees
-constexpr double kRangeMargin = 1.2;       // one pyramid level beyond the range of distances
-constexpr double kFrontalCosine = 0.998;   // seen like that, a landmark is where it is predicted
-constexpr double kObliqueFactor = 1.6;     // a wider window for all others
+constexpr double kMinViewCosine = 0.5;    // 60 degrees
+constexpr double kRangeMargin = 1.2;      // one pyramid level beyond the range of distances
+constexpr double kFrontalCosine = 0.998;  // seen like that, a landmark is where it is predicted
+constexpr double kObliqueFactor = 1.6;    // a wider window for all others
 constexpr int kAngleBins = 30;
 constexpr int kKeptBins = 3;
 

@@ -22,13 +22,13 @@ inline constexpr int kNear = 50;
 
 /// Where and how a landmark should appear.
 struct Query {
-  std::uint32_t id = 0;       ///< the caller's: a landmark or a feature
+  std::uint32_t id = 0;  ///< the caller's: a landmark or a feature
   Descriptor descriptor{};
-  double u = 0.0, v = 0.0;    ///< px, predicted
-  double radius = 0.0;        ///< px, half width of the search window
-  int min_level = 0;          ///< pyramid levels to look at
+  double u = 0.0, v = 0.0;  ///< px, predicted
+  double radius = 0.0;      ///< px, half width of the search window
+  int min_level = 0;        ///< pyramid levels to look at
   int max_level = 0;
-  float angle = -1.0f;        ///< degrees, of the feature it was seen as; negative: not known
+  float angle = -1.0f;  ///< degrees, of the feature it was seen as; negative: not known
 };
 
 struct Match {

@@ -17,9 +17,11 @@ float depth_at(const cv::Mat& depth, cv::Point2f pixel) {
   const int u = cvRound(pixel.x), v = cvRound(pixel.y);
   const float centre = depth.at<float>(v, u);
   const float limit = kMaxDepthStep * centre;
-  for (int y = std::max(v - kDepthWindow, 0); y <= std::min(v + kDepthWindow, depth.rows - 1); ++y) {
+  for (int y = std::max(v - kDepthWindow, 0); y <= std::min(v + kDepthWindow, depth.rows - 1);
+       ++y) {
     const float* row = depth.ptr<float>(y);
-    for (int x = std::max(u - kDepthWindow, 0); x <= std::min(u + kDepthWindow, depth.cols - 1); ++x)
+    for (int x = std::max(u - kDepthWindow, 0); x <= std::min(u + kDepthWindow, depth.cols - 1);
+         ++x)
       if (row[x] > 0 && std::abs(row[x] - centre) > limit) return 0.0f;
   }
   return centre;
@@ -94,13 +96,13 @@ int solve_pose(ObservedFrame& observed, const SparseMap& map) {
     if (!landmark && !observed.temporary[i]) continue;
     const cv::KeyPoint& k = features.keypoints[i];
     const double sigma = pyramid.pixel_sigma(k.octave);
-    observations.push_back({.point_in_world = landmark ? landmark->position_in_world
-                                                       : *observed.temporary[i],
-                            .pixel = {k.pt.x, k.pt.y},
-                            .inverse_depth = features.depth[i] > 0 ? 1.0 / features.depth[i] : 0.0,
-                            .pixel_sigma = sigma,
-                            .inverse_depth_sigma = observed.frame->camera->depth_noise,
-                            .weight = observed.track_weights[i] / 255.0});
+    observations.push_back(
+        {.point_in_world = landmark ? landmark->position_in_world : *observed.temporary[i],
+         .pixel = {k.pt.x, k.pt.y},
+         .inverse_depth = features.depth[i] > 0 ? 1.0 / features.depth[i] : 0.0,
+         .pixel_sigma = sigma,
+         .inverse_depth_sigma = observed.frame->camera->depth_noise,
+         .weight = observed.track_weights[i] / 255.0});
     index.push_back(i);
   }
   const PoseSolution solution =

@@ -23,7 +23,7 @@ struct ObservedFrame {
   std::vector<LandmarkId> landmarks;        ///< per feature, kNoId = none
   /// Per feature: in world, the point that the frame before measured, where no landmark is known.
   std::vector<std::optional<Eigen::Vector3d>> temporary;
-  std::vector<bool> outlier;                ///< per feature: its point does not fit the pose
+  std::vector<bool> outlier;  ///< per feature: its point does not fit the pose
   Pose world_from_camera = Pose::Identity();
   KeyFrameId reference = kNoId;
   Pose reference_from_camera = Pose::Identity();
@@ -32,9 +32,7 @@ struct ObservedFrame {
   static constexpr std::uint8_t kMinWeight = 26;
 
   bool usable(std::uint32_t feature) const { return track_weights[feature] >= kMinWeight; }
-  bool free(std::uint32_t feature) const {
-    return landmarks[feature] == kNoId && usable(feature);
-  }
+  bool free(std::uint32_t feature) const { return landmarks[feature] == kNoId && usable(feature); }
 
   void set_weights(const StaticWeights& weights);
   /// Adds landmarks; the ids of the matches are theirs.
@@ -50,8 +48,8 @@ struct ObservedFrame {
 /// Samples depth at the keypoints.
 ObservedFrame observe(FramePtr frame, Features features);
 
-/// Pose from the landmarks and temporary points assigned so far, starting from the frame's own; marks
-/// the outliers and returns the number of inliers.
+/// Pose from the landmarks and temporary points assigned so far, starting from the frame's own;
+/// marks the outliers and returns the number of inliers.
 int solve_pose(ObservedFrame& frame, const SparseMap& map);
 
 }  // namespace stillpoint::orb

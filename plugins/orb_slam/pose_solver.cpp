@@ -8,8 +8,8 @@ namespace stillpoint::orb {
 namespace {
 
 constexpr int kRounds = 4;
-constexpr int kRobustRounds = 2;  // later ones trust the outlier decision alone
-constexpr int kIterations = 6;    // per round
+constexpr int kRobustRounds = 2;     // later ones trust the outlier decision alone
+constexpr int kIterations = 6;       // per round
 constexpr double kConverged = 1e-6;  // metres and radians
 constexpr int kMinObservations = 6;
 constexpr double kMinDepth = 0.05;  // metres in front of the camera
@@ -50,7 +50,8 @@ class Solver {
     for (int round = 0; round < kRounds && solution_.inliers >= kMinObservations; ++round) {
       robust_ = round < kRobustRounds;
       iterate();
-      classify();
+      const bool changed = classify();
+      if (!robust_ && !changed) break;
     }
     return std::move(solution_);
   }
@@ -100,8 +101,9 @@ class Solver {
     // d p / d (translation, rotation) = [I, -skew(p)] for a perturbation on the left.
     const double iz = 1.0 / p.z();
     Eigen::Matrix3d by_point;
-    by_point << camera_.fx * iz / o.pixel_sigma, 0, -camera_.fx * p.x() * iz * iz / o.pixel_sigma,  //
-        0, camera_.fy * iz / o.pixel_sigma, -camera_.fy * p.y() * iz * iz / o.pixel_sigma,          //
+    by_point << camera_.fx * iz / o.pixel_sigma, 0,
+        -camera_.fx * p.x() * iz * iz / o.pixel_sigma,                                      //
+        0, camera_.fy * iz / o.pixel_sigma, -camera_.fy * p.y() * iz * iz / o.pixel_sigma,  //
         0, 0, o.inverse_depth > 0 ? -iz * iz / o.inverse_depth_sigma : 0.0;
     Eigen::Matrix<double, 3, 6> jacobian;
     jacobian.leftCols<3>() = by_point;
@@ -111,16 +113,20 @@ class Solver {
     n.gradient.noalias() += weight * (jacobian.transpose() * r);
   }
 
-  void classify() {
+  // Whether the outliers are others than before.
+  bool classify() {
+    bool changed = false;
     solution_.inliers = 0;
     for (std::size_t i = 0; i < observations_.size(); ++i) {
       const PoseObservation& o = observations_[i];
       Eigen::Vector3d r;
-      const bool visible =
-          residual(o, camera_, solution_.camera_from_world * o.point_in_world, r);
-      solution_.inlier[i] = visible && r.squaredNorm() <= bound(o);
-      solution_.inliers += solution_.inlier[i];
+      const bool visible = residual(o, camera_, solution_.camera_from_world * o.point_in_world, r);
+      const bool fits = visible && r.squaredNorm() <= bound(o);
+      changed |= fits != solution_.inlier[i];
+      solution_.inlier[i] = fits;
+      solution_.inliers += fits;
     }
+    return changed;
   }
 
   std::span<const PoseObservation> observations_;

@@ -12,12 +12,12 @@ namespace stillpoint::orb {
 
 /// A landmark and where it was measured.
 struct PoseObservation {
-  Eigen::Vector3d point_in_world;   ///< metres
-  Eigen::Vector2d pixel;            ///< px
-  double inverse_depth = 0.0;       ///< 1/m; 0 = not measured
-  double pixel_sigma = 1.0;         ///< px, standard deviation
-  double inverse_depth_sigma = 1.0; ///< 1/m, standard deviation
-  double weight = 1.0;              ///< probability that the point is static, 0 … 1
+  Eigen::Vector3d point_in_world;    ///< metres
+  Eigen::Vector2d pixel;             ///< px
+  double inverse_depth = 0.0;        ///< 1/m; 0 = not measured
+  double pixel_sigma = 1.0;          ///< px, standard deviation
+  double inverse_depth_sigma = 1.0;  ///< 1/m, standard deviation
+  double weight = 1.0;               ///< probability that the point is static, 0 … 1
 };
 
 struct PoseSolution {

@@ -7,8 +7,8 @@
 namespace stillpoint::orb {
 namespace {
 
-constexpr int kNearby = 2;           // candidates per frame around the last known place
-constexpr int kAround = 2;           // candidates per frame on the way round the map
+constexpr int kNearby = 2;  // candidates per frame around the last known place
+constexpr int kAround = 2;  // candidates per frame on the way round the map
 constexpr int kMinInliers = 30;
 
 }  // namespace

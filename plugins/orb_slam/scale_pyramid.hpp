@@ -14,7 +14,8 @@ namespace stillpoint::orb {
 class ScalePyramid {
  public:
   explicit ScalePyramid(const Features& features)
-      : levels_(std::min(features.levels, kMaxLevels)), log_factor_(std::log(features.scale_factor)) {
+      : levels_(std::min(features.levels, kMaxLevels)),
+        log_factor_(std::log(features.scale_factor)) {
     scale_[0] = 1.0;
     for (int i = 1; i < levels_; ++i) scale_[i] = scale_[i - 1] * features.scale_factor;
   }

@@ -13,8 +13,8 @@ struct Target {
   LandmarkId landmark = kNoId;     ///< kNoId: a temporary point, measured by one frame's depth only
   Eigen::Vector3d point_in_world;  ///< metres
   Descriptor descriptor{};
-  int octave = 0;                  ///< pyramid level it was seen on
-  float angle = 0.0f;              ///< degrees, of the feature it was seen as
+  int octave = 0;      ///< pyramid level it was seen on
+  float angle = 0.0f;  ///< degrees, of the feature it was seen as
 };
 
 /// The landmarks that a key frame sees.

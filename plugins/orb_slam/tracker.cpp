@@ -8,8 +8,8 @@
 namespace stillpoint::orb {
 namespace {
 
-constexpr int kMinMotionMatches = 20;   // fewer: search again in a wider window
-constexpr int kMinMotionInliers = 20;   // fewer, or a smaller share: do not trust the prediction
+constexpr int kMinMotionMatches = 20;  // fewer: search again in a wider window
+constexpr int kMinMotionInliers = 20;  // fewer, or a smaller share: do not trust the prediction
 constexpr double kMinMotionShare = 0.5;
 
 std::vector<TrackedFeature> describe(const ObservedFrame& frame) {
@@ -31,14 +31,17 @@ void OrbTracker::Options::visit(OptionVisitor& v) {
   orb.visit(v);
   v("min_start_points", min_start_points,
     {.min = 20, .help = "features with depth that the first key frame needs"});
-  v("min_inliers", min_inliers, {.min = 6, .help = "with fewer fitting landmarks tracking is lost"});
+  v("min_inliers", min_inliers,
+    {.min = 6, .help = "with fewer fitting landmarks tracking is lost"});
   v("min_bridge_points", min_bridge_points,
     {.min = 6,
      .help = "points that must fit where the map is not enough and the last frame's depth helps"});
   v("local_keyframes", local_keyframes,
     {.min = 1, .help = "key frames whose landmarks are searched for in a frame"});
   v("motion_window", motion_window,
-    {.min = 1, .unit = "px", .help = "search radius around the place predicted from the last frame"});
+    {.min = 1,
+     .unit = "px",
+     .help = "search radius around the place predicted from the last frame"});
   v("local_window", local_window,
     {.min = 0.5, .unit = "px", .help = "search radius around the place predicted from the map"});
   keyframe.visit(v);
@@ -79,7 +82,8 @@ void OrbTracker::follow_map(const SparseMap& map) {
   next_keyframe_ = std::max(next_keyframe_, static_cast<KeyFrameId>(map.keyframe_id_end()));
   if (!last_.frame) return;
   if (last_.reference < map.keyframe_id_end())
-    last_.world_from_camera = map.world_from_keyframe(last_.reference) * last_.reference_from_camera;
+    last_.world_from_camera =
+        map.world_from_keyframe(last_.reference) * last_.reference_from_camera;
   if (const KeyFrame* keyframe = map.keyframe(last_keyframe_)) {
     last_.landmarks = keyframe->landmarks;  // now with those that its insertion made
     last_keyframe_ = kNoId;
@@ -108,8 +112,8 @@ bool OrbTracker::track_by_appearance(const SparseMap& map) {
   if (locate_by_appearance(current_, targets_of(last_, map), map) >= options_.min_inliers)
     return true;
   const KeyFrame* reference = map.keyframe(last_.reference);
-  return reference && locate_by_appearance(current_, targets_of(*reference, map), map) >=
-                          options_.min_inliers;
+  return reference &&
+         locate_by_appearance(current_, targets_of(*reference, map), map) >= options_.min_inliers;
 }
 
 bool OrbTracker::track_local_map(const SparseMap& map) {
@@ -158,7 +162,8 @@ void OrbTracker::search_local_map(const SparseMap& map) {
 
 TrackResult OrbTracker::tracked(const SparseMap& map, TrackHints hints) {
   TrackResult result{.state = TrackState::kTracking};
-  result.world_from_camera = current_.world_from_camera = orthonormalised(current_.world_from_camera);
+  result.world_from_camera = current_.world_from_camera =
+      orthonormalised(current_.world_from_camera);
   result.features = static_cast<int>(current_.features->size());
   result.matches = current_.matched();
   result.inliers = inliers_;

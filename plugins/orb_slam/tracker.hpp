@@ -51,7 +51,7 @@ class OrbTracker final : public Tracker {
   Relocaliser relocaliser_;
 
   ObservedFrame current_;
-  ObservedFrame last_;  // the last one with a pose
+  ObservedFrame last_;                // the last one with a pose
   KeyFrameId last_keyframe_ = kNoId;  // id of `last_`, when it became one
   std::optional<Pose> velocity_;      // last camera from the one before it
   double velocity_seconds_ = 0.0;     // over which velocity_ was measured

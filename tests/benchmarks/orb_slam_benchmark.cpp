@@ -1,5 +1,6 @@
 // Time of the steps of tracking and local mapping, on a synthetic world.
 #include <benchmark/benchmark.h>
+#include <ceres/ceres.h>
 
 #include "orb_slam/bundle_adjustment.hpp"
 #include "orb_slam/pose_solver.hpp"
@@ -10,9 +11,8 @@ namespace {
 
 bool all(std::uint32_t) { return true; }
 
-void solve_pose_500_points(benchmark::State& state) {
+std::vector<PoseObservation> pose_observations(const Camera& camera) {
   TestWorld random(0);
-  const Camera camera;
   std::vector<PoseObservation> observations;
   for (int i = 0; i < 500; ++i) {
     const double u = random.uniform(0, 639), v = random.uniform(0, 479), z = random.uniform(1, 6);
@@ -21,11 +21,65 @@ void solve_pose_500_points(benchmark::State& state) {
                             .inverse_depth = 1.0 / z + 0.01 * random.normal(),
                             .inverse_depth_sigma = 0.01});
   }
-  const Pose guess = pose_at({0.05, 0.02, -0.03}, {0.01, -0.02, 0.01});
+  return observations;
+}
+
+const Pose kPoseGuess = pose_at({0.05, 0.02, -0.03}, {0.01, -0.02, 0.01});
+
+void solve_pose_500_points(benchmark::State& state) {
+  const Camera camera;
+  const std::vector<PoseObservation> observations = pose_observations(camera);
   for ([[maybe_unused]] auto _ : state)
-    benchmark::DoNotOptimize(solve_pose(observations, camera, guess));
+    benchmark::DoNotOptimize(solve_pose(observations, camera, kPoseGuess));
 }
 BENCHMARK(solve_pose_500_points)->Unit(benchmark::kMicrosecond);
+
+// The same residuals for Ceres: what the solver by hand has to be better than.
+class CeresPoseCost final : public ceres::SizedCostFunction<3, 6> {
+ public:
+  CeresPoseCost(const PoseObservation& o, const Camera& camera) : o_(o), camera_(camera) {}
+  bool Evaluate(const double* const* parameters, double* residuals,
+                double** jacobians) const override {
+    const Vector6d twist = Eigen::Map<const Vector6d>(parameters[0]);
+    const Eigen::Vector3d p = exp_se3(twist) * (kPoseGuess * o_.point_in_world);
+    const Eigen::Vector2d pixel = camera_.project(p);
+    Eigen::Map<Eigen::Vector3d>{residuals} << pixel - o_.pixel,
+        (1.0 / p.z() - o_.inverse_depth) / o_.inverse_depth_sigma;
+    if (!jacobians || !jacobians[0]) return true;
+    const double iz = 1.0 / p.z();
+    Eigen::Matrix3d by_point;
+    by_point << camera_.fx * iz, 0, -camera_.fx * p.x() * iz * iz, 0, camera_.fy * iz,
+        -camera_.fy * p.y() * iz * iz, 0, 0, -iz * iz / o_.inverse_depth_sigma;
+    Eigen::Map<Eigen::Matrix<double, 3, 6, Eigen::RowMajor>> j(jacobians[0]);
+    j << by_point, -by_point * skew(p);
+    return true;
+  }
+
+ private:
+  const PoseObservation& o_;
+  const Camera& camera_;
+};
+
+// One robust solve only; solve_pose does up to four, with outlier decisions between them.
+void ceres_pose_500_points(benchmark::State& state) {
+  const Camera camera;
+  const std::vector<PoseObservation> observations = pose_observations(camera);
+  for ([[maybe_unused]] auto _ : state) {
+    std::array<double, 6> twist{};
+    ceres::Problem problem;
+    for (const PoseObservation& o : observations)
+      problem.AddResidualBlock(new CeresPoseCost(o, camera), new ceres::HuberLoss(2.8),
+                               twist.data());
+    ceres::Solver::Options options;
+    options.linear_solver_type = ceres::DENSE_NORMAL_CHOLESKY;
+    options.max_num_iterations = 6;
+    options.logging_type = ceres::SILENT;
+    ceres::Solver::Summary summary;
+    ceres::Solve(options, &problem, &summary);
+    benchmark::DoNotOptimize(twist);
+  }
+}
+BENCHMARK(ceres_pose_500_points)->Unit(benchmark::kMicrosecond);
 
 // Features all over the image, and queries for them that are `off` px beside.
 struct Matching {

@@ -29,15 +29,17 @@ struct OptionInfo {
   double max = std::numeric_limits<double>::infinity();   ///< largest allowed number
   std::string_view unit = {};                             ///< "px", "m", "s", "frames", …
   std::string_view help = {};                             ///< one line
-  bool required = false;  ///< no default: leaving it out is a fault
-  bool is_path = false;   ///< a relative path is meant from the folder of the file that names it
+  bool required = false;                                  ///< no default: leaving it out is a fault
+  bool is_path = false;  ///< a relative path is meant from the folder of the file that names it
 };
 
 class OptionVisitor;
 
 /// A struct whose fields are options.
 template <class T>
-concept OptionGroup = requires(T& group, OptionVisitor& visitor) { group.visit(visitor); };
+concept OptionGroup = requires(T& group, OptionVisitor& visitor) {
+  group.visit(visitor);
+};
 
 /// Called by `visit()` once per field, in the order in which the fields are documented.
 /// A visitor may read the field, overwrite it, or both; it throws nothing for a user's mistakes but
@@ -83,8 +85,7 @@ class STILLPOINT_EXPORT OptionVisitor {
 
   /// Structs by user-chosen key, `person: {prior: 0.9}`. Keys given in YAML join the defaults.
   template <OptionGroup T>
-  void operator()(std::string_view name, std::map<std::string, T>& groups,
-                  const OptionInfo& info) {
+  void operator()(std::string_view name, std::map<std::string, T>& groups, const OptionInfo& info) {
     std::vector<std::string> keys;
     for (const auto& [key, group] : groups) keys.push_back(key);
     for (const std::string& key : enter_map(name, keys, info)) {

@@ -37,9 +37,9 @@ enum class LogLevel { kDebug, kInfo, kWarning, kError };
 
 /// What the program tells a stage besides its options.
 struct StageContext {
-  std::uint64_t seed = 1;    ///< of this stage alone
-  int threads = 1;           ///< that its solvers may use
-  bool deterministic = true; ///< `mode: inline`: no clock and no races in decisions
+  std::uint64_t seed = 1;                  ///< of this stage alone
+  int threads = 1;                         ///< that its solvers may use
+  bool deterministic = true;               ///< `mode: inline`: no clock and no races in decisions
   std::filesystem::path output_directory;  ///< of the run; exists when outputs are created
   std::optional<CameraModel> camera;       ///< the `camera:` section, for sources
   std::function<void(LogLevel, std::string_view)> log = [](LogLevel, std::string_view) {};
@@ -47,11 +47,11 @@ struct StageContext {
 
 /// One implementation of one contract.
 struct PluginEntry {
-  const char* kind;     ///< of the contract, as Interface::kKind
-  const char* type;     ///< what a pipeline file writes after `type:`
-  const char* summary;  ///< one line
-  void (*describe)(OptionVisitor&);                       ///< visits default options
-  void* (*create)(OptionVisitor&, const StageContext&);   ///< returns an Interface*
+  const char* kind;                  ///< of the contract, as Interface::kKind
+  const char* type;                  ///< what a pipeline file writes after `type:`
+  const char* summary;               ///< one line
+  void (*describe)(OptionVisitor&);  ///< visits default options
+  void* (*create)(OptionVisitor&, const StageContext&);  ///< returns an Interface*
 };
 
 struct PluginDescriptor {
@@ -76,7 +76,7 @@ struct OptionsOf {
   using type = NoOptions;
 };
 template <class T>
-  requires requires { typename T::Options; }
+requires requires { typename T::Options; }
 struct OptionsOf<T> {
   using type = typename T::Options;
 };
@@ -115,11 +115,12 @@ constexpr PluginEntry provide(const char* type, const char* summary) {
 }  // namespace stillpoint
 
 /// Once per library, at namespace scope: STILLPOINT_PLUGIN(name, "version", provide<…>(…), …);
-#define STILLPOINT_PLUGIN(plugin_name, plugin_version, ...)                                     \
-  namespace {                                                                                   \
-  constexpr stillpoint::PluginEntry stillpoint_entries[] = {__VA_ARGS__};                       \
-  }                                                                                             \
-  extern "C" STILLPOINT_EXPORT const stillpoint::PluginDescriptor stillpoint_plugin;            \
-  const stillpoint::PluginDescriptor stillpoint_plugin = {                                      \
-      stillpoint::kPluginApi, stillpoint::kAbiTag, #plugin_name, plugin_version,                \
+#define STILLPOINT_PLUGIN(plugin_name, plugin_version, ...)                          \
+  namespace {                                                                        \
+  constexpr stillpoint::PluginEntry stillpoint_entries[] = {__VA_ARGS__};            \
+  }                                                                                  \
+  extern "C" STILLPOINT_EXPORT const stillpoint::PluginDescriptor stillpoint_plugin; \
+  const stillpoint::PluginDescriptor stillpoint_plugin = {                           \
+      stillpoint::kPluginApi, stillpoint::kAbiTag,                                   \
+      #plugin_name,           plugin_version,                                        \
       stillpoint_entries,     sizeof(stillpoint_entries) / sizeof(stillpoint_entries[0])}

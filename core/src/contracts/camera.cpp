@@ -8,10 +8,12 @@ void CameraModel::visit(OptionVisitor& v) {
   v("height", height, {.min = 16, .max = 16384, .unit = "px", .help = "of the recorded images"});
   v("fx", fx, {.min = 1, .unit = "px", .help = "focal length along x", .required = true});
   v("fy", fy, {.min = 1, .unit = "px", .help = "focal length along y", .required = true});
-  v("cx", cx, {.unit = "px", .help = "principal point, from the centre of the left column",
-               .required = true});
-  v("cy", cy, {.unit = "px", .help = "principal point, from the centre of the top row",
-               .required = true});
+  v("cx", cx,
+    {.unit = "px",
+     .help = "principal point, from the centre of the left column",
+     .required = true});
+  v("cy", cy,
+    {.unit = "px", .help = "principal point, from the centre of the top row", .required = true});
   v("distortion", distortion, {.help = "Brown–Conrady k1, k2, p1, p2[, k3]; empty for none"});
   v("depth_factor", depth_factor, {.min = 1e-6, .help = "depth image value of one metre"});
   v("min_depth", min_depth, {.min = 0, .unit = "m", .help = "nearer measurements are dropped"});
@@ -22,14 +24,19 @@ void CameraModel::visit(OptionVisitor& v) {
   v.require(distortion.empty() || distortion.size() == 4 || distortion.size() == 5,
             "distortion takes 4 or 5 numbers: k1, k2, p1, p2[, k3]");
   v.require(min_depth < max_depth, "min_depth must be smaller than max_depth");
-  v.require(crop.empty() || (crop.size() == 4 && crop[0] >= 0 && crop[1] >= 0 && crop[2] >= 16 &&
-                             crop[3] >= 16 && crop[0] + crop[2] <= width &&
-                             crop[1] + crop[3] <= height),
-            "crop takes x, y, width, height within the image, at least 16 x 16");
+  v.require(
+      crop.empty() || (crop.size() == 4 && crop[0] >= 0 && crop[1] >= 0 && crop[2] >= 16 &&
+                       crop[3] >= 16 && crop[0] + crop[2] <= width && crop[1] + crop[3] <= height),
+      "crop takes x, y, width, height within the image, at least 16 x 16");
 }
 
 Camera CameraModel::undistorted() const {
-  Camera camera{.width = width, .height = height, .fx = fx, .fy = fy, .cx = cx, .cy = cy,
+  Camera camera{.width = width,
+                .height = height,
+                .fx = fx,
+                .fy = fy,
+                .cx = cx,
+                .cy = cy,
                 .depth_noise = depth_noise};
   if (crop.size() == 4) {
     camera.cx -= crop[0];

@@ -8,9 +8,8 @@ namespace stillpoint {
 namespace {
 
 auto find_observation(std::vector<Observation>& observations, KeyFrameId keyframe) {
-  return std::lower_bound(
-      observations.begin(), observations.end(), keyframe,
-      [](const Observation& o, KeyFrameId id) { return o.keyframe < id; });
+  return std::lower_bound(observations.begin(), observations.end(), keyframe,
+                          [](const Observation& o, KeyFrameId id) { return o.keyframe < id; });
 }
 
 // Sets, changes or removes (shared = 0) an edge; the strongest edges stay first.
@@ -161,8 +160,7 @@ void MapEdit::update_covisibility(KeyFrameId id, int min_shared) {
                        [](const auto& a, const auto& b) { return a.second < b.second; });
   if (strongest != shared.end()) {
     const KeyFrameId keep = strongest->first;
-    std::erase_if(shared,
-                  [&](const auto& s) { return s.second < min_shared && s.first != keep; });
+    std::erase_if(shared, [&](const auto& s) { return s.second < min_shared && s.first != keep; });
   }
   const std::vector<Covisibility> before = map_.keyframe(id)->covisible;
   for (const Covisibility& c : before)

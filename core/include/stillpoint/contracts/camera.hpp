@@ -57,7 +57,7 @@ struct STILLPOINT_EXPORT CameraModel {
   double depth_factor = 5000.0;  ///< depth image value of one metre
   double min_depth = 0.3;        ///< metres; nearer measurements are dropped
   double max_depth = 10.0;       ///< metres; farther measurements are dropped
-  double depth_noise = 0.02;    ///< metres at 1 m, see Camera::depth_noise
+  double depth_noise = 0.02;     ///< metres at 1 m, see Camera::depth_noise
   /// x, y, width, height in px of the part of the undistorted image that is used; empty: all of it.
   std::vector<double> crop;
 

@@ -24,7 +24,7 @@ struct Features {
   /// px of the full image; `octave` is the pyramid level, `angle` in degrees, `size` in px.
   std::vector<cv::KeyPoint> keypoints;
   std::vector<Descriptor> descriptors;
-  std::vector<float> depth;  ///< metres at the keypoint, 0 = no measurement
+  std::vector<float> depth;   ///< metres at the keypoint, 0 = no measurement
   double scale_factor = 1.2;  ///< between two levels of the pyramid
   int levels = 8;
 
