@@ -36,7 +36,7 @@ TEST_F(RecordingWriterTest, WritesAFolderOfTheBenchmark) {
   scene.sensor.depth_offset = 0.005;
   Simulator simulator(scene, {.width = 64, .height = 48, .fx = 50, .fy = 50, .cx = 32, .cy = 24},
                       1);
-  RecordingWriter writer(folder_, 2);
+  RecordingWriter writer(folder_);
   const SimulatedFrame frame = simulator.frame(0);
   writer.write(frame);
   writer.write(simulator.frame(1));
@@ -60,7 +60,7 @@ TEST_F(RecordingWriterTest, GroundTruthIsTheMotionAt100Hz) {
   SceneOptions scene;
   scene.room.furnished = false;
   const Simulator simulator(scene, default_camera(), 1);
-  RecordingWriter(folder_, 1).write_ground_truth(simulator, 31);
+  RecordingWriter(folder_).write_ground_truth(simulator, 31);
   std::ifstream file(folder_ / "groundtruth.txt");
   std::string line;
   double last = 0;
@@ -85,9 +85,9 @@ TEST_F(RecordingWriterTest, GroundTruthIsTheMotionAt100Hz) {
 }
 
 TEST_F(RecordingWriterTest, DoesNotWriteOverARecording) {
-  { const RecordingWriter first(folder_, 1); }
+  { const RecordingWriter first(folder_); }
   try {
-    const RecordingWriter second(folder_, 1);
+    const RecordingWriter second(folder_);
     FAIL();
   } catch (const Error& error) {
     EXPECT_EQ(error.fault(), Fault::kUsage);

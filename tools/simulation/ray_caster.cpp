@@ -42,6 +42,7 @@ Scene mesh_scene(RTCDevice device, const Mesh& mesh) {
   std::memcpy(triangles, mesh.triangles.data(), mesh.triangles.size() * 3 * sizeof(std::uint32_t));
   rtcCommitGeometry(geometry.get());
   Scene scene = new_scene(device);
+  rtcSetSceneBuildQuality(scene.get(), RTC_BUILD_QUALITY_HIGH);  // built once, searched all the time
   rtcAttachGeometry(scene.get(), geometry.get());
   rtcCommitScene(scene.get());
   return scene;

@@ -4,9 +4,7 @@
 #include <cmath>
 #include <cstdio>
 #include <string>
-#include <utility>
 
-#include "simulation/parallel.hpp"
 #include "simulation/png_file.hpp"
 #include "stillpoint/error.hpp"
 
@@ -34,8 +32,7 @@ void make_folders(const std::filesystem::path& folder) {
 
 }  // namespace
 
-RecordingWriter::RecordingWriter(const std::filesystem::path& folder, int threads)
-    : folder_(folder), threads_(threads) {
+RecordingWriter::RecordingWriter(const std::filesystem::path& folder) : folder_(folder) {
   make_folders(folder_);
   colors_ = open("rgb.txt", "# color images\n# timestamp filename\n");
   depths_ = open("depth.txt", "# depth maps\n# timestamp filename\n");
@@ -52,16 +49,10 @@ std::ofstream RecordingWriter::open(const char* name, const char* header) const 
 void RecordingWriter::write(const SimulatedFrame& frame) {
   const std::string color_name = seconds(frame.time) + ".png";
   const std::string depth_name = seconds(frame.depth_time) + ".png";
-  const std::array<std::pair<std::filesystem::path, cv::Mat>, 4> images = {{
-      {folder_ / "rgb" / color_name, frame.bgr},
-      {folder_ / "depth" / depth_name, frame.depth},
-      {folder_ / "labels" / color_name, frame.labels},
-      {folder_ / "instances" / color_name, frame.instances},
-  }};
-  parallel_for(threads_, static_cast<int>(images.size()), [&](int i) {
-    const auto& [file, image] = images[static_cast<std::size_t>(i)];
-    write_png(file, image);
-  });
+  write_png(folder_ / "rgb" / color_name, frame.bgr);
+  write_png(folder_ / "depth" / depth_name, frame.depth);
+  write_png(folder_ / "labels" / color_name, frame.labels);
+  write_png(folder_ / "instances" / color_name, frame.instances);
   const std::string color = seconds(frame.time) + " rgb/" + color_name;
   const std::string depth = seconds(frame.depth_time) + " depth/" + depth_name;
   colors_ << color << '\n';

@@ -13,7 +13,7 @@ namespace stillpoint::simulation {
 class RecordingWriter {
  public:
   /// Makes the folder. Throws Error(kUsage) when it holds a recording or cannot be written to.
-  RecordingWriter(const std::filesystem::path& folder, int threads);
+  explicit RecordingWriter(const std::filesystem::path& folder);
 
   void write(const SimulatedFrame& frame);
   /// True poses at 100 Hz, from before the first to after the last frame.
@@ -23,7 +23,6 @@ class RecordingWriter {
   std::ofstream open(const char* name, const char* header) const;
 
   std::filesystem::path folder_;
-  int threads_;
   std::ofstream colors_;
   std::ofstream depths_;
   std::ofstream associations_;

@@ -269,6 +269,7 @@ struct Renderer::Job {
     cast(points, middle, bundle);
     std::array<Vector3f, kEdgePixels> sums;
     sums.fill(Vector3f::Zero());
+    AspectMemory aspects(shader);
     for (std::size_t i = 0; i < kPacket; ++i) {
       const Hit& hit = bundle.hits[i];
       if (hit.distance == 0) continue;
@@ -276,7 +277,7 @@ struct Renderer::Job {
       if (shader.surface_key(hit) == surfaces.at<int>(pixel))
         sums[i / kFew] += Vector3f(sharp.at<cv::Vec3f>(pixel).val);
       else
-        sums[i / kFew] += shader.color(hit, shader.aspect(hit, bundle.directions[i]));
+        sums[i / kFew] += shader.color(hit, aspects.of(hit, bundle.directions[i]));
     }
     for (std::size_t i = 0; i < kEdgePixels; ++i)
       set_color(sharp, pixels[i].x, pixels[i].y, sums[i] / static_cast<float>(kFew));

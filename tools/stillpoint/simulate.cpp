@@ -1,7 +1,10 @@
 // stillpoint simulate: writes a recording of a simulated scene, with true poses and labels.
 #include <algorithm>
+#include <chrono>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <future>
 #include <iostream>
 #include <memory>
 #include <thread>
@@ -28,20 +31,24 @@ void simulate(const Arguments& arguments) {
                           ? arguments.threads
                           : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
   simulation::Simulator simulator(file.scene, file.camera, threads);
-  simulation::RecordingWriter writer(arguments.output, threads);
+  simulation::RecordingWriter writer(arguments.output);
   std::ofstream(arguments.output / "camera.yaml") << "version: 1\n" << camera_yaml(file.camera);
   writer.write_ground_truth(simulator, simulator.size());
   const auto begin = std::chrono::steady_clock::now();
   const auto rate = [&](int frames) {
     return frames / std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   };
+  std::future<void> written;  // of the frame before: files are written while the next is rendered
   for (int i = 0; i < simulator.size(); ++i) {
-    writer.write(simulator.frame(i));
+    simulation::SimulatedFrame frame = simulator.frame(i);
+    if (written.valid()) written.get();
+    written = std::async(std::launch::async, [&writer, frame] { writer.write(frame); });
     if ((i + 1) % 100 == 0 || i + 1 == simulator.size())
       std::cout << i + 1 << " of " << simulator.size() << " frames, " << std::lround(rate(i + 1))
                 << " per second\n"
                 << std::flush;
   }
+  if (written.valid()) written.get();
   std::cout << "recording in " << arguments.output.string() << '\n';
 }
 
