@@ -4,7 +4,7 @@
 #include <cstdlib>
 
 #include "fake_stages.hpp"
-#include "stillpoint/runtime/did_you_mean.hpp"
+#include "stillpoint/did_you_mean.hpp"
 #include "stillpoint/runtime/option_describer.hpp"
 #include "stillpoint/runtime/yaml_loader.hpp"
 #include "stillpoint/runtime/yaml_option_reader.hpp"

@@ -5,7 +5,7 @@
 #include <memory>
 
 #include "commands.hpp"
-#include "stillpoint/runtime/did_you_mean.hpp"
+#include "stillpoint/did_you_mean.hpp"
 #include "stillpoint/runtime/option_describer.hpp"
 
 namespace stillpoint {

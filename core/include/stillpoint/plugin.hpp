@@ -12,6 +12,7 @@
 #include <string_view>
 #include <type_traits>
 
+#include "stillpoint/class_names.hpp"
 #include "stillpoint/contracts/camera.hpp"
 #include "stillpoint/export.hpp"
 #include "stillpoint/options.hpp"
@@ -19,7 +20,7 @@
 namespace stillpoint {
 
 /// Goes up with any change under contracts/, in plugin.hpp or in options.hpp.
-inline constexpr std::uint32_t kPluginApi = 1;
+inline constexpr std::uint32_t kPluginApi = 2;
 
 #define STILLPOINT_TEXT_(x) #x
 #define STILLPOINT_TEXT(x) STILLPOINT_TEXT_(x)
@@ -42,6 +43,7 @@ struct StageContext {
   bool deterministic = true;               ///< `mode: inline`: no clock and no races in decisions
   std::filesystem::path output_directory;  ///< of the run; exists when outputs are created
   std::optional<CameraModel> camera;       ///< the `camera:` section, for sources
+  ClassNames classes;                      ///< of the segmenter; empty without one
   std::function<void(LogLevel, std::string_view)> log = [](LogLevel, std::string_view) {};
 };
 

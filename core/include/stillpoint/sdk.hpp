@@ -1,6 +1,7 @@
 // Everything a plugin author includes.
 #pragma once
 
+#include "stillpoint/class_names.hpp"
 #include "stillpoint/contracts/decision.hpp"
 #include "stillpoint/contracts/local_mapper.hpp"
 #include "stillpoint/contracts/loop_closer.hpp"
@@ -11,7 +12,9 @@
 #include "stillpoint/contracts/segmenter.hpp"
 #include "stillpoint/contracts/source.hpp"
 #include "stillpoint/contracts/tracker.hpp"
+#include "stillpoint/did_you_mean.hpp"
 #include "stillpoint/error.hpp"
+#include "stillpoint/objects.hpp"
 #include "stillpoint/options.hpp"
 #include "stillpoint/plugin.hpp"
 #include "stillpoint/pose_math.hpp"

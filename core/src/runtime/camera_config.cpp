@@ -1,7 +1,7 @@
 #include "stillpoint/runtime/camera_config.hpp"
 
+#include "stillpoint/did_you_mean.hpp"
 #include "stillpoint/runtime/config_lookup.hpp"
-#include "stillpoint/runtime/did_you_mean.hpp"
 #include "stillpoint/runtime/pipeline_config.hpp"
 #include "stillpoint/runtime/yaml_loader.hpp"
 #include "stillpoint/runtime/yaml_option_reader.hpp"

@@ -3,8 +3,8 @@
 #include <set>
 #include <vector>
 
+#include "stillpoint/did_you_mean.hpp"
 #include "stillpoint/error.hpp"
-#include "stillpoint/runtime/did_you_mean.hpp"
 #include "stillpoint/runtime/install_layout.hpp"
 
 namespace stillpoint {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <tuple>
 
-#include "stillpoint/runtime/did_you_mean.hpp"
+#include "stillpoint/did_you_mean.hpp"
 #include "stillpoint/runtime/pipeline_config.hpp"
 
 namespace stillpoint {

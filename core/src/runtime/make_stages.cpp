@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <string>
+#include <utility>
 
 namespace stillpoint {
 namespace {
@@ -18,6 +19,13 @@ class StageMaker {
     return {spec->create<Interface>(context_of(*spec)), spec->type()};
   }
 
+  /// First of all, because the others are told its classes.
+  Stage<Segmenter> make_segmenter() {
+    Stage<Segmenter> segmenter = make<Segmenter>(config_.segmenter);
+    if (segmenter.object) classes_ = segmenter.object->classes();
+    return segmenter;
+  }
+
  private:
   StageContext context_of(const StageSpec& spec) const {
     const RuntimeOptions& runtime = config_.runtime;
@@ -27,6 +35,7 @@ class StageMaker {
             .deterministic = deterministic,
             .output_directory = output_directory_,
             .camera = config_.camera,
+            .classes = classes_,
             .log = [log = log_, section = spec.section()](LogLevel level, std::string_view text) {
               log(level, section + ": " + std::string(text));
             }};
@@ -35,15 +44,17 @@ class StageMaker {
   const PipelineConfig& config_;
   const std::filesystem::path& output_directory_;
   const std::function<void(LogLevel, std::string_view)>& log_;
+  ClassNames classes_;
 };
 
 }  // namespace
 
 Stages make_stages(const PipelineConfig& config, const std::filesystem::path& output_directory,
                    const std::function<void(LogLevel, std::string_view)>& log) {
-  const StageMaker maker(config, output_directory, log);
+  StageMaker maker(config, output_directory, log);
+  Stage<Segmenter> segmenter = maker.make_segmenter();
   Stages stages{.source = maker.make<Source>(config.source),
-                .segmenter = maker.make<Segmenter>(config.segmenter),
+                .segmenter = std::move(segmenter),
                 .propagator = maker.make<Propagator>(config.propagator),
                 .moving_checker = maker.make<MovingChecker>(config.moving_checker),
                 .decision = maker.make<Decision>(config.decision),

@@ -7,6 +7,7 @@ namespace {
 
 class NullSegmenter final : public Segmenter {
  public:
+  ClassNames classes() const override { return {}; }
   Segmentation segment(const Frame& frame) override { return {.frame = frame.index}; }
 };
 

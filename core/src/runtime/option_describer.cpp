@@ -1,6 +1,6 @@
 #include "stillpoint/runtime/option_describer.hpp"
 
-#include "stillpoint/runtime/did_you_mean.hpp"
+#include "stillpoint/did_you_mean.hpp"
 #include "stillpoint/runtime/option_record.hpp"
 
 namespace stillpoint {

@@ -4,7 +4,7 @@
 #include <charconv>
 #include <cmath>
 
-#include "stillpoint/runtime/did_you_mean.hpp"
+#include "stillpoint/did_you_mean.hpp"
 #include "stillpoint/runtime/option_record.hpp"
 
 namespace stillpoint {

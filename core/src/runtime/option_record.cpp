@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "stillpoint/runtime/did_you_mean.hpp"
+#include "stillpoint/did_you_mean.hpp"
 
 namespace stillpoint {
 namespace {

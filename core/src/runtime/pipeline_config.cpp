@@ -3,8 +3,8 @@
 #include <algorithm>
 
 #include "stillpoint/contracts/source.hpp"
+#include "stillpoint/did_you_mean.hpp"
 #include "stillpoint/runtime/config_lookup.hpp"
-#include "stillpoint/runtime/did_you_mean.hpp"
 #include "stillpoint/runtime/pipeline_tree.hpp"
 #include "stillpoint/runtime/yaml_option_reader.hpp"
 

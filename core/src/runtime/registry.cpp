@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <span>
 
+#include "stillpoint/did_you_mean.hpp"
 #include "stillpoint/error.hpp"
-#include "stillpoint/runtime/did_you_mean.hpp"
 #include "stillpoint/runtime/plugin_library.hpp"
 
 namespace stillpoint {

@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "stillpoint/runtime/did_you_mean.hpp"
+#include "stillpoint/did_you_mean.hpp"
 
 namespace stillpoint {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "stillpoint/runtime/did_you_mean.hpp"
+#include "stillpoint/did_you_mean.hpp"
 #include "stillpoint/runtime/option_parsing.hpp"
 
 namespace stillpoint {

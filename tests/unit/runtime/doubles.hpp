@@ -85,6 +85,7 @@ class FakeSource final : public Source {
 class FakeSegmenter final : public Segmenter {
  public:
   explicit FakeSegmenter(Journal& journal) : journal_(journal) {}
+  ClassNames classes() const override { return named_classes("voc21"); }
   Segmentation segment(const Frame& frame) override {
     journal_.write("segment", frame.index);
     return {.labels = cv::Mat(1, 1, CV_8UC1, cv::Scalar(15)), .frame = frame.index};

@@ -1,6 +1,7 @@
 // Contract: class labels for an image (paper III-B). Thread 2.
 #pragma once
 
+#include "stillpoint/class_names.hpp"
 #include "stillpoint/contracts/frame.hpp"
 #include "stillpoint/contracts/segmentation.hpp"
 #include "stillpoint/export.hpp"
@@ -11,6 +12,9 @@ class STILLPOINT_EXPORT Segmenter {
  public:
   static constexpr const char* kKind = "segmenter";
   virtual ~Segmenter();
+
+  /// What its labels mean. Other stages learn it from their StageContext.
+  virtual ClassNames classes() const = 0;
 
   /// Labels of the frame's size, or empty labels when this segmenter has none for it.
   virtual Segmentation segment(const Frame& frame) = 0;

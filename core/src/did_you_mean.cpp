@@ -1,4 +1,4 @@
-#include "stillpoint/runtime/did_you_mean.hpp"
+#include "stillpoint/did_you_mean.hpp"
 
 #include <algorithm>
 

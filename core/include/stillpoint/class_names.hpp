@@ -1,0 +1,21 @@
+// What class ids mean.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "stillpoint/export.hpp"
+
+namespace stillpoint {
+
+/// Names by class id; id 0 is the background. Empty: no classes.
+using ClassNames = std::vector<std::string>;
+
+/// A list by name: `voc21` (PASCAL VOC), `coco80` (the background, then COCO in its usual order) or
+/// `person` (background, person). Throws Error(kUsage) for another name.
+STILLPOINT_EXPORT ClassNames named_classes(const std::string& list);
+
+/// The id of a class. Throws Error(kUsage) that suggests a name when there is none.
+STILLPOINT_EXPORT int class_id(const ClassNames& classes, const std::string& name);
+
+}  // namespace stillpoint

@@ -1,0 +1,67 @@
+#include "stillpoint/objects.hpp"
+
+#include <algorithm>
+#include <array>
+#include <opencv2/imgproc.hpp>
+
+namespace stillpoint {
+namespace {
+
+constexpr std::size_t kMostObjects = 255;  // instances are 8-bit
+
+struct Part {
+  SegmentedObject object;
+  cv::Mat components;  // of its class
+  int component;
+};
+
+std::array<bool, 256> labels_in(const cv::Mat& labels) {
+  std::array<bool, 256> present{};
+  for (int y = 0; y < labels.rows; ++y) {
+    const auto* row = labels.ptr<std::uint8_t>(y);
+    for (int x = 0; x < labels.cols; ++x) present[row[x]] = true;
+  }
+  return present;
+}
+
+void append_parts(const cv::Mat& labels, int label, int min_pixels, std::vector<Part>& parts) {
+  cv::Mat components, statistics, centroids;
+  const int count =
+      cv::connectedComponentsWithStats(labels == label, components, statistics, centroids);
+  for (int i = 1; i < count; ++i) {
+    const auto* s = statistics.ptr<int>(i);
+    if (s[cv::CC_STAT_AREA] < min_pixels) continue;
+    const cv::Rect box(s[cv::CC_STAT_LEFT], s[cv::CC_STAT_TOP], s[cv::CC_STAT_WIDTH],
+                       s[cv::CC_STAT_HEIGHT]);
+    parts.push_back({{.label = label, .box = box, .pixels = s[cv::CC_STAT_AREA]}, components, i});
+  }
+}
+
+}  // namespace
+
+void find_objects(Segmentation& segmentation, int min_pixels) {
+  const cv::Mat labels = segmentation.labels;
+  segmentation.objects.clear();
+  segmentation.instances.release();
+  if (labels.empty()) return;
+  std::vector<Part> parts;
+  const std::array<bool, 256> present = labels_in(labels);
+  for (int label = 1; label < 256; ++label)
+    if (present[static_cast<std::size_t>(label)]) append_parts(labels, label, min_pixels, parts);
+  std::ranges::stable_sort(parts, std::greater{},
+                           [](const Part& part) { return part.object.pixels; });
+  if (parts.size() > kMostObjects) parts.resize(kMostObjects);
+
+  // New images: others may hold those that came in, and zeros() would fill an existing one.
+  segmentation.labels = cv::Mat(labels.size(), CV_8UC1, cv::Scalar(0));
+  segmentation.instances = cv::Mat(labels.size(), CV_8UC1, cv::Scalar(0));
+  for (const Part& part : parts) {
+    const cv::Rect& box = part.object.box;
+    const cv::Mat mask = part.components(box) == part.component;
+    segmentation.labels(box).setTo(part.object.label, mask);
+    segmentation.instances(box).setTo(static_cast<int>(segmentation.objects.size()) + 1, mask);
+    segmentation.objects.push_back(part.object);
+  }
+}
+
+}  // namespace stillpoint
