@@ -73,6 +73,8 @@ TEST_F(PipelineConfigTest, PathsBelongToTheFileThatNamesThem) {
   EXPECT_EQ(source_path(load({.pipeline = "child.yaml", .assignments = {"source.path=x/../y"}})),
             folder_ / "y");
   EXPECT_EQ(source_path(load({.pipeline = "child.yaml", .dataset = "sub"})), folder_ / "sub");
+  EXPECT_EQ(load({.pipeline = "child.yaml"}).recording, folder_ / "sub/data");
+  EXPECT_EQ(load({.pipeline = "child.yaml", .dataset = "sub"}).recording, folder_ / "sub");
 }
 
 TEST_F(PipelineConfigTest, OverriddenVariablesNeedNotBeSet) {

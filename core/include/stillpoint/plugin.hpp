@@ -20,7 +20,7 @@
 namespace stillpoint {
 
 /// Goes up with any change under contracts/, in plugin.hpp or in options.hpp.
-inline constexpr std::uint32_t kPluginApi = 2;
+inline constexpr std::uint32_t kPluginApi = 3;
 
 #define STILLPOINT_TEXT_(x) #x
 #define STILLPOINT_TEXT(x) STILLPOINT_TEXT_(x)
@@ -42,6 +42,7 @@ struct StageContext {
   int threads = 1;                         ///< that its solvers may use
   bool deterministic = true;               ///< `mode: inline`: no clock and no races in decisions
   std::filesystem::path output_directory;  ///< of the run; exists when outputs are created
+  std::filesystem::path recording;         ///< what the source reads; empty when it reads none
   std::optional<CameraModel> camera;       ///< the `camera:` section, for sources
   ClassNames classes;                      ///< of the segmenter; empty without one
   std::function<void(LogLevel, std::string_view)> log = [](LogLevel, std::string_view) {};

@@ -34,6 +34,7 @@ class StageMaker {
             .threads = deterministic ? 1 : runtime.threads,
             .deterministic = deterministic,
             .output_directory = output_directory_,
+            .recording = config_.recording,
             .camera = config_.camera,
             .classes = classes_,
             .log = [log = log_, section = spec.section()](LogLevel level, std::string_view text) {

@@ -46,6 +46,7 @@ class PipelineReader {
     read_version();
     search_plugins(plugin_folders);
     if (section("camera")) read_options(config.camera.emplace(), "camera");
+    config.recording = recording_of(tree_);
     read_source(config.source);
     read_options(config.segmentation, "segmentation");
     for (const StageSection& stage : kStages)

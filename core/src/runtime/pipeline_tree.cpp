@@ -35,10 +35,9 @@ ConfigNode command_line_overlay(const PipelineRequest& request, FaultList& fault
 
 /// The camera.yaml of the recording that the source reads; empty when there is none.
 fs::path camera_beside_recording(const ConfigNode& tree) {
-  const ConfigNode* source = tree.find("source");
-  const ConfigNode* path = source ? source->find("path") : nullptr;
-  if (!path || path->kind != ConfigNode::Kind::kScalar) return {};
-  const fs::path file = path->folder / path->scalar / "camera.yaml";
+  const fs::path recording = recording_of(tree);
+  if (recording.empty()) return {};
+  const fs::path file = recording / "camera.yaml";
   std::error_code error;
   return fs::is_regular_file(file, error) ? file : fs::path{};
 }
@@ -64,6 +63,13 @@ ConfigNode load_pipeline_tree(const fs::path& file, const PipelineRequest& reque
     camera_file = camera_beside_recording(finished(merge_sections(tree, overlay), found_again));
   if (!camera_file.empty()) tree.set(load_camera_section(camera_file, faults));
   return finished(merge_sections(std::move(tree), overlay), faults);
+}
+
+fs::path recording_of(const ConfigNode& tree) {
+  const ConfigNode* source = tree.find("source");
+  const ConfigNode* path = source ? source->find("path") : nullptr;
+  if (!path || path->kind != ConfigNode::Kind::kScalar) return {};
+  return path->folder / path->scalar;
 }
 
 }  // namespace stillpoint

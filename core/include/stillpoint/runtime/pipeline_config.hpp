@@ -78,6 +78,7 @@ class StageSpec {
 /// A section left out is an empty optional: the built-in null stage.
 struct PipelineConfig {
   std::filesystem::path file;
+  std::filesystem::path recording;  ///< source.path; empty when there is none
   std::optional<CameraModel> camera;
   std::optional<StageSpec> source;  ///< always there
   std::optional<StageSpec> segmenter;

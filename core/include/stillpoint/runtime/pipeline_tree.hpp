@@ -13,4 +13,7 @@ namespace stillpoint {
 ConfigNode load_pipeline_tree(const std::filesystem::path& file, const PipelineRequest& request,
                               FaultList& faults);
 
+/// The recording that the source reads, its option `path`; empty when it has none.
+std::filesystem::path recording_of(const ConfigNode& tree);
+
 }  // namespace stillpoint
