@@ -1,0 +1,95 @@
+#include "segmenter_label_images/label_image_segmenter.hpp"
+
+#include <cmath>
+#include <sstream>
+
+namespace stillpoint {
+namespace {
+
+constexpr std::size_t kHopelessStart = 10;  // frames without labels before the first with some
+
+std::filesystem::path label_folder(const std::string& path, const StageContext& context) {
+  if (!path.empty()) return path;
+  if (!context.recording.empty()) return context.recording / "labels";
+  throw Error(Fault::kUsage, "no folder of label images is given", "",
+              "name it as 'path' of the segmenter");
+}
+
+ClassNames class_names(const std::string& text) {
+  if (text.find(',') == std::string::npos) return named_classes(text);
+  ClassNames names;
+  std::istringstream stream(text);
+  for (std::string name; std::getline(stream, name, ',');) {
+    const std::size_t first = name.find_first_not_of(' ');
+    if (first == std::string::npos)
+      throw Error(Fault::kUsage, "'" + text + "' has a class without a name", "classes");
+    names.push_back(name.substr(first, name.find_last_not_of(' ') + 1 - first));
+  }
+  return names;
+}
+
+/// Only asked for when there are to be false objects, because other lists may lack the default.
+int false_label(const NetworkErrorOptions& options, const ClassNames& classes) {
+  return options.false_objects > 0 ? class_id(classes, options.false_class) : 0;
+}
+
+std::string size_text(cv::Size size) {
+  return std::to_string(size.width) + " x " + std::to_string(size.height);
+}
+
+}  // namespace
+
+void LabelImageSegmenter::Options::visit(OptionVisitor& v) {
+  v("path", path,
+    {.help = "folder of the label images; empty for 'labels' in the recording", .is_path = true});
+  v("classes", classes,
+    {.help = "voc21, coco80, person, or names in order of id, separated by commas"});
+  v("max_difference", max_difference,
+    {.min = 0, .max = 10, .unit = "s", .help = "labels farther from a frame are not its own"});
+  v("min_object_pixels", min_object_pixels,
+    {.min = 1, .unit = "px", .help = "smaller objects become background"});
+  errors.visit(v);
+}
+
+LabelImageSegmenter::LabelImageSegmenter(Options options, const StageContext& context)
+    : options_(std::move(options)),
+      classes_(class_names(options_.classes)),
+      files_(label_folder(options_.path, context)),
+      errors_(options_.errors, false_label(options_.errors, classes_), context.seed),
+      log_(context.log) {
+  // A folder of something else shall be found out before the run begins.
+  read_labels(files_.entries().front().file, classes_.size());
+}
+
+Segmentation LabelImageSegmenter::segment(const Frame& frame) {
+  Segmentation result{.frame = frame.index};
+  const LabelFiles::Entry& nearest = files_.nearest(frame.time);
+  if (std::abs(nearest.time - frame.time) > options_.max_difference) {
+    report_missing(frame, nearest);
+    return result;
+  }
+  ++found_;
+  const cv::Mat labels = read_labels(nearest.file, classes_.size());
+  if (labels.size() != frame.gray.size())
+    throw Error(Fault::kData,
+                "the label image has " + size_text(labels.size()) + " pixels, but the frame has " +
+                    size_text(frame.gray.size()),
+                nearest.file.string(), "labels must belong to the undistorted and cropped images");
+  result.labels = errors_.apply(labels, frame.index, options_.min_object_pixels);
+  find_objects(result, options_.min_object_pixels);
+  return result;
+}
+
+void LabelImageSegmenter::report_missing(const Frame& frame, const LabelFiles::Entry& nearest) {
+  std::ostringstream text;
+  text.precision(6);
+  text << std::fixed << "the frame at " << frame.time << " s has no label image; the nearest, "
+       << nearest.file.filename().string() << ", is " << std::abs(nearest.time - frame.time)
+       << " s away";
+  if (++missing_ >= kHopelessStart && found_ == 0)
+    throw Error(Fault::kData, text.str() + ", and none of the first frames has one",
+                nearest.file.parent_path().string(), "are these the labels of this recording?");
+  if (missing_ == 1) log_(LogLevel::kWarning, text.str());
+}
+
+}  // namespace stillpoint

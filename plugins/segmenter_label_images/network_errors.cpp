@@ -1,0 +1,109 @@
+#include "segmenter_label_images/network_errors.hpp"
+
+#include <cmath>
+#include <opencv2/core.hpp>
+#include <opencv2/imgproc.hpp>
+
+#include "stillpoint/objects.hpp"
+
+namespace stillpoint {
+namespace {
+
+enum Purpose : std::uint32_t { kMisses, kOutlines, kFalseObjects };
+
+/// px along an outline over which its error stays about the same.
+constexpr int kWobbleCell = 16;
+
+// Finaliser of SplitMix64: close numbers give unrelated streams.
+std::uint64_t mixed(std::uint64_t value) {
+  value = (value ^ (value >> 30)) * 0xbf58476d1ce4e5b9u;
+  value = (value ^ (value >> 27)) * 0x94d049bb133111ebu;
+  return value ^ (value >> 31);
+}
+
+/// The object with its outline moved outwards by `shift` (px; CV_32F of the image's size), inside
+/// `region`, which is the object's box with room around it.
+cv::Mat moved_outline(const cv::Mat& object, const cv::Mat& shift) {
+  // Distances reach from pixel centre to pixel centre; the outline is half a pixel off either.
+  cv::Mat inside, outside;
+  cv::distanceTransform(object, inside, cv::DIST_L2, cv::DIST_MASK_5);
+  cv::distanceTransform(object == 0, outside, cv::DIST_L2, cv::DIST_MASK_5);
+  cv::Mat signed_distance = inside - outside;
+  signed_distance += shift;
+  cv::add(signed_distance, -0.5, signed_distance, object);
+  cv::add(signed_distance, 0.5, signed_distance, object == 0);
+  return signed_distance > 0;
+}
+
+}  // namespace
+
+void NetworkErrorOptions::visit(OptionVisitor& v) {
+  v("miss_rate", miss_rate, {.min = 0, .max = 1, .help = "probability that an object is missed"});
+  v("boundary", boundary,
+    {.min = -100,
+     .max = 100,
+     .unit = "px",
+     .help = "outlines lie outside the true ones; < 0 inside"});
+  v("wobble", wobble,
+    {.min = 0, .max = 100, .unit = "px", .help = "outlines lie off at random by up to so much"});
+  v("false_objects", false_objects,
+    {.min = 0, .max = 1, .help = "probability that a frame has an object that is not there"});
+  v("false_class", false_class, {.help = "class of the objects that are not there"});
+  v("error_frames", error_frames,
+    {.min = 1, .unit = "frames", .help = "how long misses and false objects last"});
+}
+
+cv::RNG NetworkErrors::generator(std::uint32_t period, std::uint32_t purpose) const {
+  return cv::RNG(mixed(mixed(seed_ + purpose) + period));
+}
+
+cv::Mat NetworkErrors::apply(const cv::Mat& labels, std::uint32_t frame,
+                             int min_object_pixels) const {
+  Segmentation truth{.labels = labels};
+  find_objects(truth, min_object_pixels);
+  const std::uint32_t period = frame / static_cast<std::uint32_t>(options_.error_frames);
+  cv::RNG misses = generator(period, kMisses);
+  const bool moves_outlines = options_.boundary != 0 || options_.wobble > 0;
+  const cv::Mat shift = moves_outlines ? outline_shift(labels.size(), frame) : cv::Mat();
+  const int room = static_cast<int>(std::ceil(std::abs(options_.boundary) + options_.wobble)) + 2;
+
+  cv::Mat result(labels.size(), CV_8UC1, cv::Scalar(0));
+  const cv::Rect image({}, labels.size());
+  for (std::size_t i = 0; i < truth.objects.size(); ++i) {
+    if (misses.uniform(0.0, 1.0) < options_.miss_rate) continue;
+    const SegmentedObject& object = truth.objects[i];
+    const cv::Rect box = object.box;
+    const cv::Rect region =
+        cv::Rect(box.x - room, box.y - room, box.width + 2 * room, box.height + 2 * room) & image;
+    cv::Mat mask = truth.instances(region) == static_cast<int>(i) + 1;
+    if (moves_outlines) mask = moved_outline(mask, shift(region));
+    result(region).setTo(object.label, mask & (result(region) == 0));
+  }
+  add_false_object(result, period);
+  return result;
+}
+
+cv::Mat NetworkErrors::outline_shift(cv::Size size, std::uint32_t frame) const {
+  if (options_.wobble == 0) return {size, CV_32F, cv::Scalar(options_.boundary)};
+  cv::Mat coarse(size.height / kWobbleCell + 2, size.width / kWobbleCell + 2, CV_32F);
+  cv::RNG random = generator(frame, kOutlines);
+  random.fill(coarse, cv::RNG::UNIFORM, options_.boundary - options_.wobble,
+              options_.boundary + options_.wobble);
+  cv::Mat shift;
+  cv::resize(coarse, shift, size, 0, 0, cv::INTER_LINEAR);
+  return shift;
+}
+
+void NetworkErrors::add_false_object(cv::Mat& labels, std::uint32_t period) const {
+  cv::RNG random = generator(period, kFalseObjects);
+  if (random.uniform(0.0, 1.0) >= options_.false_objects) return;
+  const cv::Point centre(random.uniform(0, labels.cols), random.uniform(0, labels.rows));
+  const int unit = std::max(labels.rows, 16);
+  const cv::Size half_axes(random.uniform(unit / 16, unit / 4),
+                           random.uniform(unit / 16, unit / 4));
+  cv::Mat blob(labels.size(), CV_8UC1, cv::Scalar(0));
+  cv::ellipse(blob, centre, half_axes, random.uniform(0.0, 180.0), 0, 360, 255, cv::FILLED);
+  labels.setTo(false_label_, blob & (labels == 0));
+}
+
+}  // namespace stillpoint

@@ -1,0 +1,42 @@
+// Makes true labels as wrong as those of a network.
+#pragma once
+
+#include <cstdint>
+#include <opencv2/core/mat.hpp>
+#include <string>
+
+#include "stillpoint/options.hpp"
+
+namespace stillpoint {
+
+struct NetworkErrorOptions {
+  double miss_rate = 0.0;              ///< probability that an object is missed
+  int boundary = 0;                    ///< px outwards (or inwards, < 0) that outlines lie off
+  double wobble = 0.0;                 ///< px up to which outlines lie off at random
+  double false_objects = 0.0;          ///< probability of a false object
+  std::string false_class = "person";  ///< what it is taken for
+  int error_frames = 1;                ///< frames that misses and false objects last
+
+  void visit(OptionVisitor& visitor);
+};
+
+/// Errors depend on the seed and on the frame alone, not on which frames were asked for before.
+class NetworkErrors {
+ public:
+  NetworkErrors(NetworkErrorOptions options, int false_label, std::uint64_t seed)
+      : options_(std::move(options)), false_label_(false_label), seed_(seed) {}
+
+  /// Objects are the connected parts of each class; those below `min_object_pixels` are left out.
+  cv::Mat apply(const cv::Mat& labels, std::uint32_t frame, int min_object_pixels) const;
+
+ private:
+  cv::RNG generator(std::uint32_t period, std::uint32_t purpose) const;
+  cv::Mat outline_shift(cv::Size size, std::uint32_t frame) const;
+  void add_false_object(cv::Mat& labels, std::uint32_t period) const;
+
+  NetworkErrorOptions options_;
+  int false_label_;
+  std::uint64_t seed_;
+};
+
+}  // namespace stillpoint
