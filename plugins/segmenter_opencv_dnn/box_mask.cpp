@@ -1,0 +1,135 @@
+#include "segmenter_opencv_dnn/box_mask.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <opencv2/imgproc.hpp>
+#include <vector>
+
+namespace stillpoint {
+namespace {
+
+constexpr float kNoiseAt1m = 0.002f;  // metres; grows with the square of the distance
+constexpr float kNoiseSigmas = 3.0f;
+constexpr float kClusterWidth = 1.15f;   // farthest over nearest depth of one surface
+constexpr double kLeastMeasured = 0.05;  // of the box's middle, for its depth to be known
+constexpr int kGap = 7;                  // px, of missing depth that is closed
+
+std::vector<float> measured_in_middle(const cv::Mat& depth) {
+  const cv::Rect middle(depth.cols / 4, depth.rows / 4, std::max(1, depth.cols / 2),
+                        std::max(1, depth.rows / 2));
+  std::vector<float> values;
+  for (int v = middle.y; v < middle.br().y; ++v) {
+    const auto* row = depth.ptr<float>(v);
+    std::copy_if(row + middle.x, row + middle.br().x, std::back_inserter(values),
+                 [](float z) { return z > 0; });
+  }
+  if (static_cast<double>(values.size()) < kLeastMeasured * middle.area()) values.clear();
+  return values;
+}
+
+/// The median depth of the nearest cluster with a share of the values; 0 when there is none.
+float near_surface(std::vector<float> values, double share) {
+  std::ranges::sort(values);
+  const auto needed = std::max<std::size_t>(
+      1, static_cast<std::size_t>(share * static_cast<double>(values.size())));
+  for (std::size_t first = 0, end = 0; first < values.size(); ++first) {
+    while (end < values.size() && values[end] <= values[first] * kClusterWidth) ++end;
+    if (end - first >= needed) return values[(first + end) / 2];
+  }
+  return 0.0f;
+}
+
+/// Fills the mask from the seeds that are set in it, over neighbours in the list of pixels to
+/// visit.
+class Growth {
+ public:
+  Growth(const cv::Mat& depth, float middle, const BoxMaskOptions& options)
+      : depth_(depth),
+        nearest_(middle - static_cast<float>(options.depth_extent)),
+        farthest_(middle + static_cast<float>(options.depth_extent)),
+        step_(static_cast<float>(options.depth_step)),
+        mask_(depth.size(), CV_8UC1, cv::Scalar(0)) {}
+
+  void seed(const cv::Point& pixel) {
+    mask_.at<std::uint8_t>(pixel) = 255;
+    open_.push_back(pixel);
+  }
+
+  cv::Mat grown() {
+    while (!open_.empty()) {
+      const cv::Point pixel = open_.back();
+      open_.pop_back();
+      for (const cv::Point& step : {cv::Point(1, 0), {-1, 0}, {0, 1}, {0, -1}})
+        visit(pixel + step, depth_.at<float>(pixel));
+    }
+    return mask_;
+  }
+
+ private:
+  void visit(const cv::Point& pixel, float from) {
+    if (!cv::Rect({}, mask_.size()).contains(pixel) || mask_.at<std::uint8_t>(pixel)) return;
+    const float z = depth_.at<float>(pixel);
+    if (!(z > 0) || z < nearest_ || z > farthest_) return;
+    if (std::abs(z - from) > step_ + kNoiseSigmas * kNoiseAt1m * from * from) return;
+    seed(pixel);
+  }
+
+  const cv::Mat& depth_;
+  float nearest_;   // metres
+  float farthest_;  // metres
+  float step_;      // metres
+  cv::Mat mask_;
+  std::vector<cv::Point> open_;
+};
+
+cv::Mat grow_surface(const cv::Mat& depth, float middle, const BoxMaskOptions& options) {
+  Growth growth(depth, middle, options);
+  for (int v = depth.rows / 4; v < depth.rows - depth.rows / 4; ++v)
+    for (int u = depth.cols / 4; u < depth.cols - depth.cols / 4; ++u) {
+      const float z = depth.at<float>(v, u);
+      if (z >= middle / kClusterWidth && z <= middle * kClusterWidth) growth.seed({u, v});
+    }
+  const cv::Mat grown = growth.grown();
+  cv::Mat closed;
+  cv::morphologyEx(grown, closed, cv::MORPH_CLOSE,
+                   cv::getStructuringElement(cv::MORPH_ELLIPSE, {kGap, kGap}));
+  return grown | (closed & ~(depth > 0));
+}
+
+cv::Mat ellipse(cv::Size size) {
+  cv::Mat mask(size, CV_8UC1, cv::Scalar(0));
+  const cv::Point2f centre((static_cast<float>(size.width) - 1) / 2,
+                           (static_cast<float>(size.height) - 1) / 2);
+  cv::ellipse(mask,
+              {centre, {static_cast<float>(size.width), static_cast<float>(size.height)}, 0.0f},
+              cv::Scalar(255), cv::FILLED);
+  return mask;
+}
+
+}  // namespace
+
+void BoxMaskOptions::visit(OptionVisitor& v) {
+  v("overlap", overlap,
+    {.min = 0,
+     .max = 1,
+     .help = "of two boxes of a class with more intersection over union the better one counts"});
+  v("depth_step", depth_step,
+    {.min = 0, .unit = "m", .help = "between neighbouring pixels of one surface, besides noise"});
+  v("depth_extent", depth_extent,
+    {.min = 0, .unit = "m", .help = "of a thing before and behind its middle"});
+  v("near_share", near_share,
+    {.min = 0,
+     .max = 1,
+     .help = "of the middle of a box that the nearest surface in it covers at least"});
+}
+
+BoxMask box_mask(const cv::Mat& depth, const cv::Rect& box, const BoxMaskOptions& options) {
+  if (!depth.empty()) {
+    const cv::Mat inside = depth(box);
+    const float middle = near_surface(measured_in_middle(inside), options.near_share);
+    if (middle > 0) return {grow_surface(inside, middle, options), middle};
+  }
+  return {ellipse(box.size()), 0.0f};
+}
+
+}  // namespace stillpoint

@@ -1,0 +1,63 @@
+#include "segmenter_opencv_dnn/model_lookup.hpp"
+
+#include <dlfcn.h>
+
+#include <cstdlib>
+#include <sstream>
+
+#include "stillpoint/did_you_mean.hpp"
+#include "stillpoint/error.hpp"
+
+namespace stillpoint {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string environment(const char* name) {
+  const char* value = std::getenv(name);
+  return value ? value : "";
+}
+
+/// The folder of the library or program that this code has become part of.
+fs::path own_folder() {
+  Dl_info info{};
+  if (dladdr(reinterpret_cast<const void*>(&own_folder), &info) == 0) return {};
+  std::error_code failed;
+  const fs::path file = fs::canonical(info.dli_fname, failed);
+  return failed ? fs::path() : file.parent_path();
+}
+
+bool is_file(const fs::path& file) {
+  std::error_code ignored;
+  return fs::is_regular_file(file, ignored);
+}
+
+}  // namespace
+
+std::vector<fs::path> model_folders() {
+  std::vector<fs::path> folders;
+  std::istringstream listed(environment("STILLPOINT_MODEL_PATH"));
+  for (std::string folder; std::getline(listed, folder, ':');)
+    if (!folder.empty()) folders.emplace_back(folder);
+  if (const fs::path own = own_folder(); !own.empty()) folders.push_back(own / "models");
+  if (const std::string data = environment("XDG_DATA_HOME"); !data.empty())
+    folders.push_back(fs::path(data) / "stillpoint/models");
+  else if (const std::string home = environment("HOME"); !home.empty())
+    folders.push_back(fs::path(home) / ".local/share/stillpoint/models");
+  return folders;
+}
+
+fs::path find_model(const std::string& file) {
+  if (is_file(file)) return file;
+  std::vector<std::string> searched = {file};
+  for (const fs::path& folder : model_folders()) {
+    fs::path candidate = folder / fs::path(file).filename();
+    if (is_file(candidate)) return candidate;
+    searched.push_back(candidate.string());
+  }
+  throw Error(Fault::kUsage, "the network's file does not exist; searched: " + join(searched), file,
+              "tools/get_models fetches the networks of configs/segmenters; add folders with "
+              "STILLPOINT_MODEL_PATH");
+}
+
+}  // namespace stillpoint

@@ -1,0 +1,99 @@
+#include "segmenter_opencv_dnn/network.hpp"
+
+#include <algorithm>
+
+#include "segmenter_opencv_dnn/model_lookup.hpp"
+#include "segmenter_opencv_dnn/network_file.hpp"
+#include "segmenter_opencv_dnn/quiet_opencv.hpp"
+#include "stillpoint/did_you_mean.hpp"
+#include "stillpoint/error.hpp"
+
+namespace stillpoint {
+namespace {
+
+cv::Scalar per_channel(const std::vector<double>& values) {
+  return values.size() == 1 ? cv::Scalar::all(values[0])
+                            : cv::Scalar(values[0], values[1], values[2]);
+}
+
+std::vector<std::string> chosen_outputs(const cv::dnn::Net& net, const NetworkOptions& options,
+                                        const std::string& file, bool all) {
+  const std::vector<std::string> open = net.getUnconnectedOutLayersNames();
+  if (options.output.empty()) {
+    if (all || open.size() == 1) return open;
+    throw Error(Fault::kUsage, "the network has several outputs: " + join(open), file,
+                "name one of them as 'output'");
+  }
+  std::vector<std::string> layers = net.getLayerNames();
+  layers.insert(layers.end(), open.begin(), open.end());
+  if (std::ranges::find(layers, options.output) != layers.end()) return {options.output};
+  throw Error(Fault::kUsage,
+              "the network has no output '" + options.output + "'" +
+                  did_you_mean(options.output, layers) + "; it ends in: " + join(open),
+              file, "correct 'output'");
+}
+
+}  // namespace
+
+void NetworkOptions::visit(OptionVisitor& v) {
+  v("model", model,
+    {.help = "file of the network: .onnx, .caffemodel, .pb or .weights", .is_path = true});
+  v("config", config, {.help = "its .prototxt, .pbtxt or .cfg file", .is_path = true});
+  v("width", width, {.min = 1, .max = 8192, .unit = "px", .help = "of the input"});
+  v("height", height, {.min = 1, .max = 8192, .unit = "px", .help = "of the input"});
+  v("scale", scale,
+    {.help = "the input is scale * (pixel - mean); one number, or one per channel"});
+  v("mean", mean, {.help = "one number, or one per channel, in the network's order"});
+  v.choice("channels", channels, {{"rgb", ChannelOrder::kRgb}, {"bgr", ChannelOrder::kBgr}},
+           {.help = "order of the input's channels"});
+  v("output", output, {.help = "name of the output; empty: the only one"});
+  v.require(scale.size() == 1 || scale.size() == 3, "'scale' needs one or three numbers");
+  v.require(mean.size() == 1 || mean.size() == 3, "'mean' needs one or three numbers");
+}
+
+Network::Network(const NetworkOptions& options, bool all_outputs)
+    : options_(options), file_(find_model(options.model).string()) {
+  const std::string config = options.config.empty() ? "" : find_model(options.config).string();
+  net_ = read_network(file_, config);
+  const QuietOpenCv quiet;
+  outputs_ = chosen_outputs(net_, options_, file_, all_outputs);
+  try {
+    for (const cv::Mat& output : forward(cv::Mat(input_size(), CV_8UC3, cv::Scalar::all(0))))
+      trial_outputs_.push_back(output.clone());
+  } catch (const cv::Exception& exception) {
+    throw Error(
+        Fault::kData,
+        "the network fails on a black image of " + std::to_string(options_.width) + " x " +
+            std::to_string(options_.height) + ": " + reason(exception),
+        file_,
+        "check 'width' and 'height'; or the file is damaged or uses layers that OpenCV " CV_VERSION
+        " does not have");
+  }
+}
+
+std::vector<cv::Mat> Network::run(const cv::Mat& bgr) {
+  const QuietOpenCv quiet;
+  try {
+    return forward(bgr);
+  } catch (const cv::Exception& exception) {
+    throw Error(Fault::kStage, "the network failed: " + reason(exception), file_);
+  }
+}
+
+std::vector<cv::Mat> Network::forward(const cv::Mat& bgr) {
+  const bool uniform = options_.scale.size() == 1;
+  cv::Mat blob =
+      cv::dnn::blobFromImage(bgr, uniform ? options_.scale[0] : 1.0, input_size(),
+                             per_channel(options_.mean), options_.channels == ChannelOrder::kRgb);
+  if (!uniform)
+    for (int i = 0; i < 3; ++i) {
+      cv::Mat plane(input_size(), CV_32FC1, blob.ptr<float>(0, i));
+      plane *= options_.scale[static_cast<std::size_t>(i)];
+    }
+  net_.setInput(blob);
+  std::vector<cv::Mat> outputs;
+  net_.forward(outputs, outputs_);
+  return outputs;
+}
+
+}  // namespace stillpoint

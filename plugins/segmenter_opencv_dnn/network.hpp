@@ -1,0 +1,54 @@
+// A network that OpenCV reads, and its input.
+#pragma once
+
+#include <opencv2/core/mat.hpp>
+#include <opencv2/dnn/dnn.hpp>
+#include <string>
+#include <vector>
+
+#include "stillpoint/options.hpp"
+
+namespace stillpoint {
+
+enum class ChannelOrder { kRgb, kBgr };
+
+struct NetworkOptions {
+  std::string model = "selfie_segmentation_landscape.onnx";
+  std::string config;
+  int width = 256;                          ///< px, of the input
+  int height = 144;                         ///< px
+  std::vector<double> scale = {1.0 / 255};  ///< one, or one per channel
+  std::vector<double> mean = {0.0};         ///< one, or one per channel, in the network's order
+  ChannelOrder channels = ChannelOrder::kRgb;
+  std::string output;  ///< empty: the only one
+
+  void visit(OptionVisitor& visitor);
+};
+
+/// Files, layers and input size are proven by a trial on a black image when it is made; throws
+/// Error(kUsage) for what the options say wrong and Error(kData) for a file that is unusable.
+class Network {
+ public:
+  /// `all_outputs`: without an output's name, take all of them instead of the only one.
+  Network(const NetworkOptions& options, bool all_outputs);
+
+  /// The outputs for an image of any size, stretched to the input. They are valid until the next
+  /// call. Throws Error(kStage) when OpenCV does.
+  std::vector<cv::Mat> run(const cv::Mat& bgr);
+
+  /// Of the trial.
+  const std::vector<cv::Mat>& trial_outputs() const { return trial_outputs_; }
+  const std::string& file() const { return file_; }
+  cv::Size input_size() const { return {options_.width, options_.height}; }
+
+ private:
+  std::vector<cv::Mat> forward(const cv::Mat& bgr);
+
+  NetworkOptions options_;
+  std::string file_;
+  cv::dnn::Net net_;
+  std::vector<std::string> outputs_;
+  std::vector<cv::Mat> trial_outputs_;
+};
+
+}  // namespace stillpoint

@@ -1,0 +1,17 @@
+// From files to a network.
+#pragma once
+
+#include <opencv2/core/base.hpp>
+#include <opencv2/dnn/dnn.hpp>
+#include <string>
+
+namespace stillpoint {
+
+/// Reads ONNX, Caffe, TensorFlow or Darknet files, told apart by the model's suffix; `config` is
+/// empty where the kind needs none. Throws Error(kUsage) or Error(kData).
+cv::dnn::Net read_network(const std::string& model, const std::string& config);
+
+/// What OpenCV complains about, in one line, with the layer it cannot make.
+std::string reason(const cv::Exception& exception);
+
+}  // namespace stillpoint

@@ -1,0 +1,47 @@
+// Labels from any network that OpenCV reads (paper III-B).
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "segmenter_opencv_dnn/box_mask.hpp"
+#include "segmenter_opencv_dnn/class_scores.hpp"
+#include "segmenter_opencv_dnn/detections.hpp"
+#include "segmenter_opencv_dnn/network.hpp"
+#include "stillpoint/sdk.hpp"
+
+namespace stillpoint {
+
+/// The defaults are those of the small person network that comes with the plugin.
+class OpenCvDnnSegmenter final : public Segmenter {
+ public:
+  struct Options {
+    NetworkOptions network;
+    ScoreRule rule;
+    CellAlignment cells = CellAlignment::kCentres;
+    std::vector<std::string> classes = {"person"};  ///< one: the name of a list
+    BoxMaskOptions boxes;
+    int min_object_pixels = 200;
+    int threads = 0;  ///< of OpenCV, in the whole process; 0: as many as the runtime allows
+
+    void visit(OptionVisitor& visitor);
+  };
+
+  /// Throws Error for files, options and outputs that do not belong together.
+  OpenCvDnnSegmenter(const Options& options, const StageContext& context);
+
+  ClassNames classes() const override { return classes_; }
+  Segmentation segment(const Frame& frame) override;
+
+ private:
+  void check_outputs() const;
+  Segmentation from_scores(const cv::Mat& output, cv::Size image);
+  Segmentation from_boxes(const std::vector<Detection>& found, const Frame& frame) const;
+
+  Options options_;
+  ClassNames classes_;
+  Network network_;
+  CellGrid grid_;  // for the image size seen last
+};
+
+}  // namespace stillpoint
