@@ -1,0 +1,34 @@
+// From Caffe's layers to OpenCV's, one by one.
+#pragma once
+
+#include <opencv2/dnn.hpp>
+#include <string>
+#include <vector>
+
+#include "segmenter_segnet/network_definition.hpp"
+
+namespace stillpoint::segnet {
+
+/// A blob that a layer reads.
+struct BlobShape {
+  std::vector<int> shape;   ///< 1, channels, height, width
+  std::vector<int> pooled;  ///< of a pooling layer's mask: shape of what was pooled; else empty
+};
+
+/// What OpenCV is to make of a layer. Layers that change nothing in inference have no type.
+struct TranslatedLayer {
+  std::string type;
+  cv::dnn::LayerParams parameters;
+
+  bool is_identity() const { return type.empty(); }
+};
+
+/// `blobs` are the layer's weights, `inputs` what its bottoms are. Throws Error(kData) that names
+/// the layer when its type is unknown, or when weights are missing, of another shape or not finite.
+TranslatedLayer translate(const LayerDefinition& layer, const std::vector<cv::Mat>& blobs,
+                          const std::vector<BlobShape>& inputs);
+
+/// Whether the network's scores are what goes into this layer: it only picks or scales them.
+bool ends_with_scores(const LayerDefinition& layer);
+
+}  // namespace stillpoint::segnet
