@@ -8,6 +8,7 @@
 
 namespace stillpoint {
 
+void add_ablate(CLI::App& app);
 void add_check(CLI::App& app);
 void add_evaluate(CLI::App& app);
 void add_inspect(CLI::App& app);

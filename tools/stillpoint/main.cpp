@@ -12,6 +12,7 @@ using stillpoint::Error;
 using stillpoint::Fault;
 
 constexpr void (*kCommands[])(CLI::App&) = {
+    stillpoint::add_ablate,
     stillpoint::add_check,
     stillpoint::add_evaluate,
     stillpoint::add_inspect,

@@ -26,11 +26,16 @@ std::vector<std::string> available_names(const std::string& category) {
   return {names.begin(), names.end()};
 }
 
+std::string singular_of(const std::string& category) {
+  if (category.ends_with("ies")) return category.substr(0, category.size() - 3) + "y";
+  return category.substr(0, category.size() - 1);
+}
+
 }  // namespace
 
 fs::path find_config(const std::string& name_or_file, const std::string& category) {
   if (is_file(name_or_file)) return name_or_file;
-  const std::string singular = category.substr(0, category.size() - 1);
+  const std::string singular = singular_of(category);
   const fs::path path = name_or_file;
   if (path.has_parent_path() || path.extension() == ".yaml")
     throw Error(Fault::kUsage, "no such " + singular + " file", name_or_file);

@@ -1,0 +1,223 @@
+// stillpoint ablate: a matrix of runs, and the tables of what came out.
+#include <csignal>
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <string>
+
+#include "commands.hpp"
+#include "console.hpp"
+#include "evaluation/format.hpp"
+#include "evaluation/trajectory.hpp"
+#include "interrupt.hpp"
+#include "stillpoint/error.hpp"
+#include "study/cell_runner.hpp"
+#include "study/child_process.hpp"
+#include "study/csv_report.hpp"
+#include "study/fingerprint.hpp"
+#include "study/folder_lock.hpp"
+#include "study/markdown_report.hpp"
+#include "study/recordings.hpp"
+#include "study/text_file.hpp"
+#include "study_file.hpp"
+
+namespace stillpoint {
+namespace {
+
+namespace fs = std::filesystem;
+using namespace study;
+using evaluation::fixed;
+
+struct Arguments {
+  std::string study;
+  fs::path output;
+  int jobs = 1;
+};
+
+std::string minutes(double seconds) {
+  const long whole = std::lround(seconds);
+  return std::to_string(whole / 60) + ":" + (whole % 60 < 10 ? "0" : "") +
+         std::to_string(whole % 60);
+}
+
+/// One call of `stillpoint ablate`.
+class Ablation {
+ public:
+  explicit Ablation(const Arguments& arguments)
+      : file_(load_study(arguments.study, registry_)),
+        output_(fs::absolute(arguments.output.empty() ? fs::path("out") / file_.file.stem()
+                                                      : arguments.output)
+                    .lexically_normal()),
+        jobs_(arguments.jobs) {}
+
+  /// Throws Error when runs have failed, after everything has been written.
+  void run() {
+    make_folder(output_);
+    const FolderLock lock(output_);
+    int signal = 0;
+    {
+      const Interrupt interrupt;
+      const StudyResults results = run_cells(interrupt.token());
+      write(results);
+      signal = Interrupt::signal();
+      if (signal == 0) return throw_if_failed(results);
+    }
+    console_.line("stopped; the same command goes on from here");
+    std::raise(signal);  // so that a calling script sees that it was interrupted
+  }
+
+ private:
+  const Study& study() const { return file_.study; }
+
+  StudyResults run_cells(const std::stop_token& stop) {
+    StudyResults results{.study = study(), .cells = cells_of(study()), .results = {}};
+    results.results.resize(results.cells.size());
+    if (!record_scenes(stop)) return results;
+    const std::vector<PlannedCell> plan = plan_cells(results.cells);
+    for (std::size_t i = 0; i < plan.size(); ++i) results.results[i] = valid_result(plan[i]);
+    say_what_is_there(results);
+    run_missing(
+        plan, program(), jobs_, stop,
+        [this](const Cell& cell, const CellResult& result, const StudyProgress& progress) {
+          report(cell, result, progress);
+        },
+        results.results);
+    return results;
+  }
+
+  /// One after the other: the simulator uses all cores. False: stopped.
+  bool record_scenes(const std::stop_token& stop) {
+    for (const Sequence& sequence : study().sequences) {
+      const fs::path recording = recording_of(output_, sequence);
+      if (!sequence.scene.empty()) {
+        const std::string description = describe_scene(sequence);
+        if (!is_recorded(recording, description)) {
+          console_.line("simulating " + sequence.name);
+          if (!record(this_program(), sequence, description, recording, stop)) return false;
+        }
+      }
+      // Before any run, not after the first.
+      evaluation::read_trajectory(recording / "groundtruth.txt");
+    }
+    return true;
+  }
+
+  std::vector<PlannedCell> plan_cells(const std::vector<Cell>& cells) {
+    std::vector<PlannedCell> plan;
+    std::string recording_print, pipeline;
+    for (const Cell& cell : cells) {
+      const Sequence& sequence = study().sequences[cell.sequence];
+      const fs::path recording = recording_of(output_, sequence);
+      const PipelineRequest request =
+          request_of(study(), sequence, study().variants[cell.variant], recording);
+      if (plan.empty() || plan.back().cell.sequence != cell.sequence)
+        recording_print = recording_fingerprint(recording);
+      if (cell.repeat == 0) pipeline = load_pipeline(request, registry_).effective_yaml;
+      const int seed = study().seed + cell.repeat;
+      const fs::path run = run_folder(output_, study(), cell);
+      plan.push_back({.cell = cell,
+                      .command = command_of(request, run, seed),
+                      .run = run,
+                      .recording = recording,
+                      .fingerprint = cell_fingerprint(pipeline, recording_print, seed)});
+    }
+    return plan;
+  }
+
+  static std::vector<std::string> command_of(const PipelineRequest& request, const fs::path& run,
+                                             int seed) {
+    std::vector<std::string> command = {
+        this_program(), "run", request.pipeline, "--dataset", request.dataset, "-o", run};
+    if (!request.camera.empty()) command.insert(command.end(), {"--camera", request.camera});
+    for (const std::string& assignment : request.assignments)
+      command.insert(command.end(), {"--set", assignment});
+    command.insert(command.end(), {"--set", "runtime.seed=" + std::to_string(seed)});
+    return command;
+  }
+
+  std::string program() const {
+    std::vector<fs::path> files = {this_program()};
+    for (const PluginType& type : registry_.types()) files.push_back(type.library);
+    return program_fingerprint(files);
+  }
+
+  void say_what_is_there(const StudyResults& results) {
+    const std::size_t there = results.cells.size() - results.missing();
+    if (there == 0) return;
+    console_.line(std::to_string(there) + " of " + std::to_string(results.cells.size()) +
+                  " runs are there already");
+    const std::string current = program();
+    const auto older = std::ranges::count_if(
+        results.results, [&](const auto& result) { return result && result->program != current; });
+    if (older > 0)
+      console_.line("warning: " + std::to_string(older) +
+                    " of them are of another build of the program; remove " +
+                    (output_ / "runs").string() + " to run them again");
+  }
+
+  void report(const Cell& cell, const CellResult& result, const StudyProgress& progress) {
+    std::string text = "[" + std::to_string(progress.done) + "/" + std::to_string(progress.of) +
+                       "] " + name_of(study(), cell) + ": ";
+    if (result.failed())
+      text += "FAILED (exit code " + std::to_string(result.exit_code) + "): " + result.message;
+    else if (result.values[kAte])
+      text += "ATE " + fixed(*result.values[kAte], 4) + " m";
+    else
+      text += result.message;
+    text += ", " + minutes(result.seconds);
+    if (progress.done < progress.of) text += ", " + minutes(progress.remaining_seconds) + " left";
+    console_.line(text);
+  }
+
+  void write(const StudyResults& results) const {
+    const std::string tables = markdown_report(results, file_.file.stem().string());
+    write_text(output_ / "study.yaml", file_.effective_yaml);
+    write_text(output_ / "results.csv", csv_report(results));
+    write_text(output_ / "results.md", tables);
+    std::cout << tables << "\nfiles in " << output_.string()
+              << ": results.md results.csv study.yaml runs/\n"
+              << std::flush;
+  }
+
+  void throw_if_failed(const StudyResults& results) const {
+    if (results.failed() == 0) return;
+    std::string list;
+    for (std::size_t i = 0; i < results.cells.size(); ++i)
+      if (const auto& result = results.results[i]; result && result->failed())
+        list += "\n  " + name_of(study(), results.cells[i]) + ": exit code " +
+                std::to_string(result->exit_code) + ": " + result->message;
+    throw Error(Fault::kStage, std::to_string(results.failed()) + " of " +
+                                   std::to_string(results.cells.size()) +
+                                   " runs failed; the same command tries them again:" + list);
+  }
+
+  Registry registry_;
+  const StudyFile file_;
+  const fs::path output_;
+  const int jobs_;
+  Console console_;
+};
+
+}  // namespace
+
+void add_ablate(CLI::App& app) {
+  auto arguments = std::make_shared<Arguments>();
+  CLI::App* command =
+      app.add_subcommand("ablate", "Run a matrix of sequences, variants and repeats; make tables");
+  command
+      ->add_option("study", arguments->study, "Study file, or the name of one in configs/studies")
+      ->type_name("STUDY")
+      ->required();
+  command
+      ->add_option("-o,--output", arguments->output,
+                   "Folder of runs and tables, gone on with when it is there; out/ and the study's "
+                   "name when left out")
+      ->type_name("DIR");
+  command->add_option("-j,--jobs", arguments->jobs, "Runs at a time; for times, 1")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 1024))
+      ->type_name("N");
+  command->callback([arguments] { Ablation(*arguments).run(); });
+}
+
+}  // namespace stillpoint

@@ -1,0 +1,184 @@
+#include "study_check.hpp"
+
+#include <algorithm>
+#include <filesystem>
+#include <functional>
+#include <set>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "stillpoint/did_you_mean.hpp"
+#include "stillpoint/error.hpp"
+#include "stillpoint/runtime/config_lookup.hpp"
+#include "study/matrix.hpp"
+#include "study_file.hpp"
+
+namespace stillpoint {
+namespace {
+
+namespace fs = std::filesystem;
+using study::Sequence;
+using study::Study;
+using study::Variant;
+
+template <class Named>
+std::vector<std::string> names_of(const std::vector<Named>& list) {
+  std::vector<std::string> names;
+  for (const Named& element : list) names.push_back(element.name);
+  return names;
+}
+
+/// They become folders and cells of tables.
+bool is_usable_name(const std::string& name) {
+  return !name.empty() && name.front() != '.' && std::ranges::all_of(name, [](unsigned char c) {
+    return std::isalnum(c) || c == '_' || c == '-' || c == '.' || c == '+';
+  });
+}
+
+/// The messages of a ConfigError; those of several lines stay together.
+std::vector<std::string> messages_of(const std::string& text) {
+  std::vector<std::string> messages;
+  std::istringstream stream(text);
+  for (std::string line; std::getline(stream, line);)
+    if (messages.empty() || line.find(": error: ") != std::string::npos)
+      messages.push_back(line);
+    else
+      messages.back() += "\n" + line;
+  return messages;
+}
+
+class StudyChecker {
+ public:
+  StudyChecker(const ConfigNode& tree, const Study& study, Registry& registry, FaultList faults)
+      : tree_(tree), study_(study), registry_(registry), faults_(std::move(faults)) {}
+
+  void check() {
+    check_names("sequences", names_of(study_.sequences));
+    check_names("variants", names_of(study_.variants));
+    check_name_in(names_of(study_.variants), study_.baseline, place("baseline"), "variant");
+    for (std::size_t i = 0; i < study_.sequences.size(); ++i) check_sequence(i);
+    for (std::size_t i = 0; i < study_.variants.size(); ++i) check_variant(i);
+    throw_if_any();
+  }
+
+ private:
+  /// Of a key of the study, or else of the study.
+  Location place(const char* key) const {
+    const ConfigNode* node = tree_.find(key);
+    return node ? node->location : tree_.location;
+  }
+  /// Of a key of an element of a list, or else of the element.
+  Location place(const char* list, std::size_t i, const char* key) const {
+    const ConfigNode* elements = tree_.find(list);
+    if (!elements || i >= elements->children.size()) return place(list);
+    const ConfigNode* node = elements->children[i].find(key);
+    return node ? node->location : elements->children[i].location;
+  }
+
+  void check_names(const char* list, const std::vector<std::string>& names) {
+    if (names.empty() && tree_.find(list))
+      faults_.add(place(list), std::string(list) + " is empty");
+    for (std::size_t i = 0; i < names.size(); ++i) {
+      if (names[i].empty()) continue;  // missing, which is known
+      if (!is_usable_name(names[i]))
+        faults_.add(place(list, i, "name"),
+                    "'" + names[i] + "' also names a folder: letters, digits and _ - + . only");
+      if (std::find(names.begin(), names.begin() + static_cast<long>(i), names[i]) !=
+          names.begin() + static_cast<long>(i))
+        faults_.add(place(list, i, "name"), "'" + names[i] + "' is given twice");
+    }
+  }
+
+  void check_name_in(const std::vector<std::string>& known, const std::string& name,
+                     const Location& where, const std::string& what) {
+    if (name.empty() || std::ranges::find(known, name) != known.end()) return;
+    const std::string hint = did_you_mean(name, known);
+    faults_.add(where, "no " + what + " named '" + name + "'" +
+                           (hint.empty() ? "; there are: " + join(known) : hint));
+  }
+
+  void check_sequence(std::size_t i) {
+    const Sequence& sequence = study_.sequences[i];
+    std::error_code error;
+    if (!sequence.dataset.empty() &&
+        !fs::is_regular_file(fs::path(sequence.dataset) / "groundtruth.txt", error))
+      faults_.add(place("sequences", i, "dataset"),
+                  "'" + sequence.dataset +
+                      (fs::is_directory(sequence.dataset, error)
+                           ? "' has no groundtruth.txt, which the study compares with"
+                           : "' is no folder"));
+    if (!sequence.scene.empty())
+      collect(place("sequences", i, "scene"), "sequence '" + sequence.name + "'",
+              [&] { describe_scene(sequence); });
+    if (!sequence.camera.empty())
+      collect(place("sequences", i, "camera"), {}, [&] { load_camera(sequence.camera); });
+  }
+
+  void check_variant(std::size_t i) {
+    const Variant& variant = study_.variants[i];
+    for (const char* key : {"only", "skip"})
+      for (const std::string& name : key[0] == 'o' ? variant.only : variant.skip)
+        check_name_in(names_of(study_.sequences), name, place("variants", i, key), "sequence");
+    if (variant.pipeline.empty()) return;
+    // What differs between sequences, the recording and its camera, has been checked with them.
+    const auto sequence = std::ranges::find_if(
+        study_.sequences, [&](const Sequence& s) { return study::is_wanted(variant, s.name); });
+    if (sequence == study_.sequences.end()) return;
+    const fs::path recording = study::recording_of("recordings", *sequence);
+    collect(place("variants", i, "pipeline"), "variant '" + variant.name + "'", [&] {
+      PipelineRequest request = request_of(study_, *sequence, variant, recording);
+      request.camera.clear();
+      check_outputs(i, load_pipeline(request, registry_));
+    });
+  }
+
+  void check_outputs(std::size_t i, const PipelineConfig& config) {
+    for (const char* needed : {"trajectory", "summary"})
+      if (std::ranges::none_of(config.outputs,
+                               [&](const StageSpec& output) { return output.type() == needed; }))
+        faults_.add(place("variants", i, "pipeline"),
+                    "variant '" + study_.variants[i].name + "': its pipeline has no output '" +
+                        needed + "', from which the figures come");
+  }
+
+  /// Faults of other files stay as they are; those of `set` and of the name belong to `where`.
+  void collect(const Location& where, const std::string& who, const std::function<void()>& load) {
+    const std::string prefix = who.empty() ? "" : who + ": ";
+    try {
+      load();
+    } catch (const ConfigError& error) {
+      for (const std::string& message : messages_of(error.what()))
+        if (message.starts_with("--"))
+          faults_.add(where, prefix + message);
+        else if (std::ranges::find(others_, message) == others_.end())
+          others_.push_back(message);
+    } catch (const Error& error) {
+      faults_.add(where, prefix + error.what());
+    }
+  }
+
+  void throw_if_any() const {
+    std::string lines = join(others_, "\n");
+    try {
+      faults_.throw_if_any();
+    } catch (const ConfigError& error) {
+      lines = error.what() + (lines.empty() ? "" : "\n" + lines);
+    }
+    if (!lines.empty()) throw ConfigError(lines);
+  }
+
+  const ConfigNode& tree_;
+  const Study& study_;
+  Registry& registry_;
+  FaultList faults_;
+  std::vector<std::string> others_;  // of pipelines and scenes
+};
+
+}  // namespace
+
+void check_study(const ConfigNode& tree, const Study& study, Registry& registry, FaultList faults) {
+  StudyChecker(tree, study, registry, std::move(faults)).check();
+}
+
+}  // namespace stillpoint

@@ -1,0 +1,45 @@
+// Runs the cells of a study that have no result yet, several at a time.
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <stop_token>
+#include <string>
+#include <vector>
+
+#include "study/cell_result.hpp"
+#include "study/matrix.hpp"
+
+namespace stillpoint::study {
+
+struct PlannedCell {
+  Cell cell;
+  std::vector<std::string> command;  ///< program and arguments; writes into `run`
+  std::filesystem::path run;         ///< folder of its own
+  std::filesystem::path recording;   ///< with groundtruth.txt
+  std::string fingerprint;           ///< of what the result depends on
+};
+
+struct StudyProgress {
+  std::size_t done = 0;  ///< this one included
+  std::size_t of = 0;    ///< cells to run in this call
+  double remaining_seconds = 0.0;
+};
+
+/// Called after each cell, by one thread at a time.
+using CellFinished =
+    std::function<void(const Cell& cell, const CellResult& result, const StudyProgress& progress)>;
+
+/// The result that a cell already has: nothing when it failed or was made from something else.
+std::optional<CellResult> valid_result(const PlannedCell& cell);
+
+/// Fills the empty `results` (parallel to `cells`), first repeats first, `jobs` processes at most
+/// at a time, and keeps each result beside its run. After a stop they stay empty. A run that fails
+/// is a result. `program` says which build is running.
+void run_missing(const std::vector<PlannedCell>& cells, const std::string& program, int jobs,
+                 const std::stop_token& stop, const CellFinished& finished,
+                 std::vector<std::optional<CellResult>>& results);
+
+}  // namespace stillpoint::study

@@ -1,0 +1,74 @@
+#include "study/fingerprint.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+
+#include "stillpoint/error.hpp"
+#include "study/text_file.hpp"
+
+namespace stillpoint::study {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Lists, poses, cameras: small, and the same size does not mean the same content.
+bool is_text(const fs::path& file) {
+  return file.extension() == ".txt" || file.extension() == ".yaml";
+}
+
+std::vector<fs::directory_entry> files_below(const fs::path& folder) {
+  std::vector<fs::directory_entry> files;
+  for (const fs::directory_entry& entry :
+       fs::recursive_directory_iterator(folder, fs::directory_options::follow_directory_symlink))
+    if (entry.is_regular_file()) files.push_back(entry);
+  std::ranges::sort(files);
+  return files;
+}
+
+}  // namespace
+
+Fingerprint& Fingerprint::add(std::string_view text) {
+  constexpr std::uint64_t kPrime = 1099511628211u;
+  for (const char c : text) hash_ = (hash_ ^ static_cast<unsigned char>(c)) * kPrime;
+  hash_ *= kPrime;  // an end, so that "ab" + "c" is not "a" + "bc"
+  return *this;
+}
+
+std::string Fingerprint::text() const {
+  std::array<char, 17> digits{};
+  std::snprintf(digits.data(), digits.size(), "%016llx", static_cast<unsigned long long>(hash_));
+  return digits.data();
+}
+
+std::string recording_fingerprint(const fs::path& recording) {
+  try {
+    Fingerprint fingerprint;
+    for (const fs::directory_entry& file : files_below(recording)) {
+      fingerprint.add(fs::relative(file.path(), recording).string());
+      fingerprint.add(is_text(file) ? read_text(file) : std::to_string(file.file_size()));
+    }
+    return fingerprint.text();
+  } catch (const fs::filesystem_error& error) {
+    throw Error(Fault::kData, std::string("cannot be read: ") + error.code().message(),
+                recording.string());
+  }
+}
+
+std::string cell_fingerprint(const std::string& effective_pipeline, const std::string& recording,
+                             int seed) {
+  return Fingerprint().add(effective_pipeline).add(recording).add(std::to_string(seed)).text();
+}
+
+std::string program_fingerprint(const std::vector<fs::path>& files) {
+  Fingerprint fingerprint;
+  for (const fs::path& file : files) {
+    std::error_code ignored;  // a file that cannot be seen is the same again next time
+    fingerprint.add(file.string())
+        .add(std::to_string(fs::file_size(file, ignored)))
+        .add(std::to_string(fs::last_write_time(file, ignored).time_since_epoch().count()));
+  }
+  return fingerprint.text();
+}
+
+}  // namespace stillpoint::study

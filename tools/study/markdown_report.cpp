@@ -1,0 +1,142 @@
+#include "study/markdown_report.hpp"
+
+#include <functional>
+
+#include "evaluation/format.hpp"
+#include "stillpoint/did_you_mean.hpp"
+#include "study/markdown_table.hpp"
+
+namespace stillpoint::study {
+namespace {
+
+using evaluation::fixed;
+
+constexpr const char* kNothing = "–";
+
+std::string heading(const std::string& title, const std::string& unit) {
+  return "\n## " + title + (unit.empty() ? "" : " (" + unit + ")") + "\n\n";
+}
+
+/// The text of one sequence with one variant.
+using CellText = std::function<std::string(std::size_t sequence, std::size_t variant)>;
+
+/// Sequences × variants. Without rows in which there is nothing; empty when that leaves none.
+std::string matrix(const Study& study, const CellText& text_of) {
+  std::vector<std::string> header = {"sequence"};
+  for (const Variant& variant : study.variants) header.push_back(variant.name);
+  std::vector<std::vector<std::string>> rows;
+  for (std::size_t sequence = 0; sequence < study.sequences.size(); ++sequence) {
+    std::vector<std::string> row = {study.sequences[sequence].name};
+    bool empty = true;
+    for (std::size_t variant = 0; variant < study.variants.size(); ++variant) {
+      row.push_back(text_of(sequence, variant));
+      empty = empty && row.back() == kNothing;
+    }
+    if (!empty) rows.push_back(std::move(row));
+  }
+  return rows.empty() ? "" : markdown_table(header, rows);
+}
+
+bool is_error(MetricId metric) {
+  return metric == kAte || metric == kScale || metric == kRpeTranslation || metric == kRpeRotation;
+}
+
+// An error of a part of the recording is no error of the whole.
+std::string coverage_note(const StudyResults& results, std::size_t sequence, std::size_t variant) {
+  const auto coverage = results.spread(sequence, variant, kCoverage);
+  const std::string percent = coverage ? fixed(coverage->median, 1) : "100.0";
+  return percent == "100.0" ? "" : ", " + percent + " %";
+}
+
+std::string spread_text(const StudyResults& results, std::size_t sequence, std::size_t variant,
+                        MetricId metric) {
+  const auto spread = results.spread(sequence, variant, metric);
+  const bool error = is_error(metric);
+  if (!spread) return kNothing + (error ? coverage_note(results, sequence, variant) : "");
+  const int digits = metrics()[metric].digits;
+  std::string text = fixed(spread->median, digits);
+  if (spread->count > 1)
+    text += " (" + fixed(spread->min, digits) + "–" + fixed(spread->max, digits) + ")";
+  if (error) text += coverage_note(results, sequence, variant);
+  const auto repeats = static_cast<std::size_t>(results.study.repeats);
+  if (spread->count < repeats)
+    text += " [" + std::to_string(spread->count) + " of " + std::to_string(repeats) + "]";
+  return text;
+}
+
+bool is_all_zero(const StudyResults& results, MetricId metric) {
+  for (const std::optional<CellResult>& result : results.results)
+    if (result && result->values[metric].value_or(0.0) != 0.0) return false;
+  return true;
+}
+
+std::string metric_section(const StudyResults& results, MetricId metric) {
+  const Metric& m = metrics()[metric];
+  const std::string table = matrix(results.study, [&](std::size_t sequence, std::size_t variant) {
+    return spread_text(results, sequence, variant, metric);
+  });
+  if (table.empty()) return {};
+  return heading(m.title, m.unit) + (is_all_zero(results, metric) ? "0 in every run.\n" : table);
+}
+
+using Ratio = std::optional<double> (*)(const StudyResults&, std::size_t, std::size_t);
+
+std::string ratio_section(const StudyResults& results, const std::string& title,
+                          const std::string& unit, int digits, Ratio ratio) {
+  const std::string table = matrix(results.study, [&](std::size_t sequence, std::size_t variant) {
+    const auto value = ratio(results, sequence, variant);
+    return value ? fixed(*value, digits) + coverage_note(results, sequence, variant) : kNothing;
+  });
+  return table.empty() ? "" : heading(title, unit) + table;
+}
+
+std::string introduction(const StudyResults& results) {
+  const Study& study = results.study;
+  const int last = study.seed + study.repeats - 1;
+  std::string text = study.repeats == 1
+                         ? "One run of each, seed " + std::to_string(study.seed) + "."
+                         : "Median (smallest–largest) of " + std::to_string(study.repeats) +
+                               " runs, seeds " + std::to_string(study.seed) + " to " +
+                               std::to_string(last) + ".";
+  text += " Behind an error stands the coverage where it is not complete.\n";
+  if (results.missing() > 0)
+    text += "\n**Not finished:** " + std::to_string(results.missing()) + " of " +
+            std::to_string(results.cells.size()) + " runs are missing.\n";
+  return text;
+}
+
+std::string variants_section(const Study& study) {
+  std::vector<std::vector<std::string>> rows;
+  for (const Variant& variant : study.variants)
+    rows.push_back({variant.name, variant.pipeline, join(assignments_of(study, variant))});
+  return heading("Variants", "") + markdown_table({"variant", "pipeline", "changes"}, rows);
+}
+
+/// Runs that say something: they failed, or cannot be compared with the truth.
+std::string remarks_section(const StudyResults& results) {
+  std::string text;
+  for (std::size_t i = 0; i < results.cells.size(); ++i) {
+    const std::optional<CellResult>& result = results.results[i];
+    if (!result || result->message.empty()) continue;
+    text += "* " + name_of(results.study, results.cells[i]) + ": " +
+            (result->failed() ? "exit code " + std::to_string(result->exit_code) + ": " : "") +
+            result->message + "\n";
+  }
+  return text.empty() ? "" : heading("Runs that failed or cannot be compared", "") + text;
+}
+
+}  // namespace
+
+std::string markdown_report(const StudyResults& results, const std::string& title) {
+  std::string text = "# " + title + "\n\n" + introduction(results);
+  text += metric_section(results, kAte);
+  text += ratio_section(results, "Improvement of the ATE over " + results.study.baseline, "%", 1,
+                        improvement_percent);
+  text += ratio_section(results, "Dynamic penalty: ATE ÷ ATE on the _empty twin", "", 2,
+                        dynamic_penalty);
+  for (std::size_t metric = kAte + 1; metric < kMetricCount; ++metric)
+    text += metric_section(results, static_cast<MetricId>(metric));
+  return text + variants_section(results.study) + remarks_section(results);
+}
+
+}  // namespace stillpoint::study

@@ -1,0 +1,15 @@
+// results.md: a table per metric, sequences × variants.
+#pragma once
+
+#include <string>
+
+#include "study/study_results.hpp"
+
+namespace stillpoint::study {
+
+/// Medians with (smallest–largest) of the repeats; behind an error the coverage where it is not
+/// complete, and how many of the repeats gave the figure when not all did. Then what the variants
+/// are, and the runs that failed. `title` heads it.
+std::string markdown_report(const StudyResults& results, const std::string& title);
+
+}  // namespace stillpoint::study

@@ -1,0 +1,46 @@
+// What is measured of every run.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <string>
+
+namespace stillpoint::study {
+
+enum MetricId : std::size_t {
+  kAte,
+  kScale,
+  kRpeTranslation,
+  kRpeRotation,
+  kCoverage,
+  kTimesLost,
+  kDroppedFrames,
+  kTrackP50,
+  kTrackP95,
+  kCpuPerFrame,
+  kPeakMemory,
+  kMetricCount,
+};
+
+struct Metric {
+  const char* key;    ///< in results.csv and result.json
+  const char* title;  ///< of the table
+  const char* unit;   ///< may be empty
+  int digits;         ///< behind the decimal point, in tables
+};
+
+std::span<const Metric, kMetricCount> metrics();
+
+/// Nothing where a run gave no such figure, as the RPE over 1 s of a shorter recording.
+using MetricValues = std::array<std::optional<double>, kMetricCount>;
+
+/// Of a run that has ended well. When its trajectory cannot be compared, because tracking never
+/// began for instance, the errors stay empty and `note` says why. Throws Error when the run has
+/// left no summary.json.
+MetricValues measure_run(const std::filesystem::path& run, const std::filesystem::path& recording,
+                         std::string& note);
+
+}  // namespace stillpoint::study

@@ -1,0 +1,67 @@
+#include "study/study.hpp"
+
+#include <algorithm>
+
+namespace stillpoint::study {
+namespace {
+
+constexpr const char* kSeedOption = "runtime.seed=";
+
+// Repeats differ by their seed, which the study counts.
+void refuse_seed(OptionVisitor& v, const std::vector<std::string>& assignments) {
+  v.require(std::ranges::none_of(
+                assignments,
+                [](const std::string& assignment) { return assignment.starts_with(kSeedOption); }),
+            "'set' cannot change runtime.seed; write the study's 'seed' instead");
+}
+
+}  // namespace
+
+void Sequence::visit(OptionVisitor& v) {
+  v("name", name, {.help = "in tables and as the name of a folder", .required = true});
+  v("dataset", dataset, {.help = "folder of a recording with ground truth", .is_path = true});
+  v("scene", scene, {.help = "simulated once: a file, or a name from configs/scenes"});
+  v("frames", frames, {.min = 0, .help = "of the scene; 0: as many as it says"});
+  v("set", set, {.help = "changes of the scene, as in [source.seed=2]"});
+  v("camera", camera,
+    {.help = "a file, or a name from configs/cameras; empty: the recording's own"});
+  v.require(dataset.empty() != scene.empty(),
+            "needs either 'dataset', the folder of a recording, or 'scene', to be simulated");
+  v.require(dataset.empty() || (frames == 0 && set.empty()),
+            "'frames' and 'set' are for a 'scene'; a recording is what it is");
+}
+
+void Variant::visit(OptionVisitor& v) {
+  v("name", name, {.help = "in tables and as the name of a folder", .required = true});
+  v("pipeline", pipeline, {.help = "a file, or a name from configs/pipelines", .required = true});
+  v("set", set, {.help = "changes of the pipeline, as in [tracker.features=2000]"});
+  v("only", only, {.help = "sequences to run on; none: all"});
+  v("skip", skip, {.help = "sequences to leave out"});
+  refuse_seed(v, set);
+}
+
+void Study::visit(OptionVisitor& v) {
+  v("sequences", sequences, {.help = "recordings", .required = true});
+  v("variants", variants, {.help = "pipelines and changes of them", .required = true});
+  v("repeats", repeats, {.min = 1, .max = 1000, .help = "runs of each variant on each sequence"});
+  v("seed", seed,
+    {.min = 0, .max = 1e9, .help = "runtime.seed of the first repeat; the next has one more"});
+  v.choice(
+      "mode", mode,
+      {{"pipeline", Mode::kPipeline}, {"inline", Mode::kInline}, {"threaded", Mode::kThreaded}},
+      {.help = "runtime.mode of all; pipeline: as its file says"});
+  v("set", set, {.help = "changes of every pipeline"});
+  v("baseline", baseline, {.help = "variant that the others are compared with"});
+  refuse_seed(v, set);
+}
+
+std::vector<std::string> assignments_of(const Study& study, const Variant& variant) {
+  std::vector<std::string> assignments;
+  if (study.mode == Study::Mode::kInline) assignments.emplace_back("runtime.mode=inline");
+  if (study.mode == Study::Mode::kThreaded) assignments.emplace_back("runtime.mode=threaded");
+  assignments.insert(assignments.end(), study.set.begin(), study.set.end());
+  assignments.insert(assignments.end(), variant.set.begin(), variant.set.end());
+  return assignments;
+}
+
+}  // namespace stillpoint::study

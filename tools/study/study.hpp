@@ -1,0 +1,50 @@
+// What a study file says: which sequences, which variants of the pipeline, how often.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "stillpoint/options.hpp"
+
+namespace stillpoint::study {
+
+/// A recording with ground truth: one that lies on disk, or a scene to be simulated.
+struct Sequence {
+  std::string name;
+  std::string dataset;           ///< folder; empty: simulated
+  std::string scene;             ///< a file, or a name from configs/scenes
+  int frames = 0;                ///< of the scene; 0: as many as it says
+  std::vector<std::string> set;  ///< `key.sub=value` for the scene
+  std::string camera;            ///< a file, or a name from configs/cameras; empty: the recording's
+
+  void visit(OptionVisitor& visitor);
+};
+
+struct Variant {
+  std::string name;
+  std::string pipeline;           ///< a file, or a name from configs/pipelines
+  std::vector<std::string> set;   ///< `key.sub=value`, stronger than those of the study
+  std::vector<std::string> only;  ///< names of sequences; empty: all
+  std::vector<std::string> skip;  ///< names of sequences
+
+  void visit(OptionVisitor& visitor);
+};
+
+struct Study {
+  enum class Mode { kPipeline, kInline, kThreaded };
+
+  std::vector<Sequence> sequences;
+  std::vector<Variant> variants;
+  int repeats = 1;
+  int seed = 1;  ///< repeat k runs with seed + k
+  Mode mode = Mode::kPipeline;
+  std::vector<std::string> set;  ///< for all variants
+  std::string baseline;          ///< name of a variant; empty: none
+
+  void visit(OptionVisitor& visitor);
+};
+
+/// What a run of the variant is told, without the seed; later ones win.
+std::vector<std::string> assignments_of(const Study& study, const Variant& variant);
+
+}  // namespace stillpoint::study

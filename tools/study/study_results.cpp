@@ -1,0 +1,70 @@
+#include "study/study_results.hpp"
+
+#include <algorithm>
+
+namespace stillpoint::study {
+namespace {
+
+template <class Named>
+std::optional<std::size_t> index_of(const std::vector<Named>& list, const std::string& name) {
+  const auto found = std::ranges::find(list, name, &Named::name);
+  if (found == list.end()) return std::nullopt;
+  return static_cast<std::size_t>(found - list.begin());
+}
+
+/// Nothing when one is missing or there is nothing to divide by.
+std::optional<double> ratio(const std::optional<Spread>& of, const std::optional<Spread>& to) {
+  if (!of || !to || to->median <= 0.0) return std::nullopt;
+  return of->median / to->median;
+}
+
+}  // namespace
+
+std::optional<Spread> spread_of(std::vector<double> values) {
+  if (values.empty()) return std::nullopt;
+  std::ranges::sort(values);
+  const std::size_t n = values.size();
+  return Spread{.median = 0.5 * (values[(n - 1) / 2] + values[n / 2]),
+                .min = values.front(),
+                .max = values.back(),
+                .count = n};
+}
+
+std::optional<Spread> StudyResults::spread(std::size_t sequence, std::size_t variant,
+                                           MetricId metric) const {
+  std::vector<double> values;
+  for (std::size_t i = 0; i < cells.size(); ++i)
+    if (cells[i].sequence == sequence && cells[i].variant == variant && results[i] &&
+        results[i]->values[metric])
+      values.push_back(*results[i]->values[metric]);
+  return spread_of(std::move(values));
+}
+
+std::size_t StudyResults::failed() const {
+  return static_cast<std::size_t>(
+      std::ranges::count_if(results, [](const auto& r) { return r && r->failed(); }));
+}
+
+std::size_t StudyResults::missing() const {
+  return static_cast<std::size_t>(std::ranges::count_if(results, [](const auto& r) { return !r; }));
+}
+
+std::optional<double> dynamic_penalty(const StudyResults& results, std::size_t sequence,
+                                      std::size_t variant) {
+  const std::vector<Sequence>& sequences = results.study.sequences;
+  const auto twin = index_of(sequences, sequences[sequence].name + "_empty");
+  if (!twin) return std::nullopt;
+  return ratio(results.spread(sequence, variant, kAte), results.spread(*twin, variant, kAte));
+}
+
+std::optional<double> improvement_percent(const StudyResults& results, std::size_t sequence,
+                                          std::size_t variant) {
+  const auto baseline = index_of(results.study.variants, results.study.baseline);
+  if (!baseline || *baseline == variant) return std::nullopt;
+  const auto share =
+      ratio(results.spread(sequence, variant, kAte), results.spread(sequence, *baseline, kAte));
+  if (!share) return std::nullopt;
+  return 100.0 * (1.0 - *share);
+}
+
+}  // namespace stillpoint::study

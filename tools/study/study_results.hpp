@@ -1,0 +1,43 @@
+// All results of a study, as tables ask for them.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include "study/cell_result.hpp"
+#include "study/matrix.hpp"
+
+namespace stillpoint::study {
+
+/// Of the repeats of a variant on a sequence.
+struct Spread {
+  double median = 0.0;  ///< of an even number: the mean of the middle two
+  double min = 0.0;
+  double max = 0.0;
+  std::size_t count = 0;
+};
+/// Nothing without values.
+std::optional<Spread> spread_of(std::vector<double> values);
+
+struct StudyResults {
+  const Study& study;
+  std::vector<Cell> cells;
+  std::vector<std::optional<CellResult>> results;  ///< parallel to `cells`; nothing: not run yet
+
+  std::optional<Spread> spread(std::size_t sequence, std::size_t variant, MetricId metric) const;
+  std::size_t failed() const;
+  std::size_t missing() const;
+};
+
+/// ATE on a sequence ÷ ATE on its twin without anything that moves, the sequence NAME_empty of the
+/// same study, with the same variant; medians of the repeats. Nothing without such a twin.
+std::optional<double> dynamic_penalty(const StudyResults& results, std::size_t sequence,
+                                      std::size_t variant);
+
+/// 1 - ATE ÷ ATE of the baseline in per cent, as the paper's "improvements"; medians of the
+/// repeats.
+std::optional<double> improvement_percent(const StudyResults& results, std::size_t sequence,
+                                          std::size_t variant);
+
+}  // namespace stillpoint::study

@@ -1,0 +1,50 @@
+#include "study/text_file.hpp"
+
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <iterator>
+
+#include "stillpoint/error.hpp"
+
+namespace stillpoint::study {
+namespace {
+
+namespace fs = std::filesystem;
+
+[[noreturn]] void fail(const char* what, const std::string& reason, const fs::path& path) {
+  throw Error(Fault::kUsage, std::string(what) + ": " + reason, path.string(),
+              "check permissions and free space, or choose another folder with -o");
+}
+
+}  // namespace
+
+std::string read_text(const fs::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+void write_text(const fs::path& file, const std::string& text) {
+  make_folder(file.parent_path());
+  const fs::path part = file.string() + ".part";
+  std::ofstream stream(part, std::ios::binary | std::ios::trunc);
+  if (!(stream << text << std::flush)) fail("cannot write", std::strerror(errno), part);
+  stream.close();
+  std::error_code error;
+  fs::rename(part, file, error);
+  if (error) fail("cannot write", error.message(), file);
+}
+
+void make_folder(const fs::path& folder) {
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error) fail("cannot make the folder", error.message(), folder);
+}
+
+void remove_folder(const fs::path& folder) {
+  std::error_code error;
+  fs::remove_all(folder, error);
+  if (error) fail("cannot remove", error.message(), folder);
+}
+
+}  // namespace stillpoint::study
