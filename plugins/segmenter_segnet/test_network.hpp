@@ -71,7 +71,7 @@ enum class ModelFormat { kToday, kV1 };
 class TestNetwork {
  public:
   TestNetwork(int height, int width, std::uint64_t seed)
-      : height_(height), width_(width), channels_(3), current_(height, width), random_(seed) {}
+      : height_(height), width_(width), channels_(3), current_(width, height), random_(seed) {}
 
   /// Weights of −2 … 2 and other whole numbers, so that all arithmetic is exact and ties are real.
   TestNetwork& whole_numbers() {
