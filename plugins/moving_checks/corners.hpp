@@ -1,0 +1,35 @@
+// Where to follow the image from: Shi–Tomasi corners (CVPR 1994), all or spread over a grid.
+#pragma once
+
+#include <opencv2/core/mat.hpp>
+#include <opencv2/core/types.hpp>
+#include <span>
+#include <vector>
+
+#include "stillpoint/options.hpp"
+
+namespace stillpoint::moving {
+
+struct CornerOptions {
+  enum class Method { kGrid, kShiTomasi } corners = Method::kGrid;
+  int max_corners = 320;
+  double corner_quality = 0.002;  ///< of the strongest corner's score
+  double min_distance = 8.0;      ///< px, between corners of `shi_tomasi`
+
+  void visit(OptionVisitor& v);
+};
+
+/// Points that are worth following in an image (CV_8UC1). `half` is the same image at half the
+/// size, in which `grid` looks for corners: following needs texture, not the corner's exact place.
+///
+/// `kept` are points that are followed already: `grid` returns those that still have texture first,
+/// one per cell, and fills the other cells with new corners. `kept_index` tells which is which
+/// (-1: new).
+struct Corners {
+  std::vector<cv::Point2f> points;
+  std::vector<int> kept_index;
+};
+Corners find_corners(const cv::Mat& gray, const cv::Mat& half, std::span<const cv::Point2f> kept,
+                     double border, const CornerOptions& options);
+
+}  // namespace stillpoint::moving

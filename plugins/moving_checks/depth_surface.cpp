@@ -1,0 +1,60 @@
+#include "moving_checks/depth_surface.hpp"
+
+#include <cmath>
+
+namespace stillpoint::moving {
+namespace {
+
+// 0 where nothing is measured.
+double inverse_depth(const cv::Mat& depth, int x, int y) {
+  if (x < 0 || y < 0 || x >= depth.cols || y >= depth.rows) return 0;
+  const float z = depth.at<float>(y, x);
+  return z > 0 && std::isfinite(z) ? 1.0 / z : 0;
+}
+
+// The mean of what is measured on a ring, for pixels without depth of their own.
+double mean_around(const cv::Mat& depth, const cv::Point& centre, int radius) {
+  double sum = 0;
+  int count = 0;
+  for (int dy = -1; dy <= 1; ++dy)
+    for (int dx = -1; dx <= 1; ++dx) {
+      const double value = inverse_depth(depth, centre.x + dx * radius, centre.y + dy * radius);
+      sum += value;
+      count += value > 0;
+    }
+  return count > 0 ? sum / count : 0;
+}
+
+// Planes are linear in inverse depth, however steep: only the second difference tells an edge. Of
+// one side alone, the first difference must do, with more slack for the slope.
+bool bends(double a, double middle, double b, double step) {
+  if (a > 0 && b > 0) return std::abs(a + b - 2 * middle) > step;
+  const double side = a > 0 ? a : b;
+  return side > 0 && std::abs(side - middle) > step;
+}
+
+}  // namespace
+
+void SurfaceOptions::visit(OptionVisitor& v) {
+  v("edge_radius", edge_radius,
+    {.min = 1, .max = 50, .unit = "px", .help = "a point this near to a depth edge never moves"});
+  v("edge_step", edge_step,
+    {.min = 0, .unit = "1/m", .help = "change of inverse depth, off a plane, that is an edge"});
+}
+
+Surface surface_at(const cv::Mat& depth, const cv::Point2f& pixel, const SurfaceOptions& options) {
+  const cv::Point centre(cvRound(pixel.x), cvRound(pixel.y));
+  double middle = inverse_depth(depth, centre.x, centre.y);
+  if (middle == 0) middle = mean_around(depth, centre, options.edge_radius);
+  if (middle == 0) return {Surface::Kind::kNone, 0};
+  for (const int radius : {options.edge_radius, (options.edge_radius + 1) / 2}) {
+    for (const cv::Point& side : {cv::Point(1, 0), {0, 1}, {1, 1}, {1, -1}}) {
+      const double a = inverse_depth(depth, centre.x + radius * side.x, centre.y + radius * side.y);
+      const double b = inverse_depth(depth, centre.x - radius * side.x, centre.y - radius * side.y);
+      if (bends(a, middle, b, options.edge_step)) return {Surface::Kind::kEdge, middle};
+    }
+  }
+  return {Surface::Kind::kMeasured, middle};
+}
+
+}  // namespace stillpoint::moving

@@ -1,0 +1,30 @@
+// Which surface a pixel shows, and whether it is safe to say so.
+#pragma once
+
+#include <opencv2/core/mat.hpp>
+#include <opencv2/core/types.hpp>
+
+#include "stillpoint/options.hpp"
+
+namespace stillpoint::moving {
+
+struct SurfaceOptions {
+  int edge_radius = 8;      ///< px
+  double edge_step = 0.02;  ///< 1/m
+
+  void visit(OptionVisitor& v);
+};
+
+struct Surface {
+  enum class Kind {
+    kMeasured,  ///< one smooth surface all around
+    kNone,      ///< nothing measured anywhere near
+    kEdge,      ///< surfaces of different depth meet here: a corner may belong to either or neither
+  } kind = Kind::kNone;
+  double inverse_depth = 0;  ///< 1/m
+};
+
+/// The surface around a pixel of a depth image (CV_32FC1, metres, 0 = no measurement).
+Surface surface_at(const cv::Mat& depth, const cv::Point2f& pixel, const SurfaceOptions& options);
+
+}  // namespace stillpoint::moving

@@ -1,0 +1,152 @@
+#include "moving_checks/lk_checker.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace stillpoint {
+
+using moving::ImageModel;
+using moving::Match;
+using moving::Points;
+
+namespace {
+
+struct Pairs {
+  Points previous, current;
+};
+
+Pairs pairs_of(const std::vector<Match>& matches) {
+  Pairs pairs;
+  for (const Match& match : matches) {
+    pairs.previous.push_back(match.previous);
+    pairs.current.push_back(match.current);
+  }
+  return pairs;
+}
+
+Pairs inliers_of(const Pairs& pairs, const ImageModel& model) {
+  Pairs inliers;
+  for (std::size_t i = 0; i < model.inliers.size(); ++i) {
+    if (!model.inliers[i]) continue;
+    inliers.previous.push_back(pairs.previous[i]);
+    inliers.current.push_back(pairs.current[i]);
+  }
+  return inliers;
+}
+
+MovingPoints undecided(const std::vector<Match>& matches) {
+  MovingPoints result;
+  for (const Match& match : matches)
+    result.points.push_back({.previous = match.previous, .current = match.current});
+  return result;
+}
+
+template <class Distance>
+MovingPoints judged(const std::vector<Match>& matches, double epsilon, Distance distance) {
+  MovingPoints result = undecided(matches);
+  for (PointMotion& point : result.points) {
+    const double residual = distance(point.previous, point.current);
+    point.residual =
+        static_cast<float>(std::min(residual, 1.0 * std::numeric_limits<float>::max()));
+    point.moving = residual > epsilon;
+  }
+  result.reliable = true;
+  return result;
+}
+
+MovingPoints judged_by_homography(const std::vector<Match>& matches, double epsilon,
+                                  const ImageModel& model) {
+  return judged(matches, epsilon, [&](const cv::Point2f& previous, const cv::Point2f& current) {
+    return moving::transfer_distance(model.matrix, previous, current);
+  });
+}
+
+bool agreed(const ImageModel& model, const std::vector<Match>& matches, double share) {
+  return model.inlier_count >= share * static_cast<double>(matches.size());
+}
+
+// How far a fifth of the matches at least are from what one homography explains, in px. Noise alone
+// gives some tenths; a fundamental matrix is determined by what exceeds it.
+double parallax(const Pairs& inliers, const ImageModel& homography) {
+  std::vector<double> distances;
+  for (std::size_t i = 0; i < inliers.previous.size(); ++i)
+    distances.push_back(
+        moving::transfer_distance(homography.matrix, inliers.previous[i], inliers.current[i]));
+  const auto nth = distances.begin() + static_cast<std::ptrdiff_t>(distances.size() * 4 / 5);
+  std::nth_element(distances.begin(), nth, distances.end());
+  return *nth;
+}
+
+void visit_reliability(OptionVisitor& v, int& min_matches, double& min_inlier_share) {
+  v("min_matches", min_matches,
+    {.min = 8, .max = 100000, .help = "fewer decide nothing (reliable: false)"});
+  v("min_inlier_share", min_inlier_share,
+    {.min = 0, .max = 1, .help = "when fewer matches agree, nothing is decided"});
+}
+
+}  // namespace
+
+void EpipolarChecker::Options::visit(OptionVisitor& v) {
+  v("epsilon", epsilon,
+    {.min = 0, .unit = "px", .help = "farther from its epipolar line a point moves (eq. 3)"});
+  consensus.visit(v);
+  follow.visit(v);
+  visit_reliability(v, min_matches, min_inlier_share);
+  v("min_parallax", min_parallax,
+    {.min = 0,
+     .unit = "px",
+     .help = "a fifth of the inliers must be this far from one homography; else degenerate"});
+  v.choice("when_degenerate", when_degenerate,
+           {{"unreliable", Degenerate::kUnreliable},
+            {"homography", Degenerate::kHomography},
+            {"ignore", Degenerate::kIgnore}},
+           {.help = "decide nothing, judge by the homography, or as the paper does not ask"});
+}
+
+EpipolarChecker::EpipolarChecker(const Options& options, moving::Consensus consensus,
+                                 const StageContext& context)
+    : options_(options),
+      consensus_(consensus),
+      seed_(static_cast<int>(context.seed % 0x7fffffff)),
+      follower_(options.follow) {}
+
+MovingPoints EpipolarChecker::check(const Frame& previous, const Frame& current) {
+  const std::vector<Match> matches = follower_.follow(previous, current);
+  if (matches.size() < static_cast<std::size_t>(options_.min_matches)) return undecided(matches);
+  const Pairs pairs = pairs_of(matches);
+  const auto model = moving::find_fundamental(pairs.previous, pairs.current, consensus_,
+                                              options_.consensus, seed_);
+  if (!model || !agreed(*model, matches, options_.min_inlier_share)) return undecided(matches);
+  if (options_.when_degenerate != Degenerate::kIgnore) {
+    const Pairs inliers = inliers_of(pairs, *model);
+    const auto plane =
+        moving::find_homography(inliers.previous, inliers.current, options_.consensus);
+    if (plane && parallax(inliers, *plane) < options_.min_parallax) {
+      if (options_.when_degenerate == Degenerate::kUnreliable) return undecided(matches);
+      return judged_by_homography(matches, options_.epsilon, *plane);
+    }
+  }
+  return judged(matches, options_.epsilon, [&](const cv::Point2f& from, const cv::Point2f& to) {
+    return moving::epipolar_distance(model->matrix, from, to);
+  });
+}
+
+void LkHomography::Options::visit(OptionVisitor& v) {
+  v("epsilon", epsilon,
+    {.min = 0, .unit = "px", .help = "farther from where the homography puts it a point moves"});
+  consensus.visit(v);
+  follow.visit(v);
+  visit_reliability(v, min_matches, min_inlier_share);
+}
+
+MovingPoints LkHomography::check(const Frame& previous, const Frame& current) {
+  const std::vector<Match> matches = follower_.follow(previous, current);
+  if (matches.size() < static_cast<std::size_t>(options_.min_matches)) return undecided(matches);
+  const Pairs pairs = pairs_of(matches);
+  const auto model = moving::find_homography(pairs.previous, pairs.current, options_.consensus);
+  if (!model || !agreed(*model, matches, options_.min_inlier_share)) return undecided(matches);
+  return judged_by_homography(matches, options_.epsilon, *model);
+}
+
+}  // namespace stillpoint

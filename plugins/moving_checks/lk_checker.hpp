@@ -1,0 +1,84 @@
+// Moving consistency check of the paper (III-C, Algorithm 1) and its relatives: optical flow, and
+// what the camera's motion explains of it, from the images alone.
+#pragma once
+
+#include <stillpoint/sdk.hpp>
+
+#include "moving_checks/image_model.hpp"
+#include "moving_checks/point_follower.hpp"
+
+namespace stillpoint {
+
+/// `lk_epipolar` exactly as in the paper; `lk_usac` and `lk_magsac` find the fundamental matrix
+/// with other estimators. Without parallax a fundamental matrix is not determined (camera that
+/// stands still or only turns, a plane): `when_degenerate` says what happens then.
+class EpipolarChecker : public MovingChecker {
+ public:
+  enum class Degenerate { kUnreliable, kHomography, kIgnore };
+
+  struct Options {
+    double epsilon = 1.0;  ///< px
+    moving::ConsensusOptions consensus;
+    moving::FollowOptions follow;
+    int min_matches = 30;
+    double min_inlier_share = 0.5;
+    double min_parallax = 0.3;  ///< px
+    Degenerate when_degenerate = Degenerate::kUnreliable;
+
+    void visit(OptionVisitor& v);
+  };
+
+  MovingPoints check(const Frame& previous, const Frame& current) override;
+
+ protected:
+  EpipolarChecker(const Options& options, moving::Consensus consensus, const StageContext& context);
+
+ private:
+  Options options_;
+  moving::Consensus consensus_;
+  int seed_;
+  moving::PointFollower follower_;
+};
+
+class LkEpipolar final : public EpipolarChecker {
+ public:
+  LkEpipolar(const Options& options, const StageContext& context)
+      : EpipolarChecker(options, moving::Consensus::kRansac, context) {}
+};
+
+class LkUsac final : public EpipolarChecker {
+ public:
+  LkUsac(const Options& options, const StageContext& context)
+      : EpipolarChecker(options, moving::Consensus::kUsac, context) {}
+};
+
+class LkMagsac final : public EpipolarChecker {
+ public:
+  LkMagsac(const Options& options, const StageContext& context)
+      : EpipolarChecker(options, moving::Consensus::kMagsac, context) {}
+};
+
+/// One homography for everything that stands still: right for a camera that only turns or sees one
+/// plane; parallax of near things counts as motion.
+class LkHomography final : public MovingChecker {
+ public:
+  struct Options {
+    double epsilon = 2.0;  ///< px
+    moving::ConsensusOptions consensus;
+    moving::FollowOptions follow;
+    int min_matches = 30;
+    double min_inlier_share = 0.5;
+
+    void visit(OptionVisitor& v);
+  };
+
+  explicit LkHomography(const Options& options) : options_(options), follower_(options.follow) {}
+
+  MovingPoints check(const Frame& previous, const Frame& current) override;
+
+ private:
+  Options options_;
+  moving::PointFollower follower_;
+};
+
+}  // namespace stillpoint

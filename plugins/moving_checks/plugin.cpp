@@ -1,0 +1,20 @@
+#include <stillpoint/sdk.hpp>
+
+#include "moving_checks/lk_checker.hpp"
+#include "moving_checks/rgbd_checker.hpp"
+
+using stillpoint::MovingChecker;
+using stillpoint::provide;
+
+STILLPOINT_PLUGIN(
+    moving_checks, "0.1.0",
+    provide<MovingChecker, stillpoint::LkEpipolar>(
+        "lk_epipolar", "optical flow and epipolar distance (DS-SLAM, Algorithm 1)"),
+    provide<MovingChecker, stillpoint::LkUsac>("lk_usac",
+                                               "lk_epipolar with the fundamental matrix of USAC"),
+    provide<MovingChecker, stillpoint::LkMagsac>(
+        "lk_magsac", "lk_epipolar with the fundamental matrix of MAGSAC"),
+    provide<MovingChecker, stillpoint::LkHomography>(
+        "lk_homography", "optical flow and one homography for everything that stands still"),
+    provide<MovingChecker, stillpoint::RgbdChecker>(
+        "rgbd_reprojection", "optical flow and depth against the rigid motion of the camera"));

@@ -1,0 +1,232 @@
+#include "moving_checks/rgbd_checker.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace stillpoint {
+
+using moving::Match;
+using moving::RigidMatch;
+using moving::RigidMotion;
+using moving::Surface;
+
+namespace {
+
+constexpr double kUnknownTrust = 0.5;
+constexpr double kTrustRate = 0.3;     // of the way to 0 or 1 per frame
+constexpr double kLeastWeight = 0.05;  // nothing is ruled out for good: the world may be what moved
+constexpr double kInheritRadius = 80.0;  // px, within which points on one surface share their trust
+constexpr double kInheritDepth = 0.03;   // 1/m, likewise
+
+Eigen::Vector2d vector_of(const cv::Point2f& p) { return {p.x, p.y}; }
+
+Eigen::Vector3d point_of(const cv::Point2f& pixel, const Surface& surface, const Camera& camera) {
+  return camera.unproject(pixel.x, pixel.y, 1.0 / surface.inverse_depth);
+}
+
+bool measured(const Surface& surface) { return surface.kind == Surface::Kind::kMeasured; }
+
+// Where the camera's motion takes a pixel of a given inverse depth, which may be 0: infinitely far.
+struct Moved {
+  Eigen::Vector2d pixel = Eigen::Vector2d::Zero();
+  double inverse_depth = 0;  // 1/m
+  bool in_front = false;
+};
+
+Moved moved(const cv::Point2f& pixel, double inverse_depth, const Pose& motion,
+            const Camera& camera) {
+  const Eigen::Vector3d p = motion.linear() * camera.unproject(pixel.x, pixel.y, 1.0) +
+                            inverse_depth * motion.translation();
+  if (p.z() < 1e-3) return {};
+  return {camera.project(p), inverse_depth / p.z(), true};
+}
+
+double distance_to_segment(const Eigen::Vector2d& p, const Eigen::Vector2d& a,
+                           const Eigen::Vector2d& b) {
+  const Eigen::Vector2d along = b - a;
+  const double squared = along.squaredNorm();
+  const double t = squared > 0 ? std::clamp((p - a).dot(along) / squared, 0.0, 1.0) : 0.0;
+  return (p - a - t * along).norm();
+}
+
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+bool usable_depth(const Frame& frame) {
+  return frame.camera && frame.depth.type() == CV_32FC1 && frame.depth.size() == frame.gray.size();
+}
+
+}  // namespace
+
+void RgbdChecker::Options::visit(OptionVisitor& v) {
+  v("epsilon", epsilon,
+    {.min = 0,
+     .unit = "px",
+     .help = "farther from where the camera's motion puts it a point moves"});
+  v("noise_multiple", noise_multiple,
+    {.min = 0, .help = "epsilon is at least so many median residuals of the static points"});
+  v("pixel_noise", noise.pixel,
+    {.min = 0.01, .unit = "px", .help = "standard deviation of a followed point"});
+  v("depth_noise", noise.inverse_depth,
+    {.min = 1e-5,
+     .unit = "1/m",
+     .help = "standard deviation in inverse depth: z² of it in metres"});
+  surface.visit(v);
+  follow.visit(v);
+  v("samples", samples, {.min = 1, .max = 100000, .help = "of the RANSAC, three matches each"});
+  v("min_matches", min_matches,
+    {.min = 6, .max = 100000, .help = "with depth; fewer decide nothing (reliable: false)"});
+  v("min_agreement", min_agreement,
+    {.min = 0, .max = 1, .help = "when a smaller share agrees on a motion, nothing is decided"});
+  v("min_depth", min_depth,
+    {.min = 0.01, .unit = "m", .help = "a point without depth is at least this far"});
+  v("max_ambiguity", max_ambiguity,
+    {.min = 0,
+     .unit = "px",
+     .help = "a point without depth is judged when its place is known this well"});
+}
+
+MovingPoints RgbdChecker::check(const Frame& previous, const Frame& current) {
+  if (!memory_.valid || memory_.frame != previous.index) memory_ = {};
+  const std::vector<Observation> observations = observe(previous, current);
+  MovingPoints result;
+  for (const Observation& o : observations)
+    result.points.push_back({.previous = o.match.previous, .current = o.match.current});
+  const auto motion = camera_motion(observations, current);
+  if (!motion) {
+    memory_ = {};
+    return result;
+  }
+  judge(observations, motion->current_from_previous, *current.camera, result);
+  remember(observations, result, motion->current_from_previous, current.index);
+  return result;
+}
+
+std::vector<RgbdChecker::Observation> RgbdChecker::observe(const Frame& previous,
+                                                           const Frame& current) {
+  std::vector<Observation> result;
+  const bool with_depth = usable_depth(previous) && usable_depth(current);
+  for (const Match& match : follower_.follow(previous, current, memory_.points)) {
+    Observation observation{.match = match};
+    if (with_depth) {
+      observation.from = surface_at(previous.depth, match.previous, options_.surface);
+      observation.to = surface_at(current.depth, match.current, options_.surface);
+    }
+    result.push_back(observation);
+  }
+  inherit_trust(result);
+  return result;
+}
+
+void RgbdChecker::inherit_trust(std::vector<Observation>& observations) const {
+  for (Observation& o : observations)
+    o.trust = o.match.kept_index >= 0 ? memory_.trust[o.match.kept_index] : inherited_trust(o);
+}
+
+// New points on a surface know what is known about their neighbours on it.
+double RgbdChecker::inherited_trust(const Observation& observation) const {
+  double sum = kUnknownTrust;
+  double weights = 1.0;
+  for (std::size_t i = 0; i < memory_.points.size(); ++i) {
+    if (std::abs(memory_.inverse_depth[i] - observation.from.inverse_depth) > kInheritDepth)
+      continue;
+    const cv::Point2f apart = memory_.points[i] - observation.match.previous;
+    if (apart.dot(apart) > kInheritRadius * kInheritRadius) continue;
+    sum += memory_.trust[i];
+    weights += 1.0;
+  }
+  return sum / weights;
+}
+
+std::optional<RigidMotion> RgbdChecker::camera_motion(const std::vector<Observation>& observations,
+                                                      const Frame& current) const {
+  std::vector<RigidMatch> matches;
+  for (const Observation& o : observations) {
+    if (!measured(o.from) || !measured(o.to)) continue;
+    matches.push_back({point_of(o.match.previous, o.from, *current.camera),
+                       point_of(o.match.current, o.to, *current.camera), vector_of(o.match.current),
+                       std::max(kLeastWeight, o.trust)});
+  }
+  if (matches.size() < static_cast<std::size_t>(options_.min_matches)) return std::nullopt;
+  const std::array<Pose, 2> guesses = {Pose::Identity(), memory_.motion};
+  auto motion = find_rigid_motion(matches, *current.camera, options_.noise, guesses,
+                                  options_.samples, seed_ + current.index);
+  if (!motion || motion->agreement < options_.min_agreement ||
+      !determined(*motion, *current.camera))
+    return std::nullopt;
+  return motion;
+}
+
+// Whether the motion is known well enough, all over the image, to tell what differs from it.
+bool RgbdChecker::determined(const RigidMotion& motion, const Camera& camera) const {
+  constexpr double kUsualDepth = 2.0;  // metres
+  for (const double u : {0.0, camera.width - 1.0})
+    for (const double v : {0.0, camera.height - 1.0})
+      if (3 * pixel_uncertainty(motion, camera, camera.unproject(u, v, kUsualDepth)) >
+          options_.epsilon)
+        return false;
+  return motion.inliers >= options_.min_matches / 2;
+}
+
+void RgbdChecker::judge(const std::vector<Observation>& observations, const Pose& motion,
+                        const Camera& camera, MovingPoints& result) const {
+  const double pixels_per_depth =
+      options_.noise.pixel / (options_.noise.inverse_depth * std::sqrt(2.0));
+  std::vector<bool> judged;
+  std::vector<double> static_residuals;
+  for (std::size_t i = 0; i < observations.size(); ++i) {
+    const Observation& o = observations[i];
+    const double slack = 2 * options_.noise.inverse_depth;
+    const bool known = o.from.kind != Surface::Kind::kNone;
+    const double far = known ? std::max(0.0, o.from.inverse_depth - slack) : 0.0;
+    const double near = known ? o.from.inverse_depth + slack : 1.0 / options_.min_depth;
+    const Moved at_far = moved(o.match.previous, far, motion, camera);
+    const Moved at_near = moved(o.match.previous, near, motion, camera);
+    const bool placed = at_far.in_front && at_near.in_front &&
+                        (known || (at_far.pixel - at_near.pixel).norm() <= options_.max_ambiguity);
+    judged.push_back(placed && o.from.kind != Surface::Kind::kEdge &&
+                     o.to.kind != Surface::Kind::kEdge);
+    if (!placed) continue;
+    double residual = distance_to_segment(vector_of(o.match.current), at_far.pixel, at_near.pixel);
+    if (measured(o.from) && measured(o.to)) {
+      const double expected =
+          moved(o.match.previous, o.from.inverse_depth, motion, camera).inverse_depth;
+      residual = std::hypot(residual, pixels_per_depth * (expected - o.to.inverse_depth));
+    }
+    result.points[i].residual = static_cast<float>(residual);
+    if (judged.back() && residual < options_.epsilon) static_residuals.push_back(residual);
+  }
+  if (static_residuals.empty()) return;
+  const double limit =
+      std::max(options_.epsilon, options_.noise_multiple * median(static_residuals));
+  for (std::size_t i = 0; i < observations.size(); ++i)
+    result.points[i].moving = judged[i] && result.points[i].residual > limit;
+  result.reliable = true;
+}
+
+void RgbdChecker::remember(const std::vector<Observation>& observations, const MovingPoints& result,
+                           const Pose& motion, std::uint32_t frame) {
+  Memory memory{.valid = true,
+                .frame = frame,
+                .motion = motion,
+                .points = {},
+                .inverse_depth = {},
+                .trust = {}};
+  for (std::size_t i = 0; i < observations.size(); ++i) {
+    const Observation& o = observations[i];
+    if (o.from.kind == Surface::Kind::kEdge || o.to.kind == Surface::Kind::kEdge) continue;
+    const double goal = result.points[i].moving ? 0.0 : 1.0;
+    memory.points.push_back(o.match.current);
+    memory.inverse_depth.push_back(o.to.inverse_depth);
+    memory.trust.push_back(o.trust + kTrustRate * (goal - o.trust));
+  }
+  memory_ = std::move(memory);
+}
+
+}  // namespace stillpoint

@@ -1,0 +1,74 @@
+// Moving check from colour and depth: what does not follow the camera's rigid motion moves.
+#pragma once
+
+#include <stillpoint/sdk.hpp>
+
+#include <cstdint>
+#include <vector>
+
+#include "moving_checks/depth_surface.hpp"
+#include "moving_checks/point_follower.hpp"
+#include "moving_checks/rigid_motion.hpp"
+
+namespace stillpoint {
+
+/// `rgbd_reprojection`. Knows the scale of everything, so that pure rotation, planes and a standing
+/// camera are no special cases. Remembers from call to call which points stood still: what has been
+/// static before decides which of two motions is the camera's.
+class RgbdChecker final : public MovingChecker {
+ public:
+  struct Options {
+    double epsilon = 1.0;         ///< px
+    double noise_multiple = 4.0;  ///< of the median residual of inliers
+    moving::RigidNoise noise;
+    moving::SurfaceOptions surface;
+    moving::FollowOptions follow;
+    int samples = 60;
+    int min_matches = 30;
+    double min_agreement = 0.4;
+    double min_depth = 0.5;      ///< m, of points without depth
+    double max_ambiguity = 1.0;  ///< px
+
+    void visit(OptionVisitor& v);
+  };
+
+  RgbdChecker(const Options& options, const StageContext& context)
+      : options_(options), seed_(context.seed), follower_(options.follow) {}
+
+  MovingPoints check(const Frame& previous, const Frame& current) override;
+
+ private:
+  // A match with the surfaces that it lies on.
+  struct Observation {
+    moving::Match match;
+    moving::Surface from, to;
+    double trust = 0.5;  // 0 moved … 1 stood still
+  };
+  // What the last call knows about its current frame.
+  struct Memory {
+    bool valid = false;
+    std::uint32_t frame = 0;
+    Pose motion = Pose::Identity();
+    std::vector<cv::Point2f> points;
+    std::vector<double> inverse_depth;  // 1/m, 0 = not measured
+    std::vector<double> trust;
+  };
+
+  std::vector<Observation> observe(const Frame& previous, const Frame& current);
+  void inherit_trust(std::vector<Observation>& observations) const;
+  double inherited_trust(const Observation& observation) const;
+  std::optional<moving::RigidMotion> camera_motion(const std::vector<Observation>& observations,
+                                                   const Frame& current) const;
+  bool determined(const moving::RigidMotion& motion, const Camera& camera) const;
+  void judge(const std::vector<Observation>& observations, const Pose& motion, const Camera& camera,
+             MovingPoints& result) const;
+  void remember(const std::vector<Observation>& observations, const MovingPoints& result,
+                const Pose& motion, std::uint32_t frame);
+
+  Options options_;
+  std::uint64_t seed_;
+  moving::PointFollower follower_;
+  Memory memory_;
+};
+
+}  // namespace stillpoint
