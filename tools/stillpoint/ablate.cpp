@@ -1,4 +1,6 @@
 // stillpoint ablate: a matrix of runs, and the tables of what came out.
+#include <algorithm>
+#include <cmath>
 #include <csignal>
 #include <filesystem>
 #include <iostream>

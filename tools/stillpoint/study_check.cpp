@@ -1,11 +1,12 @@
 #include "study_check.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <filesystem>
 #include <functional>
-#include <set>
 #include <sstream>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "stillpoint/did_you_mean.hpp"
@@ -46,6 +47,13 @@ std::vector<std::string> messages_of(const std::string& text) {
     else
       messages.back() += "\n" + line;
   return messages;
+}
+
+/// Of a message of the command line, "--set a=1: error: …", which stands behind another "error:".
+std::string without_error(std::string message) {
+  const std::string_view word = "error: ";
+  const std::size_t at = message.find(word);
+  return at == std::string::npos ? message : message.erase(at, word.size());
 }
 
 class StudyChecker {
@@ -109,10 +117,9 @@ class StudyChecker {
                            ? "' has no groundtruth.txt, which the study compares with"
                            : "' is no folder"));
     if (!sequence.scene.empty())
-      collect(place("sequences", i, "scene"), "sequence '" + sequence.name + "'",
-              [&] { describe_scene(sequence); });
+      collect("sequences", i, "scene", [&] { describe_scene(sequence); });
     if (!sequence.camera.empty())
-      collect(place("sequences", i, "camera"), {}, [&] { load_camera(sequence.camera); });
+      collect("sequences", i, "camera", [&] { load_camera(sequence.camera); });
   }
 
   void check_variant(std::size_t i) {
@@ -126,7 +133,7 @@ class StudyChecker {
         study_.sequences, [&](const Sequence& s) { return study::is_wanted(variant, s.name); });
     if (sequence == study_.sequences.end()) return;
     const fs::path recording = study::recording_of("recordings", *sequence);
-    collect(place("variants", i, "pipeline"), "variant '" + variant.name + "'", [&] {
+    collect("variants", i, "pipeline", [&] {
       PipelineRequest request = request_of(study_, *sequence, variant, recording);
       request.camera.clear();
       check_outputs(i, load_pipeline(request, registry_));
@@ -142,20 +149,30 @@ class StudyChecker {
                         needed + "', from which the figures come");
   }
 
-  /// Faults of other files stay as they are; those of `set` and of the name belong to `where`.
-  void collect(const Location& where, const std::string& who, const std::function<void()>& load) {
-    const std::string prefix = who.empty() ? "" : who + ": ";
+  /// Faults of other files stay as they are; those of `set` belong to the list in this file, all
+  /// others to `key`.
+  void collect(const char* list, std::size_t i, const char* key,
+               const std::function<void()>& load) {
     try {
       load();
     } catch (const ConfigError& error) {
       for (const std::string& message : messages_of(error.what()))
         if (message.starts_with("--"))
-          faults_.add(where, prefix + message);
+          faults_.add(place_of_set(list, i, message), without_error(message));
         else if (std::ranges::find(others_, message) == others_.end())
           others_.push_back(message);
     } catch (const Error& error) {
-      faults_.add(where, prefix + error.what());
+      faults_.add(place(list, i, key), error.what());
     }
+  }
+
+  /// The `set` that says it: of the element of the list, or of the study.
+  Location place_of_set(const char* list, std::size_t i, const std::string& message) const {
+    const ConfigNode* shared = tree_.find("set");
+    if (shared)
+      for (const ConfigNode& assignment : shared->children)
+        if (message.starts_with("--set " + assignment.scalar + ":")) return assignment.location;
+    return place(list, i, "set");
   }
 
   void throw_if_any() const {

@@ -1,0 +1,188 @@
+// Cells whose program is a shell.
+#include "study/cell_runner.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <sys/stat.h>
+
+#include <csignal>
+#include <fstream>
+#include <thread>
+
+#include "fixtures.hpp"
+#include "stillpoint/error.hpp"
+#include "study/child_process.hpp"
+#include "study/folder_lock.hpp"
+#include "study/text_file.hpp"
+#include "support/recording_writer.hpp"
+
+namespace stillpoint::study {
+namespace {
+
+namespace fs = std::filesystem;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+constexpr const char* kSummary =
+    R"({"coverage": 0.5, "times_lost": 1, "dropped_frames": 0, "cpu_ms_per_frame": 20,)"
+    R"( "peak_memory_mib": 80, "stages": {"track_thread": {"cpu_ms": {"p50": 9, "p95": 12}}}})";
+
+class CellRunner : public ::testing::Test {
+ protected:
+  CellRunner() {
+    std::string truth;
+    for (int i = 0; i < 60; ++i)
+      truth += std::to_string(1 + 0.1 * i) + " " + std::to_string(0.01 * i * i) + " " +
+               std::to_string(0.05 * i) + " 0 0 0 0 1\n";
+    folder_.write("recording/groundtruth.txt", truth);
+    folder_.write("summary.json", kSummary);
+  }
+
+  fs::path path(const std::string& name) const { return folder_.path() / name; }
+
+  /// Writes what a good run does: a summary, and the truth as its trajectory.
+  std::string good_run(const fs::path& run) const {
+    return "cp '" + path("summary.json").string() + "' '" + run.string() + "' && cp '" +
+           path("recording/groundtruth.txt").string() + "' '" + run.string() + "/trajectory.txt'";
+  }
+
+  PlannedCell cell(int repeat, const std::string& script, const std::string& print = "f") const {
+    const fs::path run = path("runs/" + std::to_string(repeat));
+    return {.cell = {0, 0, repeat},
+            .command = {"/bin/sh", "-c", script.empty() ? good_run(run) : script},
+            .run = run,
+            .recording = path("recording"),
+            .fingerprint = print};
+  }
+
+  /// The repeats that were run, in the order in which they ended.
+  std::vector<int> run(const std::vector<PlannedCell>& cells, int jobs = 1,
+                       const std::stop_token& stop = {}) {
+    std::vector<int> ran;
+    results_.assign(cells.size(), std::nullopt);
+    for (std::size_t i = 0; i < cells.size(); ++i) results_[i] = valid_result(cells[i]);
+    run_missing(
+        cells, "build", jobs, stop,
+        [&](const Cell& finished, const CellResult&, const StudyProgress& progress) {
+          ran.push_back(finished.repeat);
+          EXPECT_EQ(progress.done, ran.size());
+        },
+        results_);
+    return ran;
+  }
+
+  testing::TemporaryFolder folder_;
+  std::vector<std::optional<CellResult>> results_;
+};
+
+TEST_F(CellRunner, MeasuresARun) {
+  EXPECT_THAT(run({cell(0, "")}), ElementsAre(0));
+  ASSERT_TRUE(results_[0]);
+  const CellResult& result = *results_[0];
+  EXPECT_FALSE(result.failed()) << result.message;
+  EXPECT_NEAR(*result.values[kAte], 0.0, 1e-9);
+  EXPECT_NEAR(*result.values[kScale], 1.0, 1e-9);
+  EXPECT_NEAR(*result.values[kRpeTranslation], 0.0, 1e-9);
+  EXPECT_EQ(result.values[kCoverage], 50.0);
+  EXPECT_EQ(result.values[kTrackP95], 12.0);
+  EXPECT_EQ(result.program, "build");
+}
+
+TEST_F(CellRunner, RunsOnlyWhatIsMissing) {
+  const std::vector<PlannedCell> cells = {cell(0, ""), cell(1, ""), cell(2, "")};
+  EXPECT_THAT(run(cells), ElementsAre(0, 1, 2));
+  EXPECT_THAT(run(cells), ElementsAre());
+  EXPECT_EQ(results_[1]->values[kPeakMemory], 80.0);
+  fs::remove_all(cells[1].run);
+  EXPECT_THAT(run(cells), ElementsAre(1));
+}
+
+TEST_F(CellRunner, AKilledRunLeavesNoResult) {
+  const std::vector<PlannedCell> cells = {cell(0, "")};
+  run(cells);
+  fs::remove(cells[0].run / "result.json");
+  folder_.write("runs/0/result.json.part", "{\"fingerprint\": ");
+  EXPECT_THAT(run(cells), ElementsAre(0));
+  EXPECT_FALSE(fs::exists(cells[0].run / "result.json.part"));
+  folder_.write("runs/0/result.json", "{\"fingerprint\": ");
+  EXPECT_THAT(run(cells), ElementsAre(0));
+}
+
+TEST_F(CellRunner, RunsAgainWhatHasChanged) {
+  run({cell(0, ""), cell(1, "")});
+  EXPECT_THAT(run({cell(0, "", "changed"), cell(1, "")}), ElementsAre(0));
+}
+
+TEST_F(CellRunner, AFailureIsAResultAndTriedAgain) {
+  const std::vector<PlannedCell> cells = {cell(0, "echo 'error: disk is full' >&2; exit 3"),
+                                          cell(1, ""), cell(2, "kill -KILL $$"), cell(3, "true")};
+  EXPECT_THAT(run(cells), ElementsAre(0, 1, 2, 3));
+  EXPECT_EQ(results_[0]->exit_code, 3);
+  EXPECT_EQ(results_[0]->message, "disk is full");
+  EXPECT_FALSE(results_[1]->failed());
+  EXPECT_EQ(results_[2]->exit_code, 128 + SIGKILL);
+  EXPECT_THAT(results_[2]->message, HasSubstr("Killed"));
+  EXPECT_EQ(results_[3]->exit_code, 1);
+  EXPECT_THAT(results_[3]->message, HasSubstr("summary.json"));
+  EXPECT_THAT(run(cells), ElementsAre(0, 2, 3));
+}
+
+TEST_F(CellRunner, ARunThatNeverTrackedHasNoErrorButIsNoFailure) {
+  run({cell(0, "cp '" + path("summary.json").string() + "' '" + path("runs/0").string() +
+                   "'; echo '# no poses' > '" + path("runs/0/trajectory.txt").string() + "'")});
+  EXPECT_FALSE(results_[0]->failed());
+  EXPECT_FALSE(results_[0]->values[kAte]);
+  EXPECT_EQ(results_[0]->values[kCoverage], 50.0);
+  EXPECT_THAT(results_[0]->message, HasSubstr("trajectory.txt"));
+}
+
+// Each waits for the other: only together they end.
+TEST_F(CellRunner, RunsSeveralAtATime) {
+  const auto meet = [&](const std::string& mine, const std::string& other, int repeat) {
+    return "mkfifo '" + path(mine).string() + "' 2>/dev/null; mkfifo '" + path(other).string() +
+           "' 2>/dev/null; " +
+           (repeat == 0
+                ? "echo x > '" + path(mine).string() + "'; cat '" + path(other).string() + "'"
+                : "cat '" + path(other).string() + "'; echo x > '" + path(mine).string() + "'") +
+           "; " + good_run(path("runs/" + std::to_string(repeat)));
+  };
+  run({cell(0, meet("a", "b", 0)), cell(1, meet("b", "a", 1))}, 2);
+  EXPECT_FALSE(results_[0]->failed()) << results_[0]->message;
+  EXPECT_FALSE(results_[1]->failed()) << results_[1]->message;
+}
+
+TEST_F(CellRunner, AStopEndsWhatRunsAndKeepsWhatIsDone) {
+  const fs::path started = path("started");
+  ASSERT_EQ(mkfifo(started.c_str(), 0600), 0);
+  std::stop_source stop;
+  std::jthread user([&] {
+    std::ifstream(started).get();  // waits for the second cell
+    stop.request_stop();
+  });
+  const std::vector<PlannedCell> cells = {
+      cell(0, ""), cell(1, "echo x > '" + started.string() + "'; exec tail -f /dev/null"),
+      cell(2, "")};
+  EXPECT_THAT(run(cells, 1, stop.get_token()), ElementsAre(0));
+  EXPECT_TRUE(results_[0]);
+  EXPECT_FALSE(results_[1]);
+  EXPECT_FALSE(results_[2]);
+  EXPECT_FALSE(fs::exists(cells[1].run / "result.json"));
+}
+
+TEST(ChildProcess, ThatCannotBeStartedSaysSo) {
+  const testing::TemporaryFolder folder;
+  EXPECT_EQ(run_process({"/no/such/program"}, folder.path() / "console", {}).exit_code, 127);
+}
+
+TEST(FolderLock, HoldsOneStudy) {
+  const testing::TemporaryFolder folder;
+  {
+    const FolderLock lock(folder.path());
+    EXPECT_THROW(FolderLock(folder.path()), Error);
+  }
+  EXPECT_NO_THROW(FolderLock(folder.path()));
+}
+
+}  // namespace
+}  // namespace stillpoint::study

@@ -1,0 +1,116 @@
+#include <gtest/gtest.h>
+
+#include "fixtures.hpp"
+#include "study/csv_report.hpp"
+#include "study/markdown_report.hpp"
+#include "study/markdown_table.hpp"
+
+namespace stillpoint::study {
+namespace {
+
+TEST(Spread, IsMedianAndExtremes) {
+  EXPECT_FALSE(spread_of({}));
+  const auto odd = spread_of({3, 1, 2});
+  EXPECT_EQ(odd->median, 2);
+  EXPECT_EQ(odd->min, 1);
+  EXPECT_EQ(odd->max, 3);
+  EXPECT_EQ(odd->count, 3u);
+  EXPECT_EQ(spread_of({4, 1, 2, 10})->median, 3);
+}
+
+TEST(MarkdownTable, HasColumnsOfEqualWidth) {
+  EXPECT_EQ(markdown_table({"a", "b"}, {{"1–2", "x|y"}, {"12345", ""}}),
+            "| a     | b    |\n"
+            "|-------|------|\n"
+            "| 1–2   | x\\|y |\n"
+            "| 12345 |      |\n");
+}
+
+/// Two repeats of everything; one run has failed, one sequence was not covered, one has not run.
+class Report : public ::testing::Test {
+ protected:
+  Report() {
+    study_.baseline = "plain";
+    results_.cells = cells_of(study_);
+    CellResult failed;
+    failed.exit_code = 3;
+    failed.message = "cannot read 'a', \"b\"";
+    results_.results = {
+        result_with(0.5),  result_with(0.7),  result_with(0.06, 90.0), failed,
+        result_with(0.01), result_with(0.02), result_with(0.02),       std::nullopt};
+  }
+  Study study_ = two_by_two(2);
+  StudyResults results_{.study = study_, .cells = {}, .results = {}};
+};
+
+TEST_F(Report, AsMarkdown) {
+  EXPECT_EQ(markdown_report(results_, "demo"),
+            "# demo\n"
+            "\n"
+            "Median (smallest–largest) of 2 runs, seeds 7 to 8. Behind an error stands the "
+            "coverage where it is not complete.\n"
+            "\n"
+            "**Not finished:** 1 of 8 runs are missing.\n"
+            "\n"
+            "## Absolute trajectory error, SE(3), RMSE (m)\n"
+            "\n"
+            "| sequence      | plain                  | better                  |\n"
+            "|---------------|------------------------|-------------------------|\n"
+            "| walking       | 0.6000 (0.5000–0.7000) | 0.0600, 90.0 % [1 of 2] |\n"
+            "| walking_empty | 0.0150 (0.0100–0.0200) | 0.0200 [1 of 2]         |\n"
+            "\n"
+            "## Improvement of the ATE over plain (%)\n"
+            "\n"
+            "| sequence      | plain | better       |\n"
+            "|---------------|-------|--------------|\n"
+            "| walking       | –     | 90.0, 90.0 % |\n"
+            "| walking_empty | –     | -33.3        |\n"
+            "\n"
+            "## Dynamic penalty: ATE ÷ ATE on the _empty twin\n"
+            "\n"
+            "| sequence | plain | better       |\n"
+            "|----------|-------|--------------|\n"
+            "| walking  | 40.00 | 3.00, 90.0 % |\n"
+            "\n"
+            "## Coverage: frames with a pose (%)\n"
+            "\n"
+            "| sequence      | plain               | better         |\n"
+            "|---------------|---------------------|----------------|\n"
+            "| walking       | 100.0 (100.0–100.0) | 90.0 [1 of 2]  |\n"
+            "| walking_empty | 100.0 (100.0–100.0) | 100.0 [1 of 2] |\n"
+            "\n"
+            "## Times tracking was lost\n"
+            "\n"
+            "0 in every run.\n"
+            "\n"
+            "## Variants\n"
+            "\n"
+            "| variant | pipeline     | changes               |\n"
+            "|---------|--------------|-----------------------|\n"
+            "| plain   | orb_baseline |                       |\n"
+            "| better  | orb_baseline | tracker.features=2000 |\n"
+            "\n"
+            "## Runs that failed or cannot be compared\n"
+            "\n"
+            "* walking/better/1: exit code 3: cannot read 'a', \"b\"\n");
+}
+
+TEST_F(Report, AsCsv) {
+  results_.cells = {results_.cells[0], results_.cells[3], results_.cells[7]};
+  results_.results = {results_.results[0], results_.results[3], results_.results[7]};
+  EXPECT_EQ(csv_report(results_),
+            "sequence,variant,repeat,seed,state,exit_code,ate_m,sim3_scale,rpe_translation_m,"
+            "rpe_rotation_deg,coverage_percent,times_lost,dropped_frames,track_p50_ms,"
+            "track_p95_ms,cpu_ms_per_frame,peak_memory_mib,seconds,message\n"
+            "walking,plain,0,7,done,0,0.5,,,,100,0,,,,,,2.5,\n"
+            "walking,better,1,8,failed,3,,,,,,,,,,,,0,\"cannot read 'a', \"\"b\"\"\"\n"
+            "walking_empty,better,1,8,missing,,,,,,,,,,,,,,\n");
+}
+
+TEST_F(Report, ASequenceWithoutTwinHasNoPenalty) {
+  EXPECT_FALSE(dynamic_penalty(results_, 1, 0));
+  EXPECT_NEAR(*dynamic_penalty(results_, 0, 0), 40.0, 1e-9);
+}
+
+}  // namespace
+}  // namespace stillpoint::study
