@@ -12,21 +12,19 @@ namespace {
 
 constexpr std::size_t kMostClasses = 256;  // labels are 8-bit
 
-ClassNames classes_of(const SegnetSegmenter::Options& options) {
-  return options.class_names.empty() ? named_classes(options.classes) : options.class_names;
+ClassNames classes_of(const std::vector<std::string>& given) {
+  ClassNames names = given.size() == 1 ? named_classes(given.front()) : given;
+  if (names.size() >= 2 && names.size() <= kMostClasses) return names;
+  throw Error(Fault::kUsage, "'classes' has " + std::to_string(names.size()) + " names",
+              "segmenter", "name a list (voc21, coco80, person), or 2 to 256 classes");
 }
 
-void check_classes(int channels, const SegnetSegmenter::Options& options,
-                   const ClassNames& classes) {
-  const std::string list =
-      options.class_names.empty() ? "the list '" + options.classes + "'" : "class_names";
-  if (classes.size() > kMostClasses)
-    throw Error(Fault::kUsage, list + " has more than 256 classes");
+void check_classes(int channels, const ClassNames& classes, const std::string& prototxt) {
   if (static_cast<std::size_t>(channels) == classes.size()) return;
   throw Error(Fault::kUsage,
-              "the network tells " + std::to_string(channels) + " classes apart, but " + list +
-                  " has " + std::to_string(classes.size()),
-              options.prototxt, "name the network's classes with 'classes' or 'class_names'");
+              "the network tells " + std::to_string(channels) +
+                  " classes apart, but 'classes' has " + std::to_string(classes.size()) + " names",
+              prototxt, "name the classes of this network, the first one for its channel 0");
 }
 
 cv::Mat enlarged(const cv::Mat& image, cv::Size size) {
@@ -41,24 +39,27 @@ void SegnetSegmenter::Options::visit(OptionVisitor& v) {
   v("prototxt", prototxt,
     {.help = "the network's definition for inference", .required = true, .is_path = true});
   v("model", model, {.help = "its weights, a .caffemodel", .required = true, .is_path = true});
-  v("classes", classes, {.help = "list of what the labels mean: voc21, coco80 or person"});
-  v("class_names", class_names, {.help = "instead of a list: the names, the first one is label 0"});
-  v.choice("channel_order", channel_order,
-           {{"bgr", ChannelOrder::kBgr}, {"rgb", ChannelOrder::kRgb}},
-           {.help = "of the network's input"});
-  v("mean", mean, {.help = "subtracted from the three channels, in the network's order"});
-  v("scale", scale, {.min = 1e-6, .help = "multiplies the channels (0 to 255) after that"});
+  v("classes", classes,
+    {.help = "names by class id; or one of the lists [voc21], [coco80], [person]"});
+  v.choice("channels", channels, {{"bgr", ChannelOrder::kBgr}, {"rgb", ChannelOrder::kRgb}},
+           {.help = "order of the input's channels"});
+  v("mean", mean, {.help = "one number, or one per channel, in the network's order"});
+  v("scale", scale, {.min = 1e-6, .help = "the input is scale * (pixel - mean)"});
   v("min_object_pixels", min_object_pixels,
-    {.min = 1, .unit = "px", .help = "smaller objects become background"});
-  v.require(mean.size() == 3, "mean needs three numbers");
+    {.min = 1, .unit = "px", .help = "smaller parts of a class are background"});
+  v("threads", threads,
+    {.min = 0,
+     .max = 256,
+     .help = "of OpenCV, in the whole process; 0: as many as the runtime gives a stage"});
+  v.require(mean.size() == 1 || mean.size() == 3, "'mean' needs one or three numbers");
 }
 
 SegnetSegmenter::SegnetSegmenter(Options options, const StageContext& context)
     : options_(std::move(options)),
-      classes_(classes_of(options_)),
+      classes_(classes_of(options_.classes)),
       network_(options_.prototxt, options_.model) {
-  check_classes(network_.channels(), options_, classes_);
-  cv::setNumThreads(context.threads);  // of all that OpenCV does in this process
+  check_classes(network_.channels(), classes_, options_.prototxt);
+  cv::setNumThreads(options_.threads > 0 ? options_.threads : context.threads);
 }
 
 Segmentation SegnetSegmenter::segment(const Frame& frame) {
@@ -70,8 +71,10 @@ Segmentation SegnetSegmenter::segment(const Frame& frame) {
 }
 
 cv::Mat SegnetSegmenter::scores(const cv::Mat& bgr) {
-  const cv::Scalar mean(options_.mean[0], options_.mean[1], options_.mean[2]);
-  const bool swap = options_.channel_order == ChannelOrder::kRgb;
+  const std::vector<double>& given = options_.mean;
+  const cv::Scalar mean =
+      given.size() == 1 ? cv::Scalar::all(given[0]) : cv::Scalar(given[0], given[1], given[2]);
+  const bool swap = options_.channels == ChannelOrder::kRgb;
   try {
     return network_.scores(
         cv::dnn::blobFromImage(bgr, options_.scale, network_.input_size(), mean, swap, false));

@@ -18,12 +18,12 @@ class SegnetSegmenter final : public Segmenter {
   struct Options {
     std::string prototxt;
     std::string model;
-    std::string classes = "voc21";                    ///< name of a list
-    std::vector<std::string> class_names;             ///< instead of it
-    ChannelOrder channel_order = ChannelOrder::kBgr;  ///< of the network's input
-    std::vector<double> mean = {0, 0, 0};  ///< of the network's channels; subtracted first
-    double scale = 1.0;                    ///< multiplies what is left of 0 … 255
-    int min_object_pixels = 100;           ///< of the frame
+    std::vector<std::string> classes = {"voc21"};  ///< a list by its name, or the names
+    ChannelOrder channels = ChannelOrder::kBgr;    ///< of the network's input
+    std::vector<double> mean = {0};                ///< of the network's channels; subtracted first
+    double scale = 1.0;                            ///< multiplies what is left of 0 … 255
+    int min_object_pixels = 100;                   ///< of the frame
+    int threads = 0;                               ///< of OpenCV; 0: as the runtime says
 
     void visit(OptionVisitor& visitor);
   };

@@ -22,9 +22,9 @@ class SegnetSegmenterTest : public ::testing::Test {
     SegnetSegmenter::Options options;
     options.prototxt = folder_.write("net.prototxt", network.prototxt()).string();
     options.model = folder_.write("net.caffemodel", network.caffemodel()).string();
-    options.class_names.assign(static_cast<std::size_t>(network.channels()), "");
-    for (std::size_t i = 0; i < options.class_names.size(); ++i)
-      options.class_names[i] = "class" + std::to_string(i);
+    options.classes.clear();
+    for (int i = 0; i < network.channels(); ++i)
+      options.classes.push_back("class" + std::to_string(i));
     return options;
   }
   std::string message_of(const SegnetSegmenter::Options& options, Fault fault) {
@@ -131,7 +131,7 @@ TEST_F(SegnetSegmenterTest, SmallObjectsAreBackground) {
 
 TEST_F(SegnetSegmenterTest, ChannelOrderIsThatOfTheNetwork) {
   SegnetSegmenter::Options options = options_for(colour_network(12, 16));
-  options.channel_order = SegnetSegmenter::ChannelOrder::kRgb;
+  options.channels = SegnetSegmenter::ChannelOrder::kRgb;
   options.mean = {150, 0, 0};  // of red
   SegnetSegmenter segmenter(options, StageContext{});
   const cv::Mat blue(12, 16, CV_8UC3, cv::Scalar(100, 0, 0));
@@ -157,23 +157,24 @@ TEST_F(SegnetSegmenterTest, SameImagesGiveSameLabels) {
 
 TEST_F(SegnetSegmenterTest, ClassesAreVocUnlessNamed) {
   SegnetSegmenter::Options options = options_for(segnet::testing::segnet_vgg16(32, 32, 32, 21, 1));
-  options.class_names.clear();
+  options.classes = SegnetSegmenter::Options().classes;
   EXPECT_EQ(SegnetSegmenter(options, StageContext{}).classes(), named_classes("voc21"));
-  options.class_names = named_classes("voc21");
-  options.class_names[15] = "human";
+  options.classes = named_classes("voc21");
+  options.classes[15] = "human";
   EXPECT_EQ(SegnetSegmenter(options, StageContext{}).classes()[15], "human");
 }
 
 TEST_F(SegnetSegmenterTest, ClassesThatDoNotFitAreRefusedAtTheStart) {
   SegnetSegmenter::Options options = options_for(segnet::testing::segnet_basic(32, 32, 4, 11, 1));
-  options.class_names.clear();
+  options.classes = {"voc21"};
   EXPECT_THAT(message_of(options, Fault::kUsage),
-              AllOf(HasSubstr("tells 11 classes apart"), HasSubstr("the list 'voc21' has 21")));
-  options.class_names = {"background", "person"};
-  EXPECT_THAT(message_of(options, Fault::kUsage), HasSubstr("class_names has 2"));
-  options.class_names.clear();
-  options.classes = "voc12";
+              AllOf(HasSubstr("tells 11 classes apart"), HasSubstr("'classes' has 21 names")));
+  options.classes = {"background", "person"};
+  EXPECT_THAT(message_of(options, Fault::kUsage), HasSubstr("'classes' has 2 names"));
+  options.classes = {"voc12"};
   EXPECT_THAT(message_of(options, Fault::kUsage), HasSubstr("did you mean 'voc21'?"));
+  options.classes.clear();
+  EXPECT_THAT(message_of(options, Fault::kUsage), HasSubstr("'classes' has 0 names"));
 }
 
 TEST_F(SegnetSegmenterTest, FailuresWhileRunningEndTheRunCleanly) {

@@ -16,7 +16,7 @@ void segment(benchmark::State& state, const TestNetwork& network) {
   SegnetSegmenter::Options options;
   options.prototxt = folder.write("net.prototxt", network.prototxt()).string();
   options.model = folder.write("net.caffemodel", network.caffemodel()).string();
-  options.class_names.assign(static_cast<std::size_t>(network.channels()), "class");
+  options.classes.assign(static_cast<std::size_t>(network.channels()), "class");
   SegnetSegmenter segmenter(options, {.threads = static_cast<int>(state.range(0))});
   Frame frame{.bgr = cv::Mat(480, 640, CV_8UC3)};
   cv::RNG random(1);
