@@ -123,13 +123,13 @@ void BoxMaskOptions::visit(OptionVisitor& v) {
      .help = "of the middle of a box that the nearest surface in it covers at least"});
 }
 
-BoxMask box_mask(const cv::Mat& depth, const cv::Rect& box, const BoxMaskOptions& options) {
+cv::Mat box_mask(const cv::Mat& depth, const cv::Rect& box, const BoxMaskOptions& options) {
   if (!depth.empty()) {
     const cv::Mat inside = depth(box);
     const float middle = near_surface(measured_in_middle(inside), options.near_share);
-    if (middle > 0) return {grow_surface(inside, middle, options), middle};
+    if (middle > 0) return grow_surface(inside, middle, options);
   }
-  return {ellipse(box.size()), 0.0f};
+  return ellipse(box.size());
 }
 
 }  // namespace stillpoint

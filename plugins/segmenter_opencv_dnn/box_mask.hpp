@@ -17,15 +17,10 @@ struct BoxMaskOptions {
   void visit(OptionVisitor& visitor);
 };
 
-struct BoxMask {
-  cv::Mat mask;        ///< CV_8UC1 of the box's size, 255 = the thing
-  float depth = 0.0f;  ///< metres; 0 = unknown
-};
-
-/// The nearest surface that covers `near_share` of the middle of the box (half its width and
-/// height), grown over neighbours of similar depth inside the box; small gaps in the depth image
-/// are closed. Where the middle has next to no depth, or there is no depth image: the ellipse in
-/// the box. `box` lies inside the image; `depth` may be empty.
-BoxMask box_mask(const cv::Mat& depth, const cv::Rect& box, const BoxMaskOptions& options);
+/// CV_8UC1 of the box's size, 255 = the thing: the nearest surface that covers `near_share` of the
+/// middle of the box (half its width and height), grown over neighbours of similar depth inside the
+/// box; small gaps in the depth image are closed. Where the middle has next to no depth, or there
+/// is no depth image: the ellipse in the box. `box` lies inside the image; `depth` may be empty.
+cv::Mat box_mask(const cv::Mat& depth, const cv::Rect& box, const BoxMaskOptions& options);
 
 }  // namespace stillpoint

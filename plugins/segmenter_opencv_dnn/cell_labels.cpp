@@ -126,7 +126,7 @@ void score_objects(Segmentation& segmentation, const std::vector<cv::Mat>& proba
       for (int u = object.box.x; u < object.box.br().x; ++u)
         if (instance[u] == i + 1) sum += cells[nearest(grid.columns[static_cast<std::size_t>(u)])];
     }
-    object.score = static_cast<float>(sum / object.pixels);
+    object.score = static_cast<float>(std::clamp(sum / object.pixels, 0.0, 1.0));
   }
 }
 

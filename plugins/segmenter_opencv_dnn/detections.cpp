@@ -1,6 +1,7 @@
 #include "segmenter_opencv_dnn/detections.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 
 #include "stillpoint/error.hpp"
@@ -24,7 +25,7 @@ void append_ssd(const cv::Mat& output, std::size_t classes, double threshold,
                 std::vector<Detection>& found) {
   for (int i = 0; i < output.size[2]; ++i) {
     const float* row = output.ptr<float>(0, 0) + static_cast<std::ptrdiff_t>(i) * kSsdColumns;
-    const int label = static_cast<int>(row[1]);
+    const int label = static_cast<int>(std::lround(row[1]));
     if (!(row[2] >= threshold) || label == 0) continue;
     if (label < 0 || label >= static_cast<int>(classes))
       throw Error(Fault::kData,

@@ -49,9 +49,11 @@ void check_config(const Kind& kind, const std::string& model, const std::string&
 void check_darknet_size(cv::dnn::Net& net, const std::string& model) {
   constexpr std::uintmax_t kSmallestHeader = 16;  // bytes
   std::uintmax_t needed = kSmallestHeader;
-  for (const std::string& name : net.getLayerNames())
-    for (const cv::Mat& blob : net.getLayer(net.getLayerId(name))->blobs)
-      needed += blob.total() * blob.elemSize();
+  for (const std::string& name : net.getLayerNames()) {
+    const cv::Ptr<cv::dnn::Layer> layer = net.getLayer(net.getLayerId(name));
+    if (layer->type == "Region") continue;  // its anchors come from the .cfg
+    for (const cv::Mat& blob : layer->blobs) needed += blob.total() * blob.elemSize();
+  }
   const std::uintmax_t size = fs::file_size(model);
   if (size >= needed) return;
   throw Error(Fault::kData,
@@ -64,14 +66,15 @@ void check_darknet_size(cv::dnn::Net& net, const std::string& model) {
 
 std::string reason(const cv::Exception& exception) {
   std::string text = exception.err.empty() ? exception.what() : exception.err;
-  static const std::regex kUnknownLayer(
-      R"re(of type "([^"]+)"|[Uu]nknown layer type: (\S+)|Node \[([^@\]]+)@[^\]]*\]:\(([^)]*)\))re");
+  static const std::regex kUnknownLayer(R"re(of type "([^"]+)"|[Uu]nknown layer type: (\S+))re");
+  static const std::regex kFailingLayer(R"re(Node \[([^@\]]+)@[^\]]*\]:\(([^)]*)\))re");
   std::smatch match;
-  std::string layer;
   if (std::regex_search(text, match, kUnknownLayer))
-    for (std::size_t i = 1; i < match.size() && layer.empty(); ++i) layer = match[i].str();
+    return "unsupported layer '" + (match[1].matched ? match[1] : match[2]).str() + "'";
   if (const auto end = text.find('\n'); end != std::string::npos) text.resize(end);
-  return layer.empty() ? text : "unsupported layer '" + layer + "' (" + text + ")";
+  if (std::regex_search(text, match, kFailingLayer))
+    return "layer '" + match[2].str() + "' of kind " + match[1].str() + ": " + text;
+  return text;
 }
 
 cv::dnn::Net read_network(const std::string& model, const std::string& config) {

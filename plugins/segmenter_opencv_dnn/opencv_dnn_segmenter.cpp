@@ -1,9 +1,9 @@
 #include "segmenter_opencv_dnn/opencv_dnn_segmenter.hpp"
 
 #include <algorithm>
-#include <limits>
 #include <opencv2/core/utility.hpp>
 #include <opencv2/imgproc.hpp>
+#include <ranges>
 
 namespace stillpoint {
 namespace {
@@ -26,6 +26,10 @@ std::string shape_text(const cv::Mat& output) {
   return text;
 }
 
+std::string size_text(cv::Size size) {
+  return std::to_string(size.width) + " x " + std::to_string(size.height);
+}
+
 int use_threads(int wanted, const StageContext& context) {
   const int threads = wanted > 0 ? wanted : context.threads;
   cv::setNumThreads(threads);
@@ -38,12 +42,7 @@ cv::Rect pixels_of(const cv::Rect2f& box, cv::Size image) {
   return cv::Rect(first, end) & cv::Rect({}, image);
 }
 
-struct MaskedObject {
-  SegmentedObject object;
-  BoxMask area;
-};
-
-/// The size and box of what nearer objects have left of each; too small ones are removed.
+/// The size and box of what better objects have left of each; too small ones are removed.
 void measure_objects(Segmentation& segmentation, int min_pixels) {
   std::vector<SegmentedObject> kept;
   for (std::size_t i = 0; i < segmentation.objects.size(); ++i) {
@@ -82,6 +81,7 @@ void OpenCvDnnSegmenter::Options::visit(OptionVisitor& v) {
   v("threshold", rule.threshold,
     {.min = 0, .max = 1, .help = "a probability or a box's score below it is background"});
   v("margin", rule.margin, {.help = "lead that a class's logit needs over the background's"});
+  v("refine", refinement, {.help = "guided filter that brings scores to the edges of the image"});
   v("boxes", boxes, {.help = "how boxes become masks"});
   v("min_object_pixels", min_object_pixels,
     {.min = 1, .unit = "px", .help = "smaller parts of a class are background"});
@@ -89,6 +89,8 @@ void OpenCvDnnSegmenter::Options::visit(OptionVisitor& v) {
     {.min = 0,
      .max = 256,
      .help = "of OpenCV, in the whole process; 0: as many as the runtime gives a stage"});
+  v.require(refinement.radius == 0 || cells == CellAlignment::kCentres,
+            "'refine' needs cells that tile the input: 'cells: centres'");
 }
 
 OpenCvDnnSegmenter::OpenCvDnnSegmenter(const Options& options, const StageContext& context)
@@ -100,33 +102,52 @@ OpenCvDnnSegmenter::OpenCvDnnSegmenter(const Options& options, const StageContex
 }
 
 void OpenCvDnnSegmenter::check_outputs() const {
+  for (const cv::Mat& output : network_.trial_outputs())
+    if (options_.rule.result == ResultKind::kBoxes)
+      check_boxes(output);
+    else
+      check_planes(output);
+}
+
+void OpenCvDnnSegmenter::refuse(const cv::Mat& output, const std::string& expected) const {
+  throw Error(Fault::kUsage, "the output is " + shape_text(output) + ", not " + expected,
+              network_.file(), "check 'result', 'output' and 'classes'");
+}
+
+void OpenCvDnnSegmenter::check_boxes(const cv::Mat& output) const {
   const std::size_t names = classes_.size();
-  for (const cv::Mat& output : network_.trial_outputs()) {
-    const auto refuse = [&](const std::string& expected, const std::string& remedy) {
-      throw Error(Fault::kUsage, "the output is " + shape_text(output) + ", not " + expected,
-                  network_.file(), remedy);
-    };
-    if (options_.rule.result == ResultKind::kBoxes) {
-      if (!holds_boxes(output, names))
-        refuse("N x " + std::to_string(names + 4) + " (Darknet, " + std::to_string(names - 1) +
-                   " classes) or 1 x 1 x N x 7 (SSD)",
-               "check 'result', 'output' and 'classes'");
-      continue;
-    }
-    const std::size_t planes = planes_of(output).size();
-    const bool one = options_.rule.result == ResultKind::kProbability ||
-                     options_.rule.result == ResultKind::kLogit;
-    if (planes == 0) refuse("1 x classes x height x width", "check 'result' and 'output'");
-    if (planes != (one ? 1 : names))
-      refuse(one ? "1 x 1 x height x width" : "1 x " + std::to_string(names) + " x height x width",
-             one ? "check 'result' and 'output'" : "check 'classes', 'result' and 'output'");
-    if (one && names != 2)
-      throw Error(Fault::kUsage,
-                  "one plane of scores needs two names, the background and one class; 'classes' "
-                  "has " +
-                      std::to_string(names),
-                  network_.file(), "correct 'classes', such as [person]");
-  }
+  if (!holds_boxes(output, names))
+    refuse(output, "N x " + std::to_string(names + 4) + " (Darknet, " + std::to_string(names - 1) +
+                       " classes) or 1 x 1 x N x 7 (SSD)");
+}
+
+void OpenCvDnnSegmenter::check_planes(const cv::Mat& output) const {
+  const bool one = options_.rule.result == ResultKind::kProbability ||
+                   options_.rule.result == ResultKind::kLogit;
+  const std::size_t planes = one ? 1 : classes_.size();
+  if (planes_of(output).size() != planes)
+    refuse(output, "1 x " + std::to_string(planes) + " x height x width");
+  if (one && classes_.size() != 2)
+    throw Error(Fault::kUsage,
+                "one plane of scores needs two names, the background and one class; 'classes' "
+                "has " +
+                    std::to_string(classes_.size()),
+                network_.file(), "correct 'classes', such as [person]");
+  const cv::Size cells = planes_of(output).front().size();
+  const cv::Size input = network_.input_size();
+  const auto fits = [](int pixels, int count) {
+    return count == 1 || (pixels - 1) % (count - 1) == 0;
+  };
+  if (options_.cells == CellAlignment::kCorners &&
+      !(fits(input.width, cells.width) && fits(input.height, cells.height)))
+    throw Error(Fault::kUsage,
+                "the corners of an input of " + size_text(input) +
+                    " pixels are no cells of an "
+                    "output of " +
+                    size_text(cells),
+                network_.file(),
+                "make 'width' and 'height' a multiple of the network's stride plus 1, such as "
+                "513 and 385, or use 'cells: centres'");
 }
 
 Segmentation OpenCvDnnSegmenter::segment(const Frame& frame) {
@@ -136,15 +157,20 @@ Segmentation OpenCvDnnSegmenter::segment(const Frame& frame) {
           ? from_boxes(detections(outputs, classes_.size(), options_.rule.threshold,
                                   options_.boxes.overlap),
                        frame)
-          : from_scores(outputs.front(), frame.bgr.size());
+          : from_scores(outputs.front(), frame);
   result.frame = frame.index;
   return result;
 }
 
-Segmentation OpenCvDnnSegmenter::from_scores(const cv::Mat& output, cv::Size image) {
-  const std::vector<cv::Mat> planes = planes_of(output);
-  if (grid_.image != image)
-    grid_ = CellGrid(options_.cells, planes.front().size(), network_.input_size(), image);
+Segmentation OpenCvDnnSegmenter::from_scores(const cv::Mat& output, const Frame& frame) {
+  std::vector<cv::Mat> planes = planes_of(output);
+  if (options_.refinement.radius > 0) {
+    const GuidedFilter refined(frame.gray, planes.front().size(), options_.refinement);
+    for (cv::Mat& plane : planes) plane = refined(plane);
+  }
+  if (grid_.image != frame.bgr.size())
+    grid_ =
+        CellGrid(options_.cells, planes.front().size(), network_.input_size(), frame.bgr.size());
   Segmentation result;
   result.labels = label_pixels(competing(planes, options_.rule), grid_);
   find_objects(result, options_.min_object_pixels);
@@ -153,27 +179,20 @@ Segmentation OpenCvDnnSegmenter::from_scores(const cv::Mat& output, cv::Size ima
   return result;
 }
 
-Segmentation OpenCvDnnSegmenter::from_boxes(const std::vector<Detection>& found,
+Segmentation OpenCvDnnSegmenter::from_boxes(std::vector<Detection> found,
                                             const Frame& frame) const {
-  std::vector<MaskedObject> things;
-  for (const Detection& detection : found) {
-    const cv::Rect box = pixels_of(detection.box, frame.bgr.size());
-    if (box.empty() || things.size() == kMostObjects) continue;
-    things.push_back({{.label = detection.label, .box = box, .score = detection.score},
-                      box_mask(frame.depth, box, options_.boxes)});
-  }
-  // Nearer things hide farther ones; those of unknown depth come last.
-  std::ranges::stable_sort(things, std::greater{}, [](const MaskedObject& thing) {
-    return thing.area.depth > 0 ? thing.area.depth : std::numeric_limits<float>::infinity();
-  });
+  if (found.size() > kMostObjects) found.resize(kMostObjects);
   Segmentation result;
   result.labels = cv::Mat(frame.bgr.size(), CV_8UC1, cv::Scalar(0));
   result.instances = cv::Mat(frame.bgr.size(), CV_8UC1, cv::Scalar(0));
-  for (const MaskedObject& thing : things) {
-    result.objects.push_back(thing.object);
-    result.labels(thing.object.box).setTo(thing.object.label, thing.area.mask);
-    result.instances(thing.object.box)
-        .setTo(static_cast<double>(result.objects.size()), thing.area.mask);
+  // The best one last: where two boxes share a surface, it is the better one's.
+  for (const Detection& detection : found | std::views::reverse) {
+    const cv::Rect box = pixels_of(detection.box, frame.bgr.size());
+    if (box.empty()) continue;
+    const cv::Mat mask = box_mask(frame.depth, box, options_.boxes);
+    result.objects.push_back({.label = detection.label, .box = box, .score = detection.score});
+    result.labels(box).setTo(detection.label, mask);
+    result.instances(box).setTo(static_cast<double>(result.objects.size()), mask);
   }
   measure_objects(result, options_.min_object_pixels);
   return result;

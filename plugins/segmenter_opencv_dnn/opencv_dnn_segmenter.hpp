@@ -7,6 +7,7 @@
 #include "segmenter_opencv_dnn/box_mask.hpp"
 #include "segmenter_opencv_dnn/class_scores.hpp"
 #include "segmenter_opencv_dnn/detections.hpp"
+#include "segmenter_opencv_dnn/guided_filter.hpp"
 #include "segmenter_opencv_dnn/network.hpp"
 #include "stillpoint/sdk.hpp"
 
@@ -20,6 +21,7 @@ class OpenCvDnnSegmenter final : public Segmenter {
     ScoreRule rule;
     CellAlignment cells = CellAlignment::kCentres;
     std::vector<std::string> classes = {"person"};  ///< one: the name of a list
+    RefinementOptions refinement;
     BoxMaskOptions boxes;
     int min_object_pixels = 200;
     int threads = 0;  ///< of OpenCV, in the whole process; 0: as many as the runtime allows
@@ -35,8 +37,11 @@ class OpenCvDnnSegmenter final : public Segmenter {
 
  private:
   void check_outputs() const;
-  Segmentation from_scores(const cv::Mat& output, cv::Size image);
-  Segmentation from_boxes(const std::vector<Detection>& found, const Frame& frame) const;
+  void check_boxes(const cv::Mat& output) const;
+  void check_planes(const cv::Mat& output) const;
+  [[noreturn]] void refuse(const cv::Mat& output, const std::string& expected) const;
+  Segmentation from_scores(const cv::Mat& output, const Frame& frame);
+  Segmentation from_boxes(std::vector<Detection> found, const Frame& frame) const;
 
   Options options_;
   ClassNames classes_;
