@@ -136,18 +136,18 @@ TEST_F(Ablate, NamesEveryFaultOfAStudyWithItsPlace) {
       "5:5: error: study.sequences[1]: 'frames' and 'set' are for a 'scene'; a recording is what "
       "it is",
       "/nowhere' is no folder",
-      "6:36: error: --set source.frmaes=3: source: unknown key 'frmaes'; did you mean 'frames'?",
+      "6:35: error: --set source.frmaes=3: source: unknown key 'frmaes'; did you mean 'frames'?",
       "7:5: error: study.sequences[3]: needs either 'dataset', the folder of a recording, or "
       "'scene', to be simulated",
       "7:12: error: 'd' is given twice",
-      "7:57: error: no camera named 'tum_fr9'; did you mean",
-      "9:24: error: no pipeline named 'orb_basline'; did you mean 'orb_baseline'?",
+      "7:56: error: no camera named 'tum_fr9'; did you mean",
+      "9:25: error: no pipeline named 'orb_basline'; did you mean 'orb_baseline'?",
       "10:44: error: --set tracker.fetures=500: tracker: unknown key 'fetures'; did you mean "
       "'features'?",
-      "10:74: error: no sequence named 'e'; did you mean",
+      "10:73: error: no sequence named 'e'; did you mean",
       "11:5: error: study.variants[2]: 'set' cannot change runtime.seed; write the study's 'seed' "
       "instead",
-      "11:24: error: variant 'c': its pipeline has no output 'trajectory', from which the figures "
+      "11:25: error: variant 'c': its pipeline has no output 'trajectory', from which the figures "
       "come",
       "12:11: error: no variant named 'z'; did you mean",
       "13:10: error: study.repeats = 0 is outside [1, 1000]",

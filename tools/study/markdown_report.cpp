@@ -45,7 +45,7 @@ bool is_error(MetricId metric) {
 std::string coverage_note(const StudyResults& results, std::size_t sequence, std::size_t variant) {
   const auto coverage = results.spread(sequence, variant, kCoverage);
   const std::string percent = coverage ? fixed(coverage->median, 1) : "100.0";
-  return percent == "100.0" ? "" : ", " + percent + " %";
+  return percent == "100.0" ? "" : ", coverage " + percent + " %";
 }
 
 std::string spread_text(const StudyResults& results, std::size_t sequence, std::size_t variant,
@@ -64,19 +64,22 @@ std::string spread_text(const StudyResults& results, std::size_t sequence, std::
   return text;
 }
 
-bool is_all_zero(const StudyResults& results, MetricId metric) {
+std::vector<double> values_of(const StudyResults& results, MetricId metric) {
+  std::vector<double> values;
   for (const std::optional<CellResult>& result : results.results)
-    if (result && result->values[metric].value_or(0.0) != 0.0) return false;
-  return true;
+    if (result && result->values[metric]) values.push_back(*result->values[metric]);
+  return values;
 }
 
 std::string metric_section(const StudyResults& results, MetricId metric) {
+  const std::optional<Spread> all = spread_of(values_of(results, metric));
+  if (!all) return {};
   const Metric& m = metrics()[metric];
-  const std::string table = matrix(results.study, [&](std::size_t sequence, std::size_t variant) {
-    return spread_text(results, sequence, variant, metric);
-  });
-  if (table.empty()) return {};
-  return heading(m.title, m.unit) + (is_all_zero(results, metric) ? "0 in every run.\n" : table);
+  if (all->min == 0.0 && all->max == 0.0) return heading(m.title, m.unit) + "0 in every run.\n";
+  return heading(m.title, m.unit) +
+         matrix(results.study, [&](std::size_t sequence, std::size_t variant) {
+           return spread_text(results, sequence, variant, metric);
+         });
 }
 
 using Ratio = std::optional<double> (*)(const StudyResults&, std::size_t, std::size_t);
