@@ -81,6 +81,21 @@ struct FakeDecision final : Decision {
   Options options;
 };
 
+struct FakeSegmenter final : Segmenter {
+  struct Options {
+    std::string model = "small.onnx";
+    double scale = 1;
+    void visit(OptionVisitor& v) {
+      v("model", model, {.help = "a network", .is_path = true});
+      v("scale", scale, {.help = "of the input"});
+    }
+  };
+  explicit FakeSegmenter(const Options& o) : options(o) {}
+  ClassNames classes() const override { return {"background", options.model}; }
+  Segmentation segment(const Frame&) override { return {}; }
+  Options options;
+};
+
 struct FakeOutput final : Output {
   struct Options {
     std::string format = "tum";
@@ -92,6 +107,7 @@ struct FakeOutput final : Output {
 inline constexpr PluginEntry kEntries[] = {
     provide<Source, FakeSource>("tum_rgbd", "a recording"),
     provide<Source, PathlessSource>("simulation", "a made-up world"),
+    provide<Segmenter, FakeSegmenter>("opencv_dnn", "a network"),
     provide<MovingChecker, FakeChecker>("lk_epipolar", "optical flow"),
     provide<MovingChecker, FakeChecker>("lk_usac", "optical flow"),
     provide<Decision, FakeDecision>("object_vote", "votes of moving points"),

@@ -55,6 +55,47 @@ TEST_F(PipelineConfigTest, LeftOutSectionsAreEmpty) {
   EXPECT_EQ(config.runtime.mode, RuntimeOptions::Mode::kThreaded);
 }
 
+TEST_F(PipelineConfigTest, ASectionCanBeAFileOfItsOwn) {
+  write("p.yaml", std::string(kSource) + "segmenter: sub/net.yaml\ncamera: sub/c.yaml\n");
+  write("sub/net.yaml", "version: 1\nsegmenter: {type: opencv_dnn, model: a.onnx, scale: 2}\n");
+  write("sub/c.yaml", std::string("version: 1\n") + kCamera);
+  const PipelineConfig config = load({.pipeline = "p.yaml"});
+  ASSERT_TRUE(config.segmenter && config.camera);
+  EXPECT_EQ(config.camera->fx, 100);
+  EXPECT_EQ(config.segmenter->create<Segmenter>({})->classes()[1], folder_ / "sub/a.onnx");
+}
+
+TEST_F(PipelineConfigTest, ASectionFromAFileReplacesTheOneBelow) {
+  write("base.yaml", std::string(kSource) + "segmenter: {type: opencv_dnn, scale: 3}\n");
+  write("p.yaml", "extends: base.yaml\nsegmenter: net.yaml\n");
+  write("net.yaml", "segmenter: {type: opencv_dnn, model: a.onnx}\n");
+  EXPECT_THAT(load({.pipeline = "p.yaml"}).effective_yaml, HasSubstr("scale: 1"));
+  const PipelineConfig set =
+      load({.pipeline = "base.yaml", .assignments = {"segmenter=net.yaml", "segmenter.scale=5"}});
+  EXPECT_THAT(set.effective_yaml, HasSubstr("a.onnx"));
+  EXPECT_THAT(set.effective_yaml, HasSubstr("scale: 5"));
+}
+
+TEST_F(PipelineConfigTest, ASectionFromAFileThatIsNotThere) {
+  write("p.yaml", std::string(kSource) + "segmenter: nte\ncamera: sub\n");
+  try {
+    load({.pipeline = "p.yaml"});
+    FAIL();
+  } catch (const ConfigError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("p.yaml:3:12: error: segmenter: no segmenter named 'nte'"));
+    EXPECT_THAT(error.what(), HasSubstr("p.yaml:4:9: error: camera: no camera named 'sub'"));
+  }
+}
+
+TEST_F(PipelineConfigTest, WhatHappensWhenTheSegmenterFails) {
+  write("p.yaml", std::string(kSource) + "segmenter: {type: opencv_dnn, on_failure: continue}\n");
+  const PipelineConfig config = load({.pipeline = "p.yaml"});
+  EXPECT_EQ(config.segmentation.on_failure, SegmentationOptions::OnFailure::kContinue);
+  EXPECT_THAT(config.effective_yaml, HasSubstr("on_failure: continue"));
+  EXPECT_THROW(load({.pipeline = "p.yaml", .assignments = {"segmenter.on_failure=stopp"}}),
+               ConfigError);
+}
+
 TEST_F(PipelineConfigTest, EffectiveFileLoadsToItself) {
   write("p.yaml", std::string(kSource) + kCamera +
                       "moving_checker: {type: lk_usac, epsilon: 0.1}\ndecision: {type: "

@@ -26,6 +26,8 @@ void RunTable::finish(const RunSummary& summary) {
   keyframes_ = summary.map.keyframe_count();
   landmarks_ = summary.map.landmark_count();
   dropped_ = summary.dropped_frames;
+  unlabelled_ = summary.unlabelled_frames;
+  segmentation_failure_ = summary.segmentation_failure;
   wall_seconds_ = summary.wall_seconds;
   cpu_seconds_ = summary.cpu_seconds;
   recorded_seconds_ = summary.recorded_seconds;
@@ -49,6 +51,9 @@ void RunTable::print_run(std::ostream& stream) const {
   if (source_.skipped > 0)
     stream << format("            %zu image%s skipped as unusable\n", source_.skipped,
                      source_.skipped == 1 ? "" : "s");
+  if (unlabelled_ > 0)
+    stream << format("            %d without labels: ", unlabelled_) << segmentation_failure_
+           << '\n';
   stream << format("  map       %zu key frames, %zu landmarks\n", keyframes_, landmarks_);
   stream << format("  speed     %.1f frames/s (%.1f s for a recording of %.1f s)\n",
                    static_cast<double>(tracking_.processed) / std::max(wall_seconds_, 1e-9),

@@ -6,7 +6,8 @@
 namespace stillpoint {
 namespace {
 
-bool changes_type(const ConfigNode& base, const ConfigNode& overlay) {
+bool is_another(const ConfigNode& base, const ConfigNode& overlay) {
+  if (overlay.replaces) return true;
   const ConfigNode* old_type = base.find("type");
   const ConfigNode* new_type = overlay.find("type");
   return old_type && new_type && old_type->scalar != new_type->scalar;
@@ -69,7 +70,7 @@ ConfigNode merge(ConfigNode base, const ConfigNode& overlay) {
 ConfigNode merge_sections(ConfigNode base, const ConfigNode& overlay) {
   return merge_children(std::move(base), overlay,
                         [](const ConfigNode& section, const ConfigNode& change) {
-                          return changes_type(section, change) ? change : merge(section, change);
+                          return is_another(section, change) ? change : merge(section, change);
                         });
 }
 

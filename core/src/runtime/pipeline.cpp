@@ -111,6 +111,8 @@ RunSummary Pipeline::summary(const SparseMap& map, const SourceReport& source,
           .recorded_seconds = poses_.empty() ? 0.0 : poses_.back().time - poses_.front().time,
           .seed = options_.seed,
           .mode = options_.mode == Mode::kInline ? "inline" : "threaded",
+          .unlabelled_frames = segmentation_.failures(),
+          .segmentation_failure = segmentation_.first_failure(),
           .complete = !stop_.requested(),
           .failure = message_of(stop_.failure())};
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "stillpoint/contracts/segmenter.hpp"
 #include "stillpoint/contracts/source.hpp"
 #include "stillpoint/did_you_mean.hpp"
 #include "stillpoint/runtime/config_lookup.hpp"
@@ -47,11 +48,11 @@ class PipelineReader {
     search_plugins(plugin_folders);
     if (section("camera")) read_options(config.camera.emplace(), "camera");
     config.recording = recording_of(tree_);
-    read_source(config.source);
+    read_source(config);
     read_options(config.segmentation, "segmentation");
     for (const StageSection& stage : kStages)
-      config.*stage.stage = read_stage(section(stage.name), stage.name, stage.name);
-    read_outputs(config.outputs);
+      config.*stage.stage = read_stage(section(stage.name), stage.name, stage.name, config);
+    read_outputs(config);
     read_options(config.runtime, "runtime");
     report_unknown_sections();
     config.effective_yaml =
@@ -78,10 +79,10 @@ class PipelineReader {
     if (loaded_) faults_.add(tree_.location, what);
   }
 
-  void read_source(std::optional<StageSpec>& source) {
+  void read_source(PipelineConfig& config) {
     const ConfigNode* node = section("source");
     if (!node) add_missing("there is no source section");
-    source = read_stage(node, "source", "source");
+    config.source = read_stage(node, "source", "source", config);
   }
 
   template <OptionGroup Options>
@@ -107,14 +108,14 @@ class PipelineReader {
   }
 
   std::optional<StageSpec> read_stage(const ConfigNode* node, const std::string& path,
-                                      const std::string& kind) {
+                                      const std::string& kind, PipelineConfig& config) {
     OptionRecord record;
-    auto stage = node ? check_stage(*node, path, kind, record) : std::nullopt;
+    auto stage = node ? check_stage(*node, path, kind, config, record) : std::nullopt;
     if (stage) document_.children.push_back(std::move(record));
     return stage;
   }
 
-  void read_outputs(std::vector<StageSpec>& outputs) {
+  void read_outputs(PipelineConfig& config) {
     OptionRecord record{.name = "outputs", .kind = OptionRecord::Kind::kList};
     const ConfigNode* list = section("outputs");
     if (list && list->kind != ConfigNode::Kind::kList) {
@@ -123,9 +124,9 @@ class PipelineReader {
       for (std::size_t i = 0; i < list->children.size(); ++i) {
         OptionRecord element;
         const std::string path = "outputs[" + std::to_string(i) + "]";
-        const auto output = check_stage(list->children[i], path, "output", element);
+        const auto output = check_stage(list->children[i], path, "output", config, element);
         if (!output) continue;
-        outputs.push_back(*output);
+        config.outputs.push_back(*output);
         record.children.push_back(std::move(element));
       }
     }
@@ -134,7 +135,8 @@ class PipelineReader {
 
   /// Nothing when the section has no usable type; faults of options are collected.
   std::optional<StageSpec> check_stage(const ConfigNode& node, const std::string& path,
-                                       const std::string& kind, OptionRecord& record) {
+                                       const std::string& kind, PipelineConfig& config,
+                                       OptionRecord& record) {
     YamlOptionReader reader(&node, path);
     reader.ignore("type");
     const ConfigNode* type = node.find("type");
@@ -154,6 +156,7 @@ class PipelineReader {
       faults_.add(type->location, registry_.explain_missing(kind, type->scalar));
       return std::nullopt;
     }
+    if (kind == Segmenter::kKind) config.segmentation.visit_in_segmenter(reader);
     try {
       plugin->entry->describe(reader);
     } catch (const std::exception& error) {
@@ -207,6 +210,12 @@ void SegmentationOptions::visit(OptionVisitor& v) {
      .max = 1000,
      .unit = "frames",
      .help = "of 'latest' in mode inline, which has no clock"});
+}
+
+void SegmentationOptions::visit_in_segmenter(OptionVisitor& v) {
+  v.choice("on_failure", on_failure,
+           {{"stop", OnFailure::kStop}, {"continue", OnFailure::kContinue}},
+           {.help = "end the run, or go on without labels for that frame"});
 }
 
 StageSpec::StageSpec(std::string section, const PluginType& type,

@@ -1,7 +1,7 @@
 #include "stillpoint/runtime/pipeline_tree.hpp"
 
-#include "stillpoint/runtime/camera_config.hpp"
 #include "stillpoint/runtime/config_lookup.hpp"
+#include "stillpoint/runtime/section_file.hpp"
 #include "stillpoint/runtime/yaml_loader.hpp"
 
 namespace stillpoint {
@@ -28,8 +28,11 @@ ConfigNode dataset_overlay(const fs::path& dataset) {
 
 ConfigNode command_line_overlay(const PipelineRequest& request, FaultList& faults) {
   ConfigNode overlay = request.dataset.empty() ? empty_map({}) : dataset_overlay(request.dataset);
-  for (const std::string& assignment : request.assignments)
-    overlay = merge(std::move(overlay), parse_assignment(assignment, faults));
+  for (const std::string& assignment : request.assignments) {
+    ConfigNode change = parse_assignment(assignment, faults);
+    load_named_sections(change, faults);
+    overlay = merge_sections(std::move(overlay), change);
+  }
   return overlay;
 }
 
@@ -51,7 +54,8 @@ ConfigNode load_pipeline_tree(const fs::path& file, const PipelineRequest& reque
     remove_nulls(tree);
     return tree;
   };
-  ConfigNode tree = load_config_file(file, faults);
+  ConfigNode tree = load_config_file(
+      file, faults, [&](ConfigNode& written) { load_named_sections(written, faults); });
   const ConfigNode overlay = command_line_overlay(request, faults);
 
   fs::path camera_file;
@@ -61,7 +65,7 @@ ConfigNode load_pipeline_tree(const fs::path& file, const PipelineRequest& reque
   else if (const ConfigNode* camera = tree.find("camera");
            !camera || camera->kind == ConfigNode::Kind::kNull)
     camera_file = camera_beside_recording(finished(merge_sections(tree, overlay), found_again));
-  if (!camera_file.empty()) tree.set(load_camera_section(camera_file, faults));
+  if (!camera_file.empty()) tree.set(load_section(camera_file, "camera", faults));
   return finished(merge_sections(std::move(tree), overlay), faults);
 }
 

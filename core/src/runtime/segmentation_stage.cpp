@@ -33,13 +33,22 @@ SegmentationPtr SegmentationStage::at(const FramePtr& frame) {
 }
 
 void SegmentationStage::segment(FramePtr frame) {
-  auto labels = std::make_shared<const Segmentation>(
-      segmenter_.call("segmentation", frame->index, &Segmenter::segment, *frame));
+  auto labels = std::make_shared<const Segmentation>(labels_of(*frame));
   {
     const std::lock_guard lock(mutex_);
     newest_ = {std::move(frame), std::move(labels)};
   }
   changed_.notify_all();
+}
+
+Segmentation SegmentationStage::labels_of(const Frame& frame) {
+  try {
+    return segmenter_.call("segmentation", frame.index, &Segmenter::segment, frame);
+  } catch (const StageError& error) {
+    if (options_.on_failure == SegmentationOptions::OnFailure::kStop) throw;
+    if (failures_++ == 0) first_failure_ = error.what();
+    return {.frame = frame.index};
+  }
 }
 
 void SegmentationStage::imitate_latency(const FramePtr& now) {

@@ -116,12 +116,15 @@ std::optional<std::string> read_text(const fs::path& file) {
 
 Location start_of(const fs::path& file) { return {file.string(), 1, 1}; }
 
+using Prepare = std::function<void(ConfigNode&)>;
+
 ConfigNode load_chain(const fs::path& file, const Location& named_at, std::vector<fs::path> chain,
-                      FaultList& faults);
+                      const Prepare& prepare, FaultList& faults);
 
 /// Takes `extends` out of a file and loads what it names.
 std::optional<ConfigNode> load_parent(ConfigNode& node, const fs::path& file,
-                                      const std::vector<fs::path>& chain, FaultList& faults) {
+                                      const std::vector<fs::path>& chain, const Prepare& prepare,
+                                      FaultList& faults) {
   ConfigNode* extends = node.find("extends");
   if (!extends) return std::nullopt;
   substitute_environment(*extends, faults);
@@ -132,11 +135,11 @@ std::optional<ConfigNode> load_parent(ConfigNode& node, const fs::path& file,
     return std::nullopt;
   }
   return load_chain((file.parent_path() / named.scalar).lexically_normal(), named.location, chain,
-                    faults);
+                    prepare, faults);
 }
 
 ConfigNode load_chain(const fs::path& file, const Location& named_at, std::vector<fs::path> chain,
-                      FaultList& faults) {
+                      const Prepare& prepare, FaultList& faults) {
   std::error_code unreadable;  // said below
   const fs::path identity = fs::weakly_canonical(file, unreadable);
   if (std::ranges::find(chain, identity) != chain.end()) {
@@ -156,7 +159,8 @@ ConfigNode load_chain(const fs::path& file, const Location& named_at, std::vecto
     faults.add(start_of(file), "expected sections, as in 'source: {type: tum_rgbd}'");
     return empty_map(start_of(file));
   }
-  const auto parent = load_parent(*node, file, chain, faults);
+  const auto parent = load_parent(*node, file, chain, prepare, faults);
+  if (prepare) prepare(*node);
   return parent ? merge_sections(*parent, *node) : *node;
 }
 
@@ -192,8 +196,8 @@ std::string substituted(const std::string& text, const Location& where, FaultLis
 
 }  // namespace
 
-ConfigNode load_config_file(const fs::path& file, FaultList& faults) {
-  return load_chain(file, start_of(file), {}, faults);
+ConfigNode load_config_file(const fs::path& file, FaultList& faults, const Prepare& prepare) {
+  return load_chain(file, start_of(file), {}, prepare, faults);
 }
 
 ConfigNode parse_assignment(const std::string& assignment, FaultList& faults) {

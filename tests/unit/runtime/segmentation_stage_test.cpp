@@ -19,8 +19,12 @@ struct Fixture {
   StopSignal stop;
   TimeLog times;
 
-  std::unique_ptr<SegmentationStage> make(Schedule schedule, Mode mode, int latency = 3) {
+  using OnFailure = SegmentationOptions::OnFailure;
+
+  std::unique_ptr<SegmentationStage> make(Schedule schedule, Mode mode, int latency = 3,
+                                          OnFailure on_failure = OnFailure::kStop) {
     SegmentationOptions options;
+    options.on_failure = on_failure;
     options.schedule = schedule;
     options.latency = latency;
     return std::make_unique<SegmentationStage>(
@@ -108,6 +112,21 @@ TEST(SegmentationStage, AFailureEndsTheWait) {
     std::rethrow_exception(f.stop.failure());
   } catch (const StageError& error) {
     EXPECT_STREQ(error.what(), "segmentation (fake) failed on frame 0: out of ideas");
+  }
+}
+
+TEST(SegmentationStage, OnFailureContinueGoesOnWithoutLabelsAndCounts) {
+  for (const Mode mode : {Mode::kInline, Mode::kThreaded}) {
+    Fixture f;
+    f.journal.failing = "segment 1";
+    const auto stage = f.make(Schedule::kWait, mode, 3, SegmentationOptions::OnFailure::kContinue);
+    EXPECT_TRUE(process(*stage, 0)->known());
+    EXPECT_FALSE(process(*stage, 1)->known());
+    EXPECT_TRUE(process(*stage, 2)->known());
+    stage->end();
+    EXPECT_EQ(stage->failures(), 1);
+    EXPECT_EQ(stage->first_failure(), "segmentation (fake) failed on frame 1: out of ideas");
+    EXPECT_FALSE(f.stop.failure());
   }
 }
 

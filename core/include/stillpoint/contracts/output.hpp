@@ -55,9 +55,11 @@ struct RunSummary {
   double cpu_seconds = 0.0;  ///< of the whole process during the run
   double recorded_seconds = 0.0;
   long long seed = 0;
-  std::string mode;      ///< "inline" or "threaded"
-  bool complete = true;  ///< false when the run was stopped or failed
-  std::string failure;   ///< the message of the stage that failed, if any
+  std::string mode;                  ///< "inline" or "threaded"
+  int unlabelled_frames = 0;         ///< because the segmenter failed and `on_failure: continue`
+  std::string segmentation_failure;  ///< the message of the first of them
+  bool complete = true;              ///< false when the run was stopped or failed
+  std::string failure;               ///< the message of the stage that failed, if any
 };
 
 class STILLPOINT_EXPORT Output {

@@ -27,6 +27,7 @@ struct ConfigNode {
   std::vector<ConfigNode> children;  ///< of a list or map, in the order of the file
   Location location;                 ///< of the value
   std::filesystem::path folder;      ///< that relative paths are meant from
+  bool replaces = false;             ///< what it is laid over, instead of merging with it
 
   /// The value of a key; null when it is not there.
   const ConfigNode* find(std::string_view name) const;
@@ -41,8 +42,8 @@ ConfigNode empty_map(const Location& location);
 /// Lays `overlay` over `base`: maps merge by key, everything else replaces.
 ConfigNode merge(ConfigNode base, const ConfigNode& overlay);
 
-/// The same for whole pipeline files: a stage section that names another `type` replaces the one
-/// below, because options of one implementation mean nothing to another.
+/// The same for whole pipeline files: a stage section that names another `type`, or comes from a
+/// file of its own, replaces the one below, because options of one mean nothing to the other.
 ConfigNode merge_sections(ConfigNode base, const ConfigNode& overlay);
 
 /// A key without a value counts as left out.

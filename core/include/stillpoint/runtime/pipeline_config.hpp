@@ -41,12 +41,15 @@ struct RuntimeOptions {
   void visit(OptionVisitor& visitor);
 };
 
-/// The `segmentation:` section: how labels meet frames.
+/// The `segmentation:` section, and `segmenter.on_failure`: how labels meet frames.
 struct SegmentationOptions {
   enum class Schedule { kWait, kLatest } schedule = Schedule::kWait;
   int latency = 3;  ///< frames; of `latest` in mode inline, instead of the clock
+  enum class OnFailure { kStop, kContinue } on_failure = OnFailure::kStop;
 
   void visit(OptionVisitor& visitor);
+  /// What stands in the `segmenter:` section, beside the options of the plugin.
+  void visit_in_segmenter(OptionVisitor& visitor);
 };
 
 struct ConfigNode;

@@ -4,6 +4,7 @@
 #include <condition_variable>
 #include <cstdint>
 #include <mutex>
+#include <string>
 
 #include "stillpoint/runtime/stage.hpp"
 #include "stillpoint/runtime/worker.hpp"
@@ -29,6 +30,11 @@ class SegmentationStage {
   /// Ends the thread.
   void end() { network_.end(); }
 
+  /// Frames without labels because the segmenter failed, and what the first failure said; after
+  /// end().
+  int failures() const { return failures_; }
+  const std::string& first_failure() const { return first_failure_; }
+
  private:
   using Schedule = SegmentationOptions::Schedule;
   struct Labelled {
@@ -37,6 +43,7 @@ class SegmentationStage {
   };
 
   void segment(FramePtr frame);
+  Segmentation labels_of(const Frame& frame);
   void imitate_latency(const FramePtr& now);
   Labelled wait_for(const FramePtr& frame);
 
@@ -49,6 +56,9 @@ class SegmentationStage {
   std::mutex mutex_;
   std::condition_variable_any changed_;
   Labelled newest_;  // guarded by mutex_
+
+  int failures_ = 0;  // both of the thread that segments
+  std::string first_failure_;
 
   // Of `latest` inline: the frame in the imitated network and the one that waits for it.
   FramePtr running_;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <string>
 
 #include "stillpoint/runtime/config_node.hpp"
@@ -10,8 +11,9 @@
 namespace stillpoint {
 
 /// A file with everything it extends merged below it. An empty map when a file cannot be read or
-/// parsed, which is a fault then.
-ConfigNode load_config_file(const std::filesystem::path& file, FaultList& faults);
+/// parsed, which is a fault then. `prepare` is called with each file's own text before merging.
+ConfigNode load_config_file(const std::filesystem::path& file, FaultList& faults,
+                            const std::function<void(ConfigNode&)>& prepare = {});
 
 /// The map for `key.sub=value`; relative paths are meant from the working folder.
 ConfigNode parse_assignment(const std::string& assignment, FaultList& faults);

@@ -1,0 +1,20 @@
+// Files that hold one section for others to use: cameras and segmenters.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "stillpoint/runtime/config_node.hpp"
+#include "stillpoint/runtime/fault_list.hpp"
+
+namespace stillpoint {
+
+/// The section `name` of a file, with everything the file extends; null after a fault.
+ConfigNode load_section(const std::filesystem::path& file, const std::string& name,
+                        FaultList& faults);
+
+/// Where a tree says `camera: NAME` or `segmenter: NAME`, puts the section of that file in its
+/// place. NAME is a file, relative to the one that says it, or a name from the config folders.
+void load_named_sections(ConfigNode& tree, FaultList& faults);
+
+}  // namespace stillpoint

@@ -1,0 +1,71 @@
+#include "stillpoint/runtime/section_file.hpp"
+
+#include <utility>
+
+#include "stillpoint/did_you_mean.hpp"
+#include "stillpoint/runtime/config_lookup.hpp"
+#include "stillpoint/runtime/pipeline_config.hpp"
+#include "stillpoint/runtime/yaml_loader.hpp"
+#include "stillpoint/runtime/yaml_option_reader.hpp"
+
+namespace stillpoint {
+
+ConfigNode load_section(const std::filesystem::path& file, const std::string& name,
+                        FaultList& faults) {
+  ConfigNode tree = load_config_file(file, faults);
+  substitute_environment(tree, faults);
+  remove_nulls(tree);
+  for (const ConfigNode& section : tree.children)
+    if (section.key != name && section.key != "version")
+      faults.add(section.key_location, "unknown section '" + section.key + "' in a " + name +
+                                           " file; expected '" + name + "'");
+  const ConfigNode* found = tree.find(name);
+  if (found && found->kind == ConfigNode::Kind::kMap) return *found;
+  if (faults.empty())
+    faults.add({file.string(), 1, 1}, "has no " + name + " section, as in '" + name + ": {…}'");
+  return {};
+}
+
+void load_named_sections(ConfigNode& tree, FaultList& faults) {
+  for (const std::string name : {"camera", "segmenter"}) {
+    ConfigNode* named = tree.find(name);
+    if (!named || named->kind != ConfigNode::Kind::kScalar) continue;
+    substitute_environment(*named, faults);
+    const std::filesystem::path beside = named->folder / named->scalar;
+    std::error_code error;
+    try {
+      ConfigNode section = load_section(std::filesystem::is_regular_file(beside, error)
+                                            ? beside.lexically_normal()
+                                            : find_config(named->scalar, name + "s"),
+                                        name, faults);
+      section.key = name;
+      section.replaces = true;
+      tree.set(std::move(section));
+    } catch (const Error& fault) {
+      faults.add(named->location, name + ": " + fault.what());
+      tree.erase(name);
+    }
+  }
+}
+
+CameraModel load_camera(const std::string& name_or_file) {
+  FaultList faults;
+  const ConfigNode section = load_section(find_config(name_or_file, "cameras"), "camera", faults);
+  faults.throw_if_any();
+  CameraModel camera;
+  YamlOptionReader reader(&section, "camera");
+  camera.visit(reader);
+  reader.finish();
+  reader.faults().throw_if_any();
+  return camera;
+}
+
+std::string camera_yaml(CameraModel camera) {
+  YamlOptionReader reader(nullptr, "camera");
+  camera.visit(reader);
+  OptionRecord document{.kind = OptionRecord::Kind::kGroup};
+  document.children.push_back(reader.record());
+  return print_yaml(document);
+}
+
+}  // namespace stillpoint

@@ -1,0 +1,104 @@
+#include "decision_objects/bayes.hpp"
+
+#include <opencv2/imgproc.hpp>
+
+#include "decision_objects/class_selection.hpp"
+#include "decision_objects/probability.hpp"
+#include "decision_objects/weight_image.hpp"
+
+namespace stillpoint::decision {
+namespace {
+
+std::vector<PointCount> count_points(const Segmentation& segmentation, const MovingPoints& moving) {
+  std::vector<PointCount> counts(segmentation.objects.size());
+  const cv::Mat& instances = segmentation.instances;
+  for (const PointMotion& point : moving.points) {
+    const cv::Point pixel = point.current;
+    if (!cv::Rect({0, 0}, instances.size()).contains(pixel)) continue;
+    const std::uint8_t instance = instances.at<std::uint8_t>(pixel);
+    if (instance == 0) continue;
+    PointCount& count = counts[instance - 1U];
+    ++count.points;
+    count.moving += point.moving ? 1 : 0;
+  }
+  return counts;
+}
+
+}  // namespace
+
+void ClassPolicy::visit(OptionVisitor& v) {
+  v("prior", prior, {.min = 0.001, .max = 0.999, .help = "probability that such an object moves"});
+  v.choice("map", map, {{"never", Map::kNever}, {"when_static", Map::kWhenStatic}},
+           {.help = "whether it may be mapped"});
+}
+
+void Bayes::Options::visit(OptionVisitor& v) {
+  v("classes", classes, {.help = "policies by class name"});
+  v("other", other, {.help = "policy of all other classes"});
+  v("objects", objects, {.help = "belief that a labelled object moves"});
+  v("unlabelled", unlabelled, {.help = "evidence of single points on surfaces"});
+  v("margin", margin,
+    {.min = 0, .max = 50, .unit = "px", .help = "around what moves that is not used either"});
+}
+
+Bayes::Bayes(const Options& options, const StageContext& context)
+    : options_(options), beliefs_(options.objects), field_(options.unlabelled) {
+  policies_.fill(options.other);
+  for (const auto& [name, policy] : options.classes)
+    if (const int id = find_class(context.classes, name); id >= 0)
+      policies_[static_cast<std::size_t>(id)] = policy;
+}
+
+StaticWeights Bayes::decide(const Frame& frame, const Segmentation& segmentation,
+                            const MovingPoints& moving) {
+  StaticWeights weights;
+  field_.update(frame, moving);
+  weigh_surfaces(frame, weights);
+  weights.map = weights.track.clone();
+  weigh_objects(frame, segmentation, moving, weights);
+  return weights;
+}
+
+void Bayes::weigh_surfaces(const Frame& frame, StaticWeights& weights) const {
+  const cv::Mat& field = field_.log_odds();
+  cv::Mat cells(field.size(), CV_8U);
+  for (int y = 0; y < field.rows; ++y)
+    for (int x = 0; x < field.cols; ++x)
+      cells.at<std::uint8_t>(y, x) =
+          weight_of(field.at<float>(y, x) + log_odds(options_.other.prior));
+  cv::resize(cells, weights.track, frame.gray.size(), 0, 0, cv::INTER_NEAREST);
+}
+
+void Bayes::weigh_objects(const Frame& frame, const Segmentation& segmentation,
+                          const MovingPoints& moving, StaticWeights& weights) {
+  std::vector<double> priors;
+  for (const SegmentedObject& object : segmentation.objects)
+    priors.push_back(log_odds(policy_of(object).prior));
+  const auto& beliefs = beliefs_.update(
+      segmentation.objects, priors,
+      moving.reliable ? count_points(segmentation, moving) : std::vector<PointCount>());
+  for (std::size_t i = 0; i < beliefs.size(); ++i) {
+    const bool moves = beliefs[i].moves;
+    const std::uint8_t weight = moves ? 0 : weight_of(beliefs[i].log_odds);
+    const bool never = policy_of(segmentation.objects[i]).map == ClassPolicy::Map::kNever;
+    weights.object_moves.push_back(moves);
+    if (weight == 255 && !never) continue;
+    const ObjectMask mask = mask_of(segmentation, i, options_.margin);
+    lower(weights.track, frame.gray.size(), mask, weight);
+    lower(weights.map, frame.gray.size(), mask, never ? 0 : weight);
+  }
+}
+
+const ClassPolicy& Bayes::policy_of(const SegmentedObject& object) const {
+  return policies_[static_cast<std::size_t>(object.label)];
+}
+
+/// Full weight while moving is unlikely, none when it is likely.
+std::uint8_t Bayes::weight_of(double log_odds) const {
+  constexpr double kUnlikely = 0.15;
+  const double p = probability(log_odds);
+  const double doubt = (p - kUnlikely) / (options_.objects.moves_above - kUnlikely);
+  return static_cast<std::uint8_t>(std::lround(255 * (1 - std::clamp(doubt, 0.0, 1.0))));
+}
+
+}  // namespace stillpoint::decision

@@ -1,0 +1,61 @@
+// Decision `bayes`: the probability of moving of every object over time, from what its class is
+// likely to do and what its points do; unlabelled things that move are found by their points.
+#pragma once
+
+#include <array>
+#include <map>
+#include <string>
+
+#include "decision_objects/motion_field.hpp"
+#include "decision_objects/object_motion.hpp"
+#include "stillpoint/contracts/decision.hpp"
+#include "stillpoint/plugin.hpp"
+
+namespace stillpoint::decision {
+
+/// What is known of a class before any measurement, and what becomes of it in the map.
+struct ClassPolicy {
+  enum class Map { kNever, kWhenStatic };
+  double prior = 0.05;  ///< probability of moving
+  Map map = Map::kWhenStatic;
+
+  void visit(OptionVisitor& visitor);
+};
+
+class Bayes final : public Decision {
+ public:
+  struct Options {
+    std::map<std::string, ClassPolicy> classes = {
+        {"person", {.prior = 0.9, .map = ClassPolicy::Map::kNever}},
+        {"cat", {.prior = 0.8, .map = ClassPolicy::Map::kNever}},
+        {"dog", {.prior = 0.8, .map = ClassPolicy::Map::kNever}},
+        {"chair", {.prior = 0.1}},
+    };
+    ClassPolicy other;
+    ObjectMotionOptions objects;
+    MotionFieldOptions unlabelled;
+    int margin = 5;
+
+    void visit(OptionVisitor& visitor);
+  };
+
+  /// Throws Error(kUsage) for a class that nobody knows.
+  Bayes(const Options& options, const StageContext& context);
+
+  StaticWeights decide(const Frame& frame, const Segmentation& segmentation,
+                       const MovingPoints& moving) override;
+
+ private:
+  const ClassPolicy& policy_of(const SegmentedObject& object) const;
+  void weigh_surfaces(const Frame& frame, StaticWeights& weights) const;
+  void weigh_objects(const Frame& frame, const Segmentation& segmentation,
+                     const MovingPoints& moving, StaticWeights& weights);
+  std::uint8_t weight_of(double log_odds) const;
+
+  Options options_;
+  std::array<ClassPolicy, 256> policies_;  // by class id
+  ObjectBeliefs beliefs_;
+  MotionField field_;
+};
+
+}  // namespace stillpoint::decision

@@ -1,0 +1,86 @@
+#include "decision_objects/motion_field.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace stillpoint::decision {
+namespace {
+
+constexpr float kMostEvidence = 4.0F;  // log-odds, either way: changes of mind stay possible
+constexpr float kDoubt = 0.5F;         // weight of knowing nothing
+constexpr float kBlindReach = 12.0F;   // px, where there is no depth
+constexpr int kMostReach = 20;         // cells; what is very near does not cover the image
+
+/// Depth in the middle of each cell.
+void sample_depth(const cv::Mat& depth, cv::Mat& cells) {
+  constexpr int kCell = MotionField::kCell;
+  cells.create(depth.rows / kCell, depth.cols / kCell, CV_32F);
+  for (int y = 0; y < cells.rows; ++y) {
+    const auto* in = depth.ptr<float>(y * kCell + kCell / 2) + kCell / 2;
+    auto* out = cells.ptr<float>(y);
+    for (int x = 0; x < cells.cols; ++x) out[x] = in[x * kCell];
+  }
+}
+
+}  // namespace
+
+void MotionFieldOptions::visit(OptionVisitor& v) {
+  v("moving", moving, {.min = 0, .max = 10, .unit = "log-odds", .help = "of a moving point"});
+  v("still", still, {.min = 0, .max = 10, .unit = "log-odds", .help = "of a point at rest"});
+  v("memory", memory, {.min = 0, .max = 1, .help = "share of evidence kept to the next frame"});
+  v("reach", reach, {.min = 0.01, .max = 2, .unit = "m", .help = "of a point's evidence"});
+  v("depth_gate", depth_gate,
+    {.min = 0.001, .max = 1, .help = "of a point's depth, beyond which a surface is another"});
+}
+
+void MotionField::update(const Frame& frame, const MovingPoints& moving) {
+  sample_depth(frame.depth, depth_);
+  sums_.create(depth_.size(), CV_32FC2);
+  sums_.setTo(cv::Scalar::all(0));
+  for (const PointMotion& point : moving.points) {
+    const float measured =
+        !moving.reliable ? 0.0F
+                         : static_cast<float>(point.moving ? options_.moving : -options_.still);
+    const float evidence = static_cast<float>(options_.memory) * before(point.previous) + measured;
+    spread(frame, point.current, std::clamp(evidence, -kMostEvidence, kMostEvidence));
+  }
+  log_odds_.create(depth_.size(), CV_32F);
+  for (int y = 0; y < log_odds_.rows; ++y) {
+    const auto* sums = sums_.ptr<cv::Vec2f>(y);
+    auto* out = log_odds_.ptr<float>(y);
+    for (int x = 0; x < log_odds_.cols; ++x) out[x] = sums[x][0] / (sums[x][1] + kDoubt);
+  }
+}
+
+float MotionField::before(const cv::Point2f& pixel) const {
+  const cv::Point cell(cvFloor(pixel.x) / kCell, cvFloor(pixel.y) / kCell);
+  if (!cv::Rect({0, 0}, log_odds_.size()).contains(cell)) return 0;
+  return log_odds_.at<float>(cell);
+}
+
+void MotionField::spread(const Frame& frame, const cv::Point2f& pixel, float evidence) {
+  const cv::Point centre(cvFloor(pixel.x) / kCell, cvFloor(pixel.y) / kCell);
+  if (!cv::Rect({0, 0}, depth_.size()).contains(centre)) return;
+  const float z = depth_.at<float>(centre);
+  const float focal = static_cast<float>(frame.camera->fx);
+  const float reach =
+      (z > 0 ? static_cast<float>(options_.reach) * focal / z : kBlindReach) / kCell;
+  const int cells = std::min(static_cast<int>(reach), kMostReach);
+  const float gate = static_cast<float>(options_.depth_gate) * z;
+  const float falloff = 1 / (reach * reach);
+  for (int y = std::max(0, centre.y - cells); y <= std::min(depth_.rows - 1, centre.y + cells);
+       ++y) {
+    const auto* depth = depth_.ptr<float>(y);
+    auto* sums = sums_.ptr<cv::Vec2f>(y);
+    for (int x = std::max(0, centre.x - cells); x <= std::min(depth_.cols - 1, centre.x + cells);
+         ++x) {
+      if (z > 0 && depth[x] > 0 && std::abs(depth[x] - z) > gate) continue;
+      const auto dx = static_cast<float>(x - centre.x), dy = static_cast<float>(y - centre.y);
+      const float weight = 1 - (dx * dx + dy * dy) * falloff;
+      if (weight <= 0) continue;
+      sums[x] += cv::Vec2f(weight * evidence, weight);
+    }
+  }
+}
+
+}  // namespace stillpoint::decision

@@ -1,0 +1,78 @@
+#include "decision_objects/object_motion.hpp"
+
+#include <algorithm>
+
+#include "decision_objects/probability.hpp"
+
+namespace stillpoint::decision {
+
+void ObjectMotionOptions::visit(OptionVisitor& v) {
+  v("gain", gain,
+    {.min = 0, .max = 1000, .unit = "log-odds", .help = "per share of moving points"});
+  v("share", share,
+    {.min = 0, .max = 1, .help = "of an object's points that move, at which nothing is learnt"});
+  v("rise", rise, {.min = 0, .max = 100, .unit = "log-odds", .help = "per frame at most"});
+  v("fall", fall,
+    {.min = 0, .max = 100, .unit = "log-odds", .help = "per frame at most: who pauses walks on"});
+  v("pull", pull, {.min = 0, .max = 1, .help = "share of the way back to the prior per frame"});
+  v("range", range,
+    {.min = 0, .max = 20, .unit = "log-odds", .help = "by which evidence can outweigh the prior"});
+  v("min_points", min_points, {.min = 1, .help = "on an object, to learn from them"});
+  v("moves_above", moves_above, {.min = 0, .max = 1, .help = "probability: not used from here on"});
+  v("static_below", static_below,
+    {.min = 0, .max = 1, .help = "probability: used again below; weighted in between"});
+  v.require(static_below <= moves_above, "static_below is greater than moves_above");
+}
+
+const std::vector<ObjectBelief>& ObjectBeliefs::update(const std::vector<SegmentedObject>& objects,
+                                                       const std::vector<double>& priors,
+                                                       const std::vector<PointCount>& counts) {
+  std::vector<ObjectBelief> beliefs;
+  for (std::size_t i = 0; i < objects.size(); ++i) {
+    const ObjectBelief* before = known(objects[i]);
+    ObjectBelief belief =
+        before ? *before : ObjectBelief{.log_odds = priors[i], .moves = priors[i] > 0};
+    belief.label = objects[i].label;
+    belief.box = objects[i].box;
+    belief.prior = priors[i];
+    learn(belief, counts.empty() ? PointCount{} : counts[i]);
+    if (objects[i].id >= 0) by_id_[objects[i].id] = belief;
+    beliefs.push_back(belief);
+  }
+  latest_ = std::move(beliefs);
+  return latest_;
+}
+
+const ObjectBelief* ObjectBeliefs::known(const SegmentedObject& object) const {
+  constexpr double kMinOverlap = 0.3;
+  if (object.id >= 0) {
+    const auto found = by_id_.find(object.id);
+    return found == by_id_.end() ? nullptr : &found->second;
+  }
+  const ObjectBelief* best = nullptr;
+  double best_overlap = kMinOverlap;
+  for (const ObjectBelief& belief : latest_) {
+    if (belief.label != object.label) continue;
+    const double common = (belief.box & object.box).area();
+    const double overlap = common / std::max(belief.box.area() + object.box.area() - common, 1.0);
+    if (overlap <= best_overlap) continue;
+    best = &belief;
+    best_overlap = overlap;
+  }
+  return best;
+}
+
+void ObjectBeliefs::learn(ObjectBelief& belief, const PointCount& count) const {
+  belief.log_odds += options_.pull * (belief.prior - belief.log_odds);
+  if (count.points >= options_.min_points) {
+    const double share = static_cast<double>(count.moving) / count.points;
+    belief.log_odds +=
+        std::clamp(options_.gain * (share - options_.share), -options_.fall, options_.rise);
+  }
+  belief.log_odds =
+      std::clamp(belief.log_odds, belief.prior - options_.range, belief.prior + options_.range);
+  const double p = probability(belief.log_odds);
+  belief.moves = belief.moves ? p > options_.static_below : p > options_.moves_above;
+}
+
+}  // namespace stillpoint::decision

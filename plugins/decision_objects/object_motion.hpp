@@ -1,0 +1,62 @@
+// The belief that an object moves, over time.
+#pragma once
+
+#include <map>
+#include <vector>
+
+#include "stillpoint/contracts/moving_points.hpp"
+#include "stillpoint/contracts/segmentation.hpp"
+#include "stillpoint/options.hpp"
+
+namespace stillpoint::decision {
+
+struct ObjectMotionOptions {
+  double gain = 15.0;         ///< log-odds per share of moving points above or below `share`
+  double share = 0.1;         ///< of an object's points that move, at which nothing is learnt
+  double rise = 1.5;          ///< log-odds per frame, most
+  double fall = 0.3;          ///< log-odds per frame, most: people who pause go on walking
+  double pull = 0.02;         ///< share of the way back to the class prior, per frame
+  double range = 3.5;         ///< log-odds that evidence can outweigh the prior by
+  int min_points = 4;         ///< on an object, for evidence
+  double moves_above = 0.7;   ///< probability
+  double static_below = 0.4;  ///< probability
+
+  void visit(OptionVisitor& visitor);
+};
+
+/// What is believed of one object.
+struct ObjectBelief {
+  int label = 0;
+  cv::Rect box;  ///< where it was last
+  double prior = 0.0;
+  double log_odds = 0.0;  ///< of moving
+  bool moves = false;     ///< with hysteresis
+};
+
+/// How many of the checked points lie on an object.
+struct PointCount {
+  int points = 0;
+  int moving = 0;
+};
+
+/// Follows objects by their id, or by overlap with the frame before where a stage gives none.
+class ObjectBeliefs {
+ public:
+  explicit ObjectBeliefs(const ObjectMotionOptions& options) : options_(options) {}
+
+  /// One belief per object, in the same order. `priors` are log-odds per object; counts are empty
+  /// when the moving check was not reliable.
+  const std::vector<ObjectBelief>& update(const std::vector<SegmentedObject>& objects,
+                                          const std::vector<double>& priors,
+                                          const std::vector<PointCount>& counts);
+
+ private:
+  const ObjectBelief* known(const SegmentedObject& object) const;
+  void learn(ObjectBelief& belief, const PointCount& count) const;
+
+  ObjectMotionOptions options_;
+  std::vector<ObjectBelief> latest_;
+  std::map<int, ObjectBelief> by_id_;
+};
+
+}  // namespace stillpoint::decision

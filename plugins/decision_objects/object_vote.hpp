@@ -1,0 +1,40 @@
+// Decision `object_vote`: an object with enough moving points on it moves (DS-SLAM III-D).
+#pragma once
+
+#include <bitset>
+
+#include "stillpoint/contracts/decision.hpp"
+#include "stillpoint/plugin.hpp"
+
+namespace stillpoint::decision {
+
+/// The features of what moves are removed; people who stand still keep theirs.
+class ObjectVote final : public Decision {
+ public:
+  enum class Unsure { kStatic, kMoves };
+  struct Options {
+    std::vector<std::string> labels = {"person"};
+    int min_moving_points = 3;
+    double min_moving_share = 0.1;
+    int reach = 0;
+    int margin = 5;
+    Unsure unsure = Unsure::kMoves;
+
+    void visit(OptionVisitor& visitor);
+  };
+
+  /// Throws Error(kUsage) for a class that is not there.
+  ObjectVote(const Options& options, const StageContext& context);
+
+  StaticWeights decide(const Frame& frame, const Segmentation& segmentation,
+                       const MovingPoints& moving) override;
+
+ private:
+  bool moves(const Segmentation& segmentation, std::size_t object,
+             const MovingPoints& moving) const;
+
+  Options options_;
+  std::bitset<256> labels_;
+};
+
+}  // namespace stillpoint::decision

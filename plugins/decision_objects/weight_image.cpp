@@ -1,0 +1,34 @@
+#include "decision_objects/weight_image.hpp"
+
+#include <opencv2/imgproc.hpp>
+
+namespace stillpoint::decision {
+
+ObjectMask mask_of(const Segmentation& segmentation, std::size_t index, int margin) {
+  const cv::Mat& instances = segmentation.instances;
+  const cv::Rect image({0, 0}, instances.size());
+  const cv::Rect& box = segmentation.objects[index].box;
+  const int grow = std::max(margin, 0);
+  const cv::Rect grown =
+      cv::Rect(box.x - grow, box.y - grow, box.width + 2 * grow, box.height + 2 * grow) & image;
+  if (grown.empty()) return {};
+  ObjectMask object{grown, instances(grown) == static_cast<int>(index) + 1};
+  if (margin == 0) return object;
+  const int side = 2 * std::abs(margin) + 1;
+  const cv::Mat square = cv::Mat::ones(side, side, CV_8U);
+  cv::morphologyEx(object.mask, object.mask, margin > 0 ? cv::MORPH_DILATE : cv::MORPH_ERODE,
+                   square, {-1, -1}, 1, cv::BORDER_CONSTANT,
+                   margin > 0 ? cv::Scalar(0) : cv::Scalar(255));
+  return object;
+}
+
+void lower(cv::Mat& weights, cv::Size size, const ObjectMask& object, std::uint8_t weight) {
+  if (object.box.empty()) return;
+  if (weights.empty()) weights = cv::Mat(size, CV_8UC1, cv::Scalar(255));
+  cv::Mat part = weights(object.box);
+  cv::Mat lowered;
+  cv::min(part, cv::Scalar(weight), lowered);
+  lowered.copyTo(part, object.mask);
+}
+
+}  // namespace stillpoint::decision

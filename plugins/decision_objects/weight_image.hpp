@@ -1,0 +1,23 @@
+// Painting weights onto the pixels of objects.
+#pragma once
+
+#include <opencv2/core/mat.hpp>
+
+#include "stillpoint/contracts/segmentation.hpp"
+
+namespace stillpoint::decision {
+
+/// Object `index` of a segmentation, cut out.
+struct ObjectMask {
+  cv::Rect box;  ///< px, of the mask in the image; empty when the object has no pixels
+  cv::Mat mask;  ///< CV_8UC1, 255 on the object
+};
+
+/// The object's pixels and those up to `margin` px away: outlines are not exact, and a feature's
+/// surroundings count as well. `margin` < 0 gives the object without its rim.
+ObjectMask mask_of(const Segmentation& segmentation, std::size_t index, int margin);
+
+/// Lowers the weights under the mask to at most `weight`. An empty image is full of 255.
+void lower(cv::Mat& weights, cv::Size size, const ObjectMask& object, std::uint8_t weight);
+
+}  // namespace stillpoint::decision
