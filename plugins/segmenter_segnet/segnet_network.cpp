@@ -45,6 +45,7 @@ class NetworkBuilder {
   void add(const LayerDefinition& layer) {
     const std::vector<Blob> inputs = inputs_of(layer);
     std::vector<BlobShape> shapes;
+    shapes.reserve(inputs.size());
     for (const Blob& input : inputs) shapes.push_back(input.shape);
     const auto found = weights_.find(layer.name);
     TranslatedLayer translated =

@@ -6,6 +6,7 @@
 #include <limits>
 #include <opencv2/core/utility.hpp>
 
+#include "segmenter_segnet/caffe_weights.hpp"
 #include "segmenter_segnet/test_network.hpp"
 #include "segmenter_segnet/test_reference.hpp"
 #include "stillpoint/error.hpp"
@@ -164,11 +165,14 @@ TEST_F(SegnetNetworkTest, ScoresAreTheSameEveryTime) {
   cv::setNumThreads(threads_before);
 }
 
-TEST_F(SegnetNetworkTest, SegnetBasicFitsItsPublishedSize) {
-  const SegnetNetwork network = load(testing::segnet_basic(360, 480, 64, 11, 1));
+TEST_F(SegnetNetworkTest, SegnetBasicRunsAtItsPublishedSize) {
+  TestNetwork published = testing::segnet_basic(360, 480, 64, 11, 1);
+  SegnetNetwork network = load(published);
   EXPECT_EQ(network.input_size(), cv::Size(480, 360));
   EXPECT_EQ(network.output_size(), cv::Size(480, 360));
-  EXPECT_EQ(network.channels(), 11);
+  const cv::Mat scores = network.scores(published.image());
+  EXPECT_EQ(shape_of(scores), (std::vector<int>{1, 11, 360, 480}));
+  EXPECT_TRUE(cv::checkRange(scores.reshape(1, 11 * 360)));
 }
 
 TEST_F(SegnetNetworkTest, Vgg16FitsThePaperSize) {

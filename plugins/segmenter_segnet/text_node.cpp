@@ -1,10 +1,10 @@
 #include "segmenter_segnet/text_node.hpp"
 
+#include <algorithm>
 #include <cctype>
 #include <charconv>
 #include <fstream>
 #include <iterator>
-#include <ranges>
 
 #include "stillpoint/error.hpp"
 
@@ -123,9 +123,9 @@ class TextParser {
 }  // namespace
 
 const TextNode* TextNode::find(std::string_view field) const {
-  for (const TextNode& node : std::views::reverse(fields))
-    if (node.name == field) return &node;
-  return nullptr;
+  const auto found = std::find_if(fields.rbegin(), fields.rend(),
+                                  [&](const TextNode& node) { return node.name == field; });
+  return found == fields.rend() ? nullptr : &*found;
 }
 
 std::vector<const TextNode*> TextNode::all(std::string_view field) const {
