@@ -108,6 +108,7 @@ void run_missing(const std::vector<PlannedCell>& cells, const std::string& progr
     }
   };
   std::vector<std::future<void>> running;
+  running.reserve(static_cast<std::size_t>(workers));
   for (int i = 0; i < workers; ++i) running.push_back(std::async(std::launch::async, work));
   for (std::future<void>& worker : running) worker.wait();
   for (std::future<void>& worker : running) worker.get();
