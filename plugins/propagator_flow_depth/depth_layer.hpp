@@ -1,0 +1,25 @@
+// The depths an object takes up.
+#pragma once
+
+#include <opencv2/core/mat.hpp>
+
+namespace stillpoint {
+
+/// Metres. `far` 0: nothing is known.
+struct DepthLayer {
+  float near = 0.0f;
+  float middle = 0.0f;  ///< median
+  float far = 0.0f;
+
+  bool known() const { return far > 0; }
+  bool contains(float depth) const { return depth >= near && depth <= far; }
+  DepthLayer moved_by(float metres) const {
+    return known() ? DepthLayer{near + metres, middle + metres, far + metres} : *this;
+  }
+};
+
+/// From the measurements under a mask (CV_8UC1, both of one size): those that hang together with
+/// the median, without gaps. What a mask wrongly has of the things behind is beyond such a gap.
+DepthLayer depth_layer(const cv::Mat& depth, const cv::Mat& mask);
+
+}  // namespace stillpoint

@@ -1,0 +1,260 @@
+#include "propagator_flow_depth/flow_depth_propagator.hpp"
+
+#include <algorithm>
+#include <opencv2/imgproc.hpp>
+
+#include "propagator_flow_depth/mask_warp.hpp"
+#include "propagator_flow_depth/object_matching.hpp"
+
+namespace stillpoint {
+namespace {
+
+constexpr std::size_t kHistory = 30;  // views
+constexpr double kSupport = 0.25;     // share of measurements in the layer
+
+cv::Rect grown(cv::Rect box, int by, cv::Size image) {
+  return cv::Rect(box.x - by, box.y - by, box.width + 2 * by, box.height + 2 * by) &
+         cv::Rect({}, image);
+}
+
+void check_size(const Segmentation& segmentation, const Frame& frame) {
+  if (!segmentation.known() || segmentation.labels.size() == frame.gray.size()) return;
+  const auto text = [](cv::Size size) {
+    return std::to_string(size.width) + " x " + std::to_string(size.height);
+  };
+  throw Error(Fault::kStage,
+              "the labels have " + text(segmentation.labels.size()) +
+                  " pixels, but the frame has " + text(frame.gray.size()),
+              "", "the segmenter must give labels of the frame's size");
+}
+
+/// Where the tracked points say that the object is now, with room for its outline to move.
+cv::Rect search_region(const FollowedObject& object, int margin, cv::Size image) {
+  cv::Rect2f box = object.reference_box;
+  cv::Point2f least = median_motion(object.tracks).shift;
+  cv::Point2f most = least;
+  for (const Track& track : object.tracks) {
+    if (track.lost) continue;
+    const cv::Point2f shift = track.current - track.reference;
+    least = {std::min(least.x, shift.x), std::min(least.y, shift.y)};
+    most = {std::max(most.x, shift.x), std::max(most.y, shift.y)};
+  }
+  const cv::Rect2f reached(box.tl() + least, box.br() + most);
+  return grown(reached, 3 * margin, image);
+}
+
+}  // namespace
+
+void FlowDepthPropagator::Options::visit(OptionVisitor& v) {
+  v("points", points, {.min = 4, .max = 500, .help = "followed on each object"});
+  v("max_flow_error", max_flow_error,
+    {.min = 0.05,
+     .max = 20,
+     .unit = "px",
+     .help = "points that miss their start by more when followed backwards are dropped"});
+  v("min_points", min_points,
+    {.min = 0, .help = "fewer do not support an object that the network misses"});
+  v("keep_seconds", keep_seconds,
+    {.min = 0, .max = 60, .unit = "s", .help = "how long such an object is kept"});
+  v("max_misses", max_misses,
+    {.min = 0, .help = "results in a row without the object that end it, too"});
+  v("margin", margin,
+    {.min = 2, .max = 40, .unit = "px", .help = "how far outlines may move to an edge of depth"});
+  v("depth_tolerance", depth_tolerance,
+    {.min = 0.01,
+     .max = 2,
+     .unit = "m",
+     .help = "depths that differ by more at 2 m are different"});
+  v("min_object_pixels", min_object_pixels,
+    {.min = 1, .unit = "px", .help = "smaller objects become background"});
+}
+
+Segmentation FlowDepthPropagator::propagate(const Segmentation& segmentation, const Frame& from,
+                                            const Frame& to) {
+  check_size(segmentation, from);
+  View view = make_view(to);
+  if (!history_.empty() && history_.back().size() != view.size()) {
+    history_.clear();
+    objects_.clear();
+  }
+  history_.push_back(std::move(view));
+  if (segmentation.frame != learnt_frame_) {
+    learnt_frame_ = segmentation.frame;
+    known_ |= segmentation.known();
+    if (segmentation.known()) learn(segmentation, view_of(from));
+  }
+  bring_tracks_forward();
+  View& now = history_.back();
+  for (FollowedObject& object : objects_) place(object, now);
+  std::erase_if(objects_, [&](const FollowedObject& object) { return !supported(object, now); });
+  compose(now);
+  for (FollowedObject& object : objects_) renew_reference(object, now);
+  while (history_.size() > kHistory) history_.pop_front();
+  return result(now, to);
+}
+
+const View& FlowDepthPropagator::view_of(const Frame& frame) {
+  const auto place = std::ranges::lower_bound(history_, frame.index, {}, &View::frame);
+  if (place != history_.end() && place->frame == frame.index) return *place;
+  return *history_.insert(place, make_view(frame));
+}
+
+/// The view itself, or the one before it when nothing has been placed in it yet.
+const View& FlowDepthPropagator::followed_near(const View& view) const {
+  const auto place = std::ranges::lower_bound(history_, view.frame, {}, &View::frame);
+  return place->instances.empty() && place != history_.begin() ? *(place - 1) : *place;
+}
+
+void FlowDepthPropagator::learn(const Segmentation& segmentation, const View& view) {
+  Segmentation found = segmentation;
+  if (found.instances.empty()) find_objects(found, options_.min_object_pixels);
+  cv::Mat instances;
+  cv::resize(found.instances, instances, view.size(), 0, 0, cv::INTER_NEAREST);
+  std::vector<cv::Mat> masks;
+  std::vector<DepthLayer> layers;
+  for (std::size_t i = 0; i < found.objects.size(); ++i) {
+    masks.push_back(instances == static_cast<int>(i) + 1);
+    layers.push_back(depth_layer(view.depth, masks.back()));
+  }
+  const View& before = followed_near(view);
+  const Matches matches =
+      match_objects({found.objects, instances, layers, objects_, before.instances, before.ids});
+
+  std::vector<FollowedObject> next;
+  std::vector<bool> seen(objects_.size(), false);
+  for (std::size_t i = 0; i < found.objects.size(); ++i) {
+    const cv::Rect box = cv::boundingRect(masks[i]);
+    if (box.empty()) continue;
+    const int known = matches.followed_of[i];
+    FollowedObject object;
+    if (known >= 0) {
+      object = std::move(objects_[static_cast<std::size_t>(known)]);
+      seen[static_cast<std::size_t>(known)] = true;
+    } else {
+      object.id = next_id_++;
+      object.label = found.objects[i].label;
+    }
+    object.score = found.objects[i].score;
+    object.seen_frame = view.frame;
+    object.seen_time = view.time;
+    ++object.sightings;
+    object.misses = 0;
+    set_reference(object, masks[i], box, view);
+    next.push_back(std::move(object));
+  }
+  for (std::size_t f = 0; f < objects_.size(); ++f) {
+    if (seen[f] || matches.covered[f]) continue;
+    miss(objects_[f], before);
+    next.push_back(std::move(objects_[f]));
+  }
+  objects_ = std::move(next);
+}
+
+/// What was out of view could not be found.
+void FlowDepthPropagator::miss(FollowedObject& object, const View& view) const {
+  if (std::ranges::find(view.ids, object.id) != view.ids.end()) ++object.misses;
+}
+
+void FlowDepthPropagator::set_reference(FollowedObject& object, const cv::Mat& mask, cv::Rect box,
+                                        const View& view) const {
+  object.reference_mask = mask;
+  object.reference_box = box;
+  object.reference_layer = depth_layer(view.depth(box), mask(box));
+  object.tracks = choose_points(view, mask, box, options_.points);
+  std::erase_if(object.tracks, [&](const Track& track) {
+    return track.reference_depth > 0 && object.reference_layer.known() &&
+           !object.reference_layer.contains(track.reference_depth);
+  });
+  object.first_tracks = object.tracks.size();
+  object.tracked_frame = view.frame;
+}
+
+void FlowDepthPropagator::bring_tracks_forward() {
+  for (std::size_t i = 1; i < history_.size(); ++i) {
+    std::vector<Track*> tracks;
+    for (FollowedObject& object : objects_) {
+      if (object.tracked_frame != history_[i - 1].frame) continue;
+      object.tracked_frame = history_[i].frame;
+      for (Track& track : object.tracks) tracks.push_back(&track);
+    }
+    follow(history_[i - 1], history_[i], tracks,
+           static_cast<float>(options_.max_flow_error / kViewScale));
+  }
+  for (FollowedObject& object : objects_) std::erase_if(object.tracks, &Track::lost);
+}
+
+void FlowDepthPropagator::place(FollowedObject& object, const View& view) const {
+  const int margin = std::max(1, options_.margin / kViewScale);
+  object.box = search_region(object, margin, view.size());
+  if (object.box.empty()) {
+    object.mask.release();
+    return;
+  }
+  const cv::Mat predicted = warp_mask(object.reference_mask, object.tracks, object.box);
+  object.layer = object.reference_layer.moved_by(median_motion(object.tracks).depth);
+  const cv::Mat depth = view.depth(object.box);
+  object.mask = fit_to_depth(predicted, depth, object.layer,
+                             {.margin = margin, .tolerance = options_.depth_tolerance});
+  const int measured = cv::countNonZero(predicted & (depth > 0));
+  const int kept = cv::countNonZero(object.mask & predicted & (depth > 0));
+  object.support = measured > 0 ? static_cast<double>(kept) / measured : 1.0;
+}
+
+bool FlowDepthPropagator::supported(const FollowedObject& object, const View& view) const {
+  if (object.seen_frame == learnt_frame_) return true;
+  if (view.time - object.seen_time > options_.keep_seconds) return false;
+  if (object.misses > std::min(object.sightings, options_.max_misses)) return false;
+  return object.tracks.size() >= static_cast<std::size_t>(options_.min_points) &&
+         object.support >= kSupport && !object.mask.empty() &&
+         cv::countNonZero(object.mask) * kViewScale * kViewScale >= options_.min_object_pixels;
+}
+
+void FlowDepthPropagator::renew_reference(FollowedObject& object, const View& view) const {
+  const bool worn = 3 * object.tracks.size() < object.first_tracks;
+  if (!worn || object.mask.empty()) return;
+  const cv::Rect box = cv::boundingRect(object.mask) + object.box.tl();
+  if (cv::boundingRect(object.mask).empty()) return;
+  cv::Mat mask(view.size(), CV_8UC1, cv::Scalar(0));
+  object.mask.copyTo(mask(object.box));
+  set_reference(object, mask, box, view);
+}
+
+/// The nearer object has what two of them claim.
+void FlowDepthPropagator::compose(View& view) {
+  std::ranges::stable_sort(objects_, {}, [](const FollowedObject& object) {
+    return object.layer.known() ? object.layer.middle : 1e9f;
+  });
+  view.instances = cv::Mat(view.size(), CV_8UC1, cv::Scalar(0));
+  view.ids.clear();
+  for (FollowedObject& object : objects_) {
+    if (object.mask.empty() || view.ids.size() == 255) continue;
+    cv::Mat place = view.instances(object.box);
+    object.mask &= place == 0;
+    if (cv::countNonZero(object.mask) * kViewScale * kViewScale < options_.min_object_pixels)
+      continue;
+    view.ids.push_back(object.id);
+    place.setTo(static_cast<int>(view.ids.size()), object.mask);
+  }
+}
+
+Segmentation FlowDepthPropagator::result(const View& view, const Frame& frame) const {
+  Segmentation result{.frame = frame.index};
+  if (!known_) return result;
+  cv::resize(view.instances, result.instances, frame.gray.size(), 0, 0, cv::INTER_NEAREST);
+  cv::Mat labels(1, 256, CV_8UC1, cv::Scalar(0));
+  for (std::size_t i = 0; i < view.ids.size(); ++i) {
+    const auto& object = *std::ranges::find(objects_, view.ids[i], &FollowedObject::id);
+    const int instance = static_cast<int>(i) + 1;
+    labels.at<unsigned char>(instance) = static_cast<unsigned char>(object.label);
+    const cv::Mat mask = result.instances == instance;
+    result.objects.push_back({.id = object.id,
+                              .label = object.label,
+                              .box = cv::boundingRect(mask),
+                              .pixels = cv::countNonZero(mask),
+                              .score = object.score});
+  }
+  cv::LUT(result.instances, labels, result.labels);
+  return result;
+}
+
+}  // namespace stillpoint

@@ -1,0 +1,59 @@
+// Labels that follow what they were given to.
+#pragma once
+
+#include <deque>
+#include <vector>
+
+#include "propagator_flow_depth/followed_object.hpp"
+#include "propagator_flow_depth/mask_fit.hpp"
+#include "propagator_flow_depth/view.hpp"
+#include "stillpoint/sdk.hpp"
+
+namespace stillpoint {
+
+/// Every object keeps the mask that the network gave it in its reference view, and points followed
+/// on it since. In the current view the mask is where these points have gone to, with its outline
+/// on the edges of the depth image.
+class FlowDepthPropagator final : public Propagator {
+ public:
+  struct Options {
+    int points = 40;               ///< followed per object
+    double max_flow_error = 1.0;   ///< px, forwards and backwards
+    int min_points = 5;            ///< fewer do not support an object that the network misses
+    double keep_seconds = 1.5;     ///< that such an object lives
+    int max_misses = 5;            ///< results in a row without the object that end it, too
+    int margin = 8;                ///< px that outlines may move outwards to an edge of depth
+    double depth_tolerance = 0.1;  ///< metres at 2 m
+    int min_object_pixels = 100;   ///< smaller objects are left out
+
+    void visit(OptionVisitor& visitor);
+  };
+
+  explicit FlowDepthPropagator(Options options) : options_(options) {}
+
+  Segmentation propagate(const Segmentation& segmentation, const Frame& from,
+                         const Frame& to) override;
+
+ private:
+  const View& view_of(const Frame& frame);
+  const View& followed_near(const View& view) const;
+  void learn(const Segmentation& segmentation, const View& view);
+  void miss(FollowedObject& object, const View& view) const;
+  void set_reference(FollowedObject& object, const cv::Mat& mask, cv::Rect box,
+                     const View& view) const;
+  void bring_tracks_forward();
+  void place(FollowedObject& object, const View& view) const;
+  bool supported(const FollowedObject& object, const View& view) const;
+  void renew_reference(FollowedObject& object, const View& view) const;
+  void compose(View& view);
+  Segmentation result(const View& view, const Frame& frame) const;
+
+  Options options_;
+  std::vector<FollowedObject> objects_;
+  std::deque<View> history_;            // in order of frames, the current one last
+  std::uint32_t learnt_frame_ = kNoId;  // of the newest segmentation
+  bool known_ = false;                  // whether there have been labels
+  int next_id_ = 0;
+};
+
+}  // namespace stillpoint

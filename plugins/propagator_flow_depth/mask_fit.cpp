@@ -1,0 +1,62 @@
+#include "propagator_flow_depth/mask_fit.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <opencv2/imgproc.hpp>
+
+namespace stillpoint {
+namespace {
+
+constexpr float kDepthWeight = 1.2f;  // more than the mask's 1: depth can cut its middle, too
+constexpr int kSurroundings = 4;      // margins to either side, over which depths are averaged
+
+/// Mean of `depth` around each pixel over those in `mask` (0 or 255); 0 where there are none.
+cv::Mat local_depth(const cv::Mat& depth, const cv::Mat& mask, cv::Size window) {
+  cv::Mat weights, sum, count;
+  mask.convertTo(weights, CV_32F, 1.0 / 255);
+  cv::boxFilter(depth.mul(weights), sum, CV_32F, window, {-1, -1}, false, cv::BORDER_CONSTANT);
+  cv::boxFilter(weights, count, CV_32F, window, {-1, -1}, false, cv::BORDER_CONSTANT);
+  cv::Mat mean = sum / cv::max(count, 1.0f);
+  mean.setTo(0, count < 0.5f);
+  return mean;
+}
+
+/// > 0: depth speaks for the object.
+float depth_vote(float depth, float object, float surroundings, const DepthLayer& layer,
+                 float tolerance) {
+  if (!(depth > 0) || !layer.known()) return 0.0f;
+  if (depth < layer.near - tolerance || depth > layer.far + tolerance) return -kDepthWeight;
+  if (object == 0 || surroundings == 0) return 0.0f;
+  const float difference = std::abs(depth - surroundings) - std::abs(depth - object);
+  return kDepthWeight * std::clamp(difference / tolerance, -1.0f, 1.0f);
+}
+
+}  // namespace
+
+cv::Mat fit_to_depth(const cv::Mat& predicted, const cv::Mat& depth, const DepthLayer& layer,
+                     const MaskFitOptions& options) {
+  const cv::Size window = cv::Size(2, 2) * (kSurroundings * options.margin) + cv::Size(1, 1);
+  const cv::Mat measured = depth > 0;
+  cv::Mat in_layer;
+  cv::inRange(depth, layer.near, layer.far, in_layer);
+  const cv::Mat object = local_depth(depth, predicted & in_layer, window);
+  const cv::Mat surroundings = local_depth(depth, ~predicted & measured, window);
+  cv::Mat nearness;  // 0: outside by the margin or more, 255: inside
+  cv::blur(predicted, nearness, cv::Size(2, 2) * options.margin + cv::Size(1, 1), {-1, -1},
+           cv::BORDER_REPLICATE);
+
+  cv::Mat fitted(predicted.size(), CV_8UC1);
+  for (int y = 0; y < fitted.rows; ++y)
+    for (int x = 0; x < fitted.cols; ++x) {
+      const int near = nearness.at<unsigned char>(y, x);
+      const float z = depth.at<float>(y, x);
+      const auto tolerance = static_cast<float>(options.tolerance) * std::max(0.5f, z * z / 4);
+      const float votes =
+          static_cast<float>(near) / 127.5f - 1.0f +
+          depth_vote(z, object.at<float>(y, x), surroundings.at<float>(y, x), layer, tolerance);
+      fitted.at<unsigned char>(y, x) = near > 0 && votes > 0 ? 255 : 0;
+    }
+  return fitted;
+}
+
+}  // namespace stillpoint

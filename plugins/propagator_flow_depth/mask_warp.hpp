@@ -1,0 +1,25 @@
+// Where the mask of an object should be now, by the points followed on it.
+#pragma once
+
+#include <opencv2/core/mat.hpp>
+#include <span>
+
+#include "propagator_flow_depth/point_follower.hpp"
+
+namespace stillpoint {
+
+/// Robust mean motion of an object since its reference view.
+struct ObjectMotion {
+  cv::Point2f shift;   ///< px
+  float depth = 0.0f;  ///< metres, > 0 away from the camera
+};
+
+/// Medians over the tracks that are not lost; zero without tracks.
+ObjectMotion median_motion(std::span<const Track> tracks);
+
+/// The reference mask (CV_8UC1, 0 or 255) as it lies in the part `region` of the current view.
+/// Every pixel moves as the tracks around it, so that legs swing. Beyond the edge of the image,
+/// masks go on as they are at the edge, because what comes into view is mostly more of the object.
+cv::Mat warp_mask(const cv::Mat& reference, std::span<const Track> tracks, cv::Rect region);
+
+}  // namespace stillpoint

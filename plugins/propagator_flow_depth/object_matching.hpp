@@ -1,0 +1,32 @@
+// Which object found by the network is which of those followed.
+#pragma once
+
+#include <opencv2/core.hpp>
+#include <span>
+#include <vector>
+
+#include "propagator_flow_depth/followed_object.hpp"
+#include "stillpoint/contracts/segmentation.hpp"
+
+namespace stillpoint {
+
+/// What was found in a view, and what was followed there.
+struct MatchInput {
+  std::span<const SegmentedObject> found;
+  const cv::Mat& found_instances;            ///< CV_8UC1, 1 + index into `found`; of a view's size
+  std::span<const DepthLayer> found_layers;  ///< of `found`
+  std::span<const FollowedObject> followed;
+  const cv::Mat& followed_instances;  ///< CV_8UC1, 1 + index into `followed_ids`; may be empty
+  std::span<const int> followed_ids;
+};
+
+struct Matches {
+  std::vector<int> followed_of;  ///< per found object: index into `followed`, -1 = new
+  std::vector<bool> covered;     ///< per followed object: found objects lie over most of it
+};
+
+/// Objects of one class whose masks overlap and that are about as far away, the largest overlaps
+/// first.
+Matches match_objects(const MatchInput& input);
+
+}  // namespace stillpoint

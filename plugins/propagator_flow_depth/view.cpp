@@ -1,0 +1,31 @@
+#include "propagator_flow_depth/view.hpp"
+
+#include <algorithm>
+#include <opencv2/imgproc.hpp>
+
+#include "propagator_flow_depth/point_follower.hpp"
+
+namespace stillpoint {
+
+View make_view(const Frame& frame) {
+  View view{.frame = frame.index, .time = frame.time};
+  view.focal_length = frame.camera ? frame.camera->fx / kViewScale : frame.gray.cols / kViewScale;
+  const cv::Size size(std::max(1, frame.gray.cols / kViewScale),
+                      std::max(1, frame.gray.rows / kViewScale));
+  cv::Mat gray;
+  cv::resize(frame.gray, gray, size, 0, 0, cv::INTER_AREA);
+  view.pyramid = flow_pyramid(gray);
+  if (frame.depth.empty())
+    view.depth = cv::Mat(size, CV_32FC1, cv::Scalar(0));
+  else
+    cv::resize(frame.depth, view.depth, size, 0, 0, cv::INTER_NEAREST);
+  return view;
+}
+
+float depth_at(const View& view, cv::Point2f position) {
+  const int x = std::clamp(cvRound(position.x), 0, view.depth.cols - 1);
+  const int y = std::clamp(cvRound(position.y), 0, view.depth.rows - 1);
+  return view.depth.at<float>(y, x);
+}
+
+}  // namespace stillpoint
