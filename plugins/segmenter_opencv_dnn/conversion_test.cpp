@@ -8,19 +8,33 @@
 namespace stillpoint {
 namespace {
 
-int convert(const std::filesystem::path& from, const std::filesystem::path& to) {
+namespace fs = std::filesystem;
+
+fs::path test_data() { return STILLPOINT_SOURCE_DIR "/plugins/segmenter_opencv_dnn/test_data"; }
+
+int convert(const fs::path& from, const fs::path& to, const std::string& options = {}) {
   const std::string command = "'" STILLPOINT_SOURCE_DIR "/tools/convert_model' '" + from.string() +
-                              "' '" + to.string() + "'";
+                              "' '" + to.string() + "' " + options;
   return std::system(command.c_str());
 }
 
 TEST(Conversion, IsReproducible) {
   const testing::TemporaryFolder folder;
-  const auto published =
-      std::filesystem::path(STILLPOINT_SOURCE_DIR) /
-      "plugins/segmenter_opencv_dnn/test_data/selfie_segmentation_landscape.tflite";
-  ASSERT_EQ(convert(published, folder.path() / "net.onnx"), 0);
+  ASSERT_EQ(
+      convert(test_data() / "selfie_segmentation_landscape.tflite", folder.path() / "net.onnx"), 0);
   EXPECT_EQ(read_file(folder.path() / "net.onnx"), read_file(shipped_model()));
+}
+
+// A random network with 8-bit weights and activations, as the larger published ones have them, for
+// another input size; quantised.onnx was made by an independent converter.
+TEST(Conversion, DequantisesAndResizes) {
+  const testing::TemporaryFolder folder;
+  ASSERT_EQ(convert(test_data() / "quantised.tflite", folder.path() / "net.onnx",
+                    "--size 385x513 --opset 9 --skip-padding --output float_seg=segments "
+                    "--output float_parts=part_heatmaps --output float_heat=heatmaps "
+                    "--comment 'a quantised network'"),
+            0);
+  EXPECT_EQ(read_file(folder.path() / "net.onnx"), read_file(test_data() / "quantised.onnx"));
 }
 
 TEST(Conversion, RefusesOtherFiles) {
