@@ -23,8 +23,9 @@ class CornerGrid {
     for (int y = border_; y < scores_.rows - border_; ++y) scan_row(y);
   }
 
-  void accept(std::span<const cv::Point2f> kept, double quality, Corners& corners) {
-    const float threshold = static_cast<float>(quality) * strongest_;
+  void accept(std::span<const cv::Point2f> kept, double min_gradient, Corners& corners) {
+    // cv::cornerMinEigenVal scales gradients to [0, 1] and averages their squares.
+    const auto threshold = static_cast<float>(min_gradient * min_gradient / (255.0 * 255.0));
     for (std::size_t i = 0; i < kept.size(); ++i) {
       const cv::Point at(cvRound(kept[i].x / 2), cvRound(kept[i].y / 2));
       if (!inside(at)) continue;
@@ -52,7 +53,6 @@ class CornerGrid {
     for (int x = border_; x < scores_.cols - border_; ++x) {
       Best& best = best_[cell_of(x, y)];
       if (row[x] > best.score) best = {row[x], {x, y}};
-      strongest_ = std::max(strongest_, row[x]);
     }
   }
 
@@ -76,7 +76,6 @@ class CornerGrid {
   std::vector<bool> taken_;
   std::vector<Best> best_;
   cv::Mat scores_;
-  float strongest_ = 0;
 };
 
 Corners strongest_corners(const cv::Mat& gray, const CornerOptions& options) {
@@ -94,10 +93,15 @@ void CornerOptions::visit(OptionVisitor& v) {
            {.help = "the strongest corner of every cell, or the strongest ones anywhere"});
   v("max_corners", max_corners,
     {.min = 8, .max = 100000, .help = "corners followed from the previous frame"});
+  v("min_gradient", min_gradient,
+    {.min = 0,
+     .max = 255,
+     .unit = "grey levels/px",
+     .help = "of grid: least gradient in every direction, in the image at half its size"});
   v("corner_quality", corner_quality,
-    {.min = 0, .max = 1, .help = "weaker than this share of the strongest is no corner"});
+    {.min = 0, .max = 1, .help = "of shi_tomasi: least score, as a share of the strongest one"});
   v("min_distance", min_distance,
-    {.min = 0, .unit = "px", .help = "between corners of shi_tomasi"});
+    {.min = 0, .unit = "px", .help = "of shi_tomasi: between corners"});
 }
 
 Corners find_corners(const cv::Mat& gray, const cv::Mat& half, std::span<const cv::Point2f> kept,
@@ -105,7 +109,7 @@ Corners find_corners(const cv::Mat& gray, const cv::Mat& half, std::span<const c
   if (options.corners == CornerOptions::Method::kShiTomasi) return strongest_corners(gray, options);
   Corners corners;
   const int half_border = std::max(1, static_cast<int>(std::ceil(border / 2)));
-  CornerGrid(half, options.max_corners, half_border).accept(kept, options.corner_quality, corners);
+  CornerGrid(half, options.max_corners, half_border).accept(kept, options.min_gradient, corners);
   return corners;
 }
 

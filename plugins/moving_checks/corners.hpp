@@ -12,9 +12,10 @@ namespace stillpoint::moving {
 
 struct CornerOptions {
   enum class Method { kGrid, kShiTomasi } corners = Method::kGrid;
-  int max_corners = 320;
-  double corner_quality = 0.002;  ///< of the strongest corner's score
-  double min_distance = 8.0;      ///< px, between corners of `shi_tomasi`
+  int max_corners = 300;
+  double min_gradient = 4.0;  ///< grey levels per px of the half image, in every direction: `grid`
+  double corner_quality = 0.01;  ///< of the strongest corner's score: `shi_tomasi`
+  double min_distance = 8.0;     ///< px, between corners: `shi_tomasi`
 
   void visit(OptionVisitor& v);
 };

@@ -5,6 +5,12 @@
 namespace stillpoint::moving {
 namespace {
 
+constexpr double kNoiseMultiple = 3;  // what noise alone may make of a second difference
+
+// Of a pixel without depth, so many times the radius is looked at: behind a near surface lies the
+// shadow of the sensor's projector, which is that wide.
+constexpr int kHoleReach = 4;
+
 // 0 where nothing is measured.
 double inverse_depth(const cv::Mat& depth, int x, int y) {
   if (x < 0 || y < 0 || x >= depth.cols || y >= depth.rows) return 0;
@@ -38,20 +44,29 @@ bool bends(double a, double middle, double b, double step) {
 void SurfaceOptions::visit(OptionVisitor& v) {
   v("edge_radius", edge_radius,
     {.min = 1, .max = 50, .unit = "px", .help = "a point this near to a depth edge never moves"});
-  v("edge_step", edge_step,
-    {.min = 0, .unit = "1/m", .help = "change of inverse depth, off a plane, that is an edge"});
+  v("edge_jump", edge_jump,
+    {.min = 0, .unit = "m", .help = "a surface that leaves a plane by more has an edge"});
 }
 
-Surface surface_at(const cv::Mat& depth, const cv::Point2f& pixel, const SurfaceOptions& options) {
+Surface surface_at(const cv::Mat& depth, const cv::Point2f& pixel, double noise,
+                   const SurfaceOptions& options) {
   const cv::Point centre(cvRound(pixel.x), cvRound(pixel.y));
   double middle = inverse_depth(depth, centre.x, centre.y);
-  if (middle == 0) middle = mean_around(depth, centre, options.edge_radius);
+  int outer = options.edge_radius;
+  const bool hole = middle == 0;
+  if (hole) {
+    outer *= kHoleReach;
+    middle = mean_around(depth, centre, outer);
+  }
   if (middle == 0) return {Surface::Kind::kNone, 0};
-  for (const int radius : {options.edge_radius, (options.edge_radius + 1) / 2}) {
+  const double step = options.edge_jump * middle * middle + kNoiseMultiple * noise;
+  for (const int radius : {outer, (outer + 1) / 2}) {
     for (const cv::Point& side : {cv::Point(1, 0), {0, 1}, {1, 1}, {1, -1}}) {
       const double a = inverse_depth(depth, centre.x + radius * side.x, centre.y + radius * side.y);
       const double b = inverse_depth(depth, centre.x - radius * side.x, centre.y - radius * side.y);
-      if (bends(a, middle, b, options.edge_step)) return {Surface::Kind::kEdge, middle};
+      const bool edge =
+          hole ? bends(a, middle, 0, step) || bends(0, middle, b, step) : bends(a, middle, b, step);
+      if (edge) return {Surface::Kind::kEdge, middle};
     }
   }
   return {Surface::Kind::kMeasured, middle};

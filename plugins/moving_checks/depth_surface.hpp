@@ -9,8 +9,8 @@
 namespace stillpoint::moving {
 
 struct SurfaceOptions {
-  int edge_radius = 8;      ///< px
-  double edge_step = 0.02;  ///< 1/m
+  int edge_radius = 6;      ///< px
+  double edge_jump = 0.08;  ///< m
 
   void visit(OptionVisitor& v);
 };
@@ -24,7 +24,9 @@ struct Surface {
   double inverse_depth = 0;  ///< 1/m
 };
 
-/// The surface around a pixel of a depth image (CV_32FC1, metres, 0 = no measurement).
-Surface surface_at(const cv::Mat& depth, const cv::Point2f& pixel, const SurfaceOptions& options);
+/// The surface around a pixel of a depth image (CV_32FC1, metres, 0 = no measurement) whose inverse
+/// depths have the standard deviation `noise` (1/m).
+Surface surface_at(const cv::Mat& depth, const cv::Point2f& pixel, double noise,
+                   const SurfaceOptions& options);
 
 }  // namespace stillpoint::moving

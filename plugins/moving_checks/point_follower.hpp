@@ -19,7 +19,7 @@ struct FollowOptions {
   int iterations = 15;                ///< per level
   double accuracy = 0.02;             ///< px, a smaller step ends the iterations
   double edge = 5.0;                  ///< px, nearer to the image edge a match is discarded
-  double max_patch_difference = 400;  ///< grey levels, summed over 3 × 3 px
+  double max_patch_difference = 200;  ///< grey levels, summed over 3 × 3 px
 
   void visit(OptionVisitor& v);
 };

@@ -93,18 +93,15 @@ void RgbdChecker::Options::visit(OptionVisitor& v) {
 }
 
 MovingPoints RgbdChecker::check(const Frame& previous, const Frame& current) {
-  if (!memory_.valid || memory_.frame != previous.index) memory_ = {};
+  if (memory_.frame != previous.index) memory_ = {};
   const std::vector<Observation> observations = observe(previous, current);
   MovingPoints result;
   for (const Observation& o : observations)
     result.points.push_back({.previous = o.match.previous, .current = o.match.current});
   const auto motion = camera_motion(observations, current);
-  if (!motion) {
-    memory_ = {};
-    return result;
-  }
-  judge(observations, motion->current_from_previous, *current.camera, result);
-  remember(observations, result, motion->current_from_previous, current.index);
+  if (motion) judge(observations, motion->current_from_previous, *current.camera, result);
+  remember(observations, result, motion ? motion->current_from_previous : memory_.motion,
+           current.index);
   return result;
 }
 
@@ -115,8 +112,10 @@ std::vector<RgbdChecker::Observation> RgbdChecker::observe(const Frame& previous
   for (const Match& match : follower_.follow(previous, current, memory_.points)) {
     Observation observation{.match = match};
     if (with_depth) {
-      observation.from = surface_at(previous.depth, match.previous, options_.surface);
-      observation.to = surface_at(current.depth, match.current, options_.surface);
+      observation.from = surface_at(previous.depth, match.previous, options_.noise.inverse_depth,
+                                    options_.surface);
+      observation.to =
+          surface_at(current.depth, match.current, options_.noise.inverse_depth, options_.surface);
     }
     result.push_back(observation);
   }
@@ -168,8 +167,8 @@ bool RgbdChecker::determined(const RigidMotion& motion, const Camera& camera) co
   constexpr double kUsualDepth = 2.0;  // metres
   for (const double u : {0.0, camera.width - 1.0})
     for (const double v : {0.0, camera.height - 1.0})
-      if (3 * pixel_uncertainty(motion, camera, camera.unproject(u, v, kUsualDepth)) >
-          options_.epsilon)
+      if (pixel_uncertainty(motion, camera, camera.unproject(u, v, kUsualDepth)) >
+          options_.epsilon / 2)
         return false;
   return motion.inliers >= options_.min_matches / 2;
 }
@@ -212,16 +211,11 @@ void RgbdChecker::judge(const std::vector<Observation>& observations, const Pose
 
 void RgbdChecker::remember(const std::vector<Observation>& observations, const MovingPoints& result,
                            const Pose& motion, std::uint32_t frame) {
-  Memory memory{.valid = true,
-                .frame = frame,
-                .motion = motion,
-                .points = {},
-                .inverse_depth = {},
-                .trust = {}};
+  Memory memory{.frame = frame, .motion = motion, .points = {}, .inverse_depth = {}, .trust = {}};
   for (std::size_t i = 0; i < observations.size(); ++i) {
     const Observation& o = observations[i];
     if (o.from.kind == Surface::Kind::kEdge || o.to.kind == Surface::Kind::kEdge) continue;
-    const double goal = result.points[i].moving ? 0.0 : 1.0;
+    const double goal = !result.reliable ? o.trust : result.points[i].moving ? 0.0 : 1.0;
     memory.points.push_back(o.match.current);
     memory.inverse_depth.push_back(o.to.inverse_depth);
     memory.trust.push_back(o.trust + kTrustRate * (goal - o.trust));

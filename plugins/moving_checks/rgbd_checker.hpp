@@ -24,7 +24,7 @@ class RgbdChecker final : public MovingChecker {
     moving::SurfaceOptions surface;
     moving::FollowOptions follow;
     int samples = 60;
-    int min_matches = 30;
+    int min_matches = 20;
     double min_agreement = 0.4;
     double min_depth = 0.5;      ///< m, of points without depth
     double max_ambiguity = 1.0;  ///< px
@@ -46,7 +46,6 @@ class RgbdChecker final : public MovingChecker {
   };
   // What the last call knows about its current frame.
   struct Memory {
-    bool valid = false;
     std::uint32_t frame = 0;
     Pose motion = Pose::Identity();
     std::vector<cv::Point2f> points;
