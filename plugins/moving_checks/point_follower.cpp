@@ -62,41 +62,63 @@ PointFollower::Pyramid PointFollower::pyramid_of(const cv::Mat& gray) const {
 std::vector<Match> PointFollower::follow(const Frame& previous, const Frame& current,
                                          std::span<const cv::Point2f> kept) {
   if (!usable(previous.gray, current.gray)) return {};
-  // While last_ holds the pixels, no other image can lie at their address.
-  if (last_.image.data != previous.gray.data || last_.image.size() != previous.gray.size())
-    last_ = pyramid_of(previous.gray);
-  Pyramid next = pyramid_of(current.gray);
+  // While a pyramid holds the pixels, no other image can lie at their address.
+  const auto is_of = [](const Pyramid& pyramid, const cv::Mat& gray) {
+    return pyramid.image.data == gray.data && pyramid.image.size() == gray.size();
+  };
+  if (is_of(current_, previous.gray))
+    previous_ = std::move(current_);
+  else if (!is_of(previous_, previous.gray))
+    previous_ = pyramid_of(previous.gray);
+  current_ = pyramid_of(current.gray);
   cv::Mat half;
-  if (last_.levels.size() > 2)
-    half = last_.levels[2];
+  if (previous_.levels.size() > 2)
+    half = previous_.levels[2];
   else
     cv::pyrDown(previous.gray, half);
   const double border = std::max(options_.edge, 1.0);
   const Corners corners = find_corners(previous.gray, half, kept, border, options_.corners);
+  return corners.points.empty() ? std::vector<Match>{} : matches(corners);
+}
+
+void PointFollower::track(const std::vector<cv::Point2f>& points,
+                          std::vector<cv::Point2f>& followed, std::vector<std::uint8_t>& found,
+                          int levels, int flags) const {
+  cv::calcOpticalFlowPyrLK(
+      previous_.levels, current_.levels, points, followed, found, cv::noArray(),
+      {options_.window, options_.window}, levels - 1,
+      {cv::TermCriteria::COUNT | cv::TermCriteria::EPS, options_.iterations, options_.accuracy},
+      flags);
+}
+
+bool PointFollower::accepted(const cv::Point2f& from, const cv::Point2f& to) const {
+  return far_from_edge(previous_.image, from, options_.edge) &&
+         far_from_edge(current_.image, to, options_.edge) &&
+         patch_difference(previous_.image, from, current_.image, to) <=
+             options_.max_patch_difference;
+}
+
+std::vector<Match> PointFollower::matches(const Corners& corners) const {
+  std::vector<cv::Point2f> followed;
+  std::vector<std::uint8_t> found;
+  track(corners.points, followed, found, options_.pyramid_levels, 0);
   std::vector<Match> result;
-  if (!corners.points.empty()) result = matches(corners, next);
-  last_ = std::move(next);
+  for (std::size_t i = 0; i < followed.size(); ++i)
+    if (found[i] && accepted(corners.points[i], followed[i]))
+      result.push_back({corners.points[i], followed[i], corners.kept_index[i]});
   return result;
 }
 
-std::vector<Match> PointFollower::matches(const Corners& corners, const Pyramid& next) const {
-  std::vector<cv::Point2f> followed;
+std::vector<std::optional<cv::Point2f>> PointFollower::follow_from(
+    const std::vector<cv::Point2f>& points, const std::vector<cv::Point2f>& guesses) const {
+  std::vector<std::optional<cv::Point2f>> result(points.size());
+  if (points.empty() || current_.levels.empty()) return result;
+  std::vector<cv::Point2f> followed = guesses;
   std::vector<std::uint8_t> found;
-  cv::calcOpticalFlowPyrLK(
-      last_.levels, next.levels, corners.points, followed, found, cv::noArray(),
-      {options_.window, options_.window}, options_.pyramid_levels - 1,
-      {cv::TermCriteria::COUNT | cv::TermCriteria::EPS, options_.iterations, options_.accuracy});
-  std::vector<Match> result;
-  for (std::size_t i = 0; i < followed.size(); ++i) {
-    const cv::Point2f& from = corners.points[i];
-    if (!found[i] || !far_from_edge(last_.image, from, options_.edge) ||
-        !far_from_edge(next.image, followed[i], options_.edge))
-      continue;
-    if (patch_difference(last_.image, from, next.image, followed[i]) >
-        options_.max_patch_difference)
-      continue;
-    result.push_back({from, followed[i], corners.kept_index[i]});
-  }
+  track(points, followed, found, std::min(2, options_.pyramid_levels),
+        cv::OPTFLOW_USE_INITIAL_FLOW);
+  for (std::size_t i = 0; i < points.size(); ++i)
+    if (found[i] && accepted(points[i], followed[i])) result[i] = followed[i];
   return result;
 }
 

@@ -41,6 +41,11 @@ class PointFollower {
   std::vector<Match> follow(const Frame& previous, const Frame& current,
                             std::span<const cv::Point2f> kept = {});
 
+  /// Follows points of the last call's previous frame again, from a guess of where they are.
+  /// Nothing for those that are discarded.
+  std::vector<std::optional<cv::Point2f>> follow_from(
+      const std::vector<cv::Point2f>& points, const std::vector<cv::Point2f>& guesses) const;
+
  private:
   struct Pyramid {
     cv::Mat image;                ///< shares its pixels with the frame, which is never changed
@@ -48,11 +53,14 @@ class PointFollower {
   };
 
   Pyramid pyramid_of(const cv::Mat& gray) const;
+  void track(const std::vector<cv::Point2f>& points, std::vector<cv::Point2f>& followed,
+             std::vector<std::uint8_t>& found, int levels, int flags) const;
+  bool accepted(const cv::Point2f& from, const cv::Point2f& to) const;
   bool usable(const cv::Mat& previous, const cv::Mat& current) const;
-  std::vector<Match> matches(const Corners& corners, const Pyramid& next) const;
+  std::vector<Match> matches(const Corners& corners) const;
 
   FollowOptions options_;
-  Pyramid last_;
+  Pyramid previous_, current_;  // of the last call
 };
 
 }  // namespace stillpoint::moving

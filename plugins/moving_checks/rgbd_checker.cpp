@@ -94,12 +94,15 @@ void RgbdChecker::Options::visit(OptionVisitor& v) {
 
 MovingPoints RgbdChecker::check(const Frame& previous, const Frame& current) {
   if (memory_.frame != previous.index) memory_ = {};
-  const std::vector<Observation> observations = observe(previous, current);
+  std::vector<Observation> observations = observe(previous, current);
   MovingPoints result;
   for (const Observation& o : observations)
     result.points.push_back({.previous = o.match.previous, .current = o.match.current});
   const auto motion = camera_motion(observations, current);
-  if (motion) judge(observations, motion->current_from_previous, *current.camera, result);
+  if (motion) {
+    judge(observations, motion->current_from_previous, *current.camera, result);
+    recheck(observations, motion->current_from_previous, *current.camera, result);
+  }
   remember(observations, result, motion ? motion->current_from_previous : memory_.motion,
            current.index);
   return result;
@@ -207,6 +210,36 @@ void RgbdChecker::judge(const std::vector<Observation>& observations, const Pose
   for (std::size_t i = 0; i < observations.size(); ++i)
     result.points[i].moving = judged[i] && result.points[i].residual > limit;
   result.reliable = true;
+}
+
+// Flow may lose its point, by far when the image moves fast. Who is found at the place of a static
+// point when searched for there has not moved.
+void RgbdChecker::recheck(std::vector<Observation>& observations, const Pose& motion,
+                          const Camera& camera, MovingPoints& result) const {
+  std::vector<std::size_t> suspects;
+  std::vector<cv::Point2f> points;
+  std::vector<cv::Point2f> expected;
+  for (std::size_t i = 0; i < observations.size(); ++i) {
+    if (!result.points[i].moving) continue;
+    const Match& match = observations[i].match;
+    const Moved at = moved(match.previous, observations[i].from.inverse_depth, motion, camera);
+    if ((vector_of(match.current) - at.pixel).norm() <= options_.epsilon) continue;  // in depth
+    suspects.push_back(i);
+    points.push_back(match.previous);
+    expected.emplace_back(static_cast<float>(at.pixel.x()), static_cast<float>(at.pixel.y()));
+  }
+  const auto found = follower_.follow_from(points, expected);
+  for (std::size_t k = 0; k < suspects.size(); ++k) {
+    if (!found[k]) continue;
+    const double residual = cv::norm(*found[k] - expected[k]);
+    if (residual > options_.epsilon) continue;
+    PointMotion& point = result.points[suspects[k]];
+    point = {.previous = points[k],
+             .current = *found[k],
+             .residual = static_cast<float>(residual),
+             .moving = false};
+    observations[suspects[k]].match.current = *found[k];
+  }
 }
 
 void RgbdChecker::remember(const std::vector<Observation>& observations, const MovingPoints& result,

@@ -61,6 +61,8 @@ class RgbdChecker final : public MovingChecker {
   bool determined(const moving::RigidMotion& motion, const Camera& camera) const;
   void judge(const std::vector<Observation>& observations, const Pose& motion, const Camera& camera,
              MovingPoints& result) const;
+  void recheck(std::vector<Observation>& observations, const Pose& motion, const Camera& camera,
+               MovingPoints& result) const;
   void remember(const std::vector<Observation>& observations, const MovingPoints& result,
                 const Pose& motion, std::uint32_t frame);
 
