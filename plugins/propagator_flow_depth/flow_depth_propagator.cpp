@@ -9,12 +9,28 @@
 namespace stillpoint {
 namespace {
 
-constexpr std::size_t kHistory = 30;  // views
+constexpr std::size_t kHistory = 16;  // views
+constexpr int kMostPoints = 150;      // of all objects together
+constexpr int kFewestPoints = 12;     // of each
 constexpr double kSupport = 0.25;     // share of measurements in the layer
 
 cv::Rect grown(cv::Rect box, int by, cv::Size image) {
   return cv::Rect(box.x - by, box.y - by, box.width + 2 * by, box.height + 2 * by) &
          cv::Rect({}, image);
+}
+
+/// A box of a frame in its view, with room for a pixel of background.
+cv::Rect view_box(cv::Rect box, cv::Size view) {
+  return grown({box.x / kViewScale, box.y / kViewScale, box.width / kViewScale + 1,
+                box.height / kViewScale + 1},
+               1, view);
+}
+
+/// The frame's pixels of a view's box.
+cv::Rect frame_box(cv::Rect box, cv::Size frame) {
+  return grown(
+      {box.x * kViewScale, box.y * kViewScale, box.width * kViewScale, box.height * kViewScale},
+      kViewScale, frame);
 }
 
 void check_size(const Segmentation& segmentation, const Frame& frame) {
@@ -72,7 +88,7 @@ void FlowDepthPropagator::Options::visit(OptionVisitor& v) {
 Segmentation FlowDepthPropagator::propagate(const Segmentation& segmentation, const Frame& from,
                                             const Frame& to) {
   check_size(segmentation, from);
-  View view = make_view(to);
+  View view = make_view(to, spare_view());
   if (!history_.empty() && history_.back().size() != view.size()) {
     history_.clear();
     objects_.clear();
@@ -89,8 +105,16 @@ Segmentation FlowDepthPropagator::propagate(const Segmentation& segmentation, co
   std::erase_if(objects_, [&](const FollowedObject& object) { return !supported(object, now); });
   compose(now);
   for (FollowedObject& object : objects_) renew_reference(object, now);
-  while (history_.size() > kHistory) history_.pop_front();
   return result(now, to);
+}
+
+View FlowDepthPropagator::spare_view() {
+  View spare;
+  while (history_.size() >= kHistory) {
+    spare = std::move(history_.front());
+    history_.pop_front();
+  }
+  return spare;
 }
 
 const View& FlowDepthPropagator::view_of(const Frame& frame) {
@@ -112,10 +136,15 @@ void FlowDepthPropagator::learn(const Segmentation& segmentation, const View& vi
   cv::resize(found.instances, instances, view.size(), 0, 0, cv::INTER_NEAREST);
   std::vector<cv::Mat> masks;
   std::vector<DepthLayer> layers;
+  std::vector<cv::Rect> boxes;
   for (std::size_t i = 0; i < found.objects.size(); ++i) {
-    masks.push_back(instances == static_cast<int>(i) + 1);
-    layers.push_back(depth_layer(view.depth, masks.back()));
+    boxes.push_back(view_box(found.objects[i].box, view.size()));
+    masks.push_back(instances(boxes[i]) == static_cast<int>(i) + 1);
+    layers.push_back(depth_layer(view.depth(boxes[i]), masks[i]));
   }
+  const int most_points =
+      std::clamp(kMostPoints / std::max(1, static_cast<int>(found.objects.size())), kFewestPoints,
+                 std::max(kFewestPoints, options_.points));
   const View& before = followed_near(view);
   const Matches matches =
       match_objects({found.objects, instances, layers, objects_, before.instances, before.ids});
@@ -123,8 +152,7 @@ void FlowDepthPropagator::learn(const Segmentation& segmentation, const View& vi
   std::vector<FollowedObject> next;
   std::vector<bool> seen(objects_.size(), false);
   for (std::size_t i = 0; i < found.objects.size(); ++i) {
-    const cv::Rect box = cv::boundingRect(masks[i]);
-    if (box.empty()) continue;
+    if (cv::countNonZero(masks[i]) == 0) continue;
     const int known = matches.followed_of[i];
     FollowedObject object;
     if (known >= 0) {
@@ -139,7 +167,8 @@ void FlowDepthPropagator::learn(const Segmentation& segmentation, const View& vi
     object.seen_time = view.time;
     ++object.sightings;
     object.misses = 0;
-    set_reference(object, masks[i], box, view);
+    object.points = most_points;
+    set_reference(object, masks[i], boxes[i], view);
     next.push_back(std::move(object));
   }
   for (std::size_t f = 0; f < objects_.size(); ++f) {
@@ -159,8 +188,8 @@ void FlowDepthPropagator::set_reference(FollowedObject& object, const cv::Mat& m
                                         const View& view) const {
   object.reference_mask = mask;
   object.reference_box = box;
-  object.reference_layer = depth_layer(view.depth(box), mask(box));
-  object.tracks = choose_points(view, mask, box, options_.points);
+  object.reference_layer = depth_layer(view.depth(box), mask);
+  object.tracks = choose_points(view, mask, box, object.points);
   std::erase_if(object.tracks, [&](const Track& track) {
     return track.reference_depth > 0 && object.reference_layer.known() &&
            !object.reference_layer.contains(track.reference_depth);
@@ -190,7 +219,8 @@ void FlowDepthPropagator::place(FollowedObject& object, const View& view) const 
     object.mask.release();
     return;
   }
-  const cv::Mat predicted = warp_mask(object.reference_mask, object.tracks, object.box);
+  const cv::Mat predicted =
+      warp_mask(object.reference_mask, object.reference_box, object.tracks, object.box);
   object.layer = object.reference_layer.moved_by(median_motion(object.tracks).depth);
   const cv::Mat depth = view.depth(object.box);
   object.mask = fit_to_depth(predicted, depth, object.layer,
@@ -212,11 +242,8 @@ bool FlowDepthPropagator::supported(const FollowedObject& object, const View& vi
 void FlowDepthPropagator::renew_reference(FollowedObject& object, const View& view) const {
   const bool worn = 3 * object.tracks.size() < object.first_tracks;
   if (!worn || object.mask.empty()) return;
-  const cv::Rect box = cv::boundingRect(object.mask) + object.box.tl();
-  if (cv::boundingRect(object.mask).empty()) return;
-  cv::Mat mask(view.size(), CV_8UC1, cv::Scalar(0));
-  object.mask.copyTo(mask(object.box));
-  set_reference(object, mask, box, view);
+  if (cv::countNonZero(object.mask) == 0) return;
+  set_reference(object, object.mask, object.box, view);
 }
 
 /// The nearer object has what two of them claim.
@@ -246,10 +273,11 @@ Segmentation FlowDepthPropagator::result(const View& view, const Frame& frame) c
     const auto& object = *std::ranges::find(objects_, view.ids[i], &FollowedObject::id);
     const int instance = static_cast<int>(i) + 1;
     labels.at<unsigned char>(instance) = static_cast<unsigned char>(object.label);
-    const cv::Mat mask = result.instances == instance;
+    const cv::Rect region = frame_box(object.box, frame.gray.size());
+    const cv::Mat mask = result.instances(region) == instance;
     result.objects.push_back({.id = object.id,
                               .label = object.label,
-                              .box = cv::boundingRect(mask),
+                              .box = cv::boundingRect(mask) + region.tl(),
                               .pixels = cv::countNonZero(mask),
                               .score = object.score});
   }

@@ -35,6 +35,7 @@ class FlowDepthPropagator final : public Propagator {
                          const Frame& to) override;
 
  private:
+  View spare_view();
   const View& view_of(const Frame& frame);
   const View& followed_near(const View& view) const;
   void learn(const Segmentation& segmentation, const View& view);

@@ -22,11 +22,12 @@ struct FollowedObject {
   int misses = 0;                ///< results in a row that did not have it, while it was in view
 
   // Its reference: the view from which it is carried, mostly the one in which it was found.
-  cv::Mat reference_mask;  ///< CV_8UC1, 0 or 255, of a whole view
-  cv::Rect reference_box;
+  cv::Mat reference_mask;  ///< CV_8UC1, 0 or 255, of `reference_box`
+  cv::Rect reference_box;  ///< with a pixel of background around the mask, unless the image ends
   DepthLayer reference_layer;
   std::vector<Track> tracks;
   std::uint32_t tracked_frame = 0;  ///< index of the frame that the tracks have come to
+  int points = 0;                   ///< most tracks to begin with
   std::size_t first_tracks = 0;     ///< that the reference began with
 
   // In the current view.

@@ -10,6 +10,8 @@ namespace {
 constexpr float kDepthWeight = 1.2f;  // more than the mask's 1: depth can cut its middle, too
 constexpr int kSurroundings = 4;      // margins to either side, over which depths are averaged
 
+cv::Size half(cv::Size size) { return {(size.width + 1) / 2, (size.height + 1) / 2}; }
+
 /// Mean of `depth` around each pixel over those in `mask` (0 or 255); 0 where there are none.
 cv::Mat local_depth(const cv::Mat& depth, const cv::Mat& mask, cv::Size window) {
   cv::Mat weights, sum, count;
@@ -35,27 +37,34 @@ float depth_vote(float depth, float object, float surroundings, const DepthLayer
 
 cv::Mat fit_to_depth(const cv::Mat& predicted, const cv::Mat& depth, const DepthLayer& layer,
                      const MaskFitOptions& options) {
-  const cv::Size window = cv::Size(2, 2) * (kSurroundings * options.margin) + cv::Size(1, 1);
-  const cv::Mat measured = depth > 0;
-  cv::Mat in_layer;
-  cv::inRange(depth, layer.near, layer.far, in_layer);
-  const cv::Mat object = local_depth(depth, predicted & in_layer, window);
-  const cv::Mat surroundings = local_depth(depth, ~predicted & measured, window);
+  cv::Mat sparse_depth, sparse_mask, in_layer;
+  cv::resize(depth, sparse_depth, half(depth.size()), 0, 0, cv::INTER_NEAREST);
+  cv::resize(predicted, sparse_mask, half(depth.size()), 0, 0, cv::INTER_NEAREST);
+  cv::inRange(sparse_depth, layer.near, layer.far, in_layer);
+  const int reach = kSurroundings * options.margin / 2;
+  const cv::Size window(2 * reach + 1, 2 * reach + 1);
+  const cv::Mat object = local_depth(sparse_depth, sparse_mask & in_layer, window);
+  const cv::Mat surroundings = local_depth(sparse_depth, ~sparse_mask & (sparse_depth > 0), window);
   cv::Mat nearness;  // 0: outside by the margin or more, 255: inside
   cv::blur(predicted, nearness, cv::Size(2, 2) * options.margin + cv::Size(1, 1), {-1, -1},
            cv::BORDER_REPLICATE);
 
-  cv::Mat fitted(predicted.size(), CV_8UC1);
-  for (int y = 0; y < fitted.rows; ++y)
+  cv::Mat fitted(predicted.size(), CV_8UC1, cv::Scalar(0));
+  for (int y = 0; y < fitted.rows; ++y) {
+    const auto* near = nearness.ptr<unsigned char>(y);
+    const auto* z = depth.ptr<float>(y);
+    const auto* object_z = object.ptr<float>(y / 2);
+    const auto* other_z = surroundings.ptr<float>(y / 2);
+    auto* out = fitted.ptr<unsigned char>(y);
     for (int x = 0; x < fitted.cols; ++x) {
-      const int near = nearness.at<unsigned char>(y, x);
-      const float z = depth.at<float>(y, x);
-      const auto tolerance = static_cast<float>(options.tolerance) * std::max(0.5f, z * z / 4);
-      const float votes =
-          static_cast<float>(near) / 127.5f - 1.0f +
-          depth_vote(z, object.at<float>(y, x), surroundings.at<float>(y, x), layer, tolerance);
-      fitted.at<unsigned char>(y, x) = near > 0 && votes > 0 ? 255 : 0;
+      if (near[x] == 0) continue;
+      const float tolerance =
+          static_cast<float>(options.tolerance) * std::max(0.5f, z[x] * z[x] / 4);
+      const float mask_vote = static_cast<float>(near[x]) / 127.5f - 1.0f;
+      const float vote = depth_vote(z[x], object_z[x / 2], other_z[x / 2], layer, tolerance);
+      out[x] = mask_vote + vote > 0 ? 255 : 0;
     }
+  }
   return fitted;
 }
 

@@ -7,9 +7,12 @@
 namespace stillpoint {
 namespace {
 
-constexpr int kCell = 8;               // px between the nodes where motion is computed
-constexpr float kReach = 12.0f;        // px around a track that move with it
-constexpr float kMedianWeight = 0.1f;  // of the median motion against a track right there
+constexpr int kCell = 8;    // px between the nodes where motion is computed
+constexpr int kSample = 2;  // px between the samples of the mask
+const cv::Point2f kSampleCentre =
+    cv::Point2f(kSample - 1, kSample - 1) / 2;  // as cv::resize has it
+constexpr float kReach = 12.0f;                 // px around a track that move with it
+constexpr float kMedianWeight = 0.1f;           // of the median motion against a track right there
 
 float median(std::vector<float>& values) {
   if (values.empty()) return 0.0f;
@@ -34,6 +37,17 @@ cv::Point2f way_back(cv::Point2f position, std::span<const Track> tracks,
   return sum / weights;
 }
 
+/// Bilinear between the four nodes around a pixel of the region.
+cv::Point2f between(const cv::Mat& nodes, int x, int y) {
+  const auto* upper = nodes.ptr<cv::Point2f>(y / kCell) + x / kCell;
+  const auto* lower = nodes.ptr<cv::Point2f>(y / kCell + 1) + x / kCell;
+  const float fx = static_cast<float>(x % kCell) / kCell;
+  const float fy = static_cast<float>(y % kCell) / kCell;
+  const cv::Point2f left = upper[0] + fy * (lower[0] - upper[0]);
+  const cv::Point2f right = upper[1] + fy * (lower[1] - upper[1]);
+  return left + fx * (right - left);
+}
+
 }  // namespace
 
 ObjectMotion median_motion(std::span<const Track> tracks) {
@@ -48,34 +62,26 @@ ObjectMotion median_motion(std::span<const Track> tracks) {
   return {{median(x), median(y)}, median(z)};
 }
 
-cv::Mat warp_mask(const cv::Mat& reference, std::span<const Track> tracks, cv::Rect region) {
+cv::Mat warp_mask(const cv::Mat& reference, cv::Rect box, std::span<const Track> tracks,
+                  cv::Rect region) {
   const cv::Point2f shift = median_motion(tracks).shift;
   cv::Mat nodes(region.height / kCell + 2, region.width / kCell + 2, CV_32FC2);
   for (int row = 0; row < nodes.rows; ++row)
     for (int column = 0; column < nodes.cols; ++column) {
       const cv::Point node = region.tl() + kCell * cv::Point(column, row);
-      nodes.at<cv::Point2f>(row, column) = way_back(node, tracks, shift);
+      const cv::Point2f source = cv::Point2f(node) + way_back(node, tracks, shift);
+      nodes.at<cv::Point2f>(row, column) = source - cv::Point2f(box.tl());
     }
-  cv::Mat source(region.size(), CV_32FC2);
-  for (int y = 0; y < region.height; ++y) {
-    const float v = static_cast<float>(y) / kCell;
-    const int row = static_cast<int>(v);
-    const float fy = v - static_cast<float>(row);
-    const auto* upper = nodes.ptr<cv::Point2f>(row);
-    const auto* lower = nodes.ptr<cv::Point2f>(row + 1);
-    auto* out = source.ptr<cv::Point2f>(y);
-    for (int x = 0; x < region.width; ++x) {
-      const float u = static_cast<float>(x) / kCell;
-      const int column = static_cast<int>(u);
-      const float fx = u - static_cast<float>(column);
-      const cv::Point2f left = upper[column] + fy * (lower[column] - upper[column]);
-      const cv::Point2f right = upper[column + 1] + fy * (lower[column + 1] - upper[column + 1]);
-      out[x] = cv::Point2f(region.tl() + cv::Point(x, y)) + left + fx * (right - left);
-    }
-  }
-  cv::Mat warped;
-  cv::remap(reference, warped, source, cv::noArray(), cv::INTER_LINEAR, cv::BORDER_REPLICATE);
-  return warped > 127;
+  // A sample every kSample px is enough for an outline that depth will correct.
+  cv::Mat source((region.height + kSample - 1) / kSample, (region.width + kSample - 1) / kSample,
+                 CV_32FC2);
+  for (int y = 0; y < source.rows; ++y)
+    for (int x = 0; x < source.cols; ++x)
+      source.at<cv::Point2f>(y, x) = between(nodes, kSample * x, kSample * y) + kSampleCentre;
+  cv::Mat samples, warped;
+  cv::remap(reference, samples, source, cv::noArray(), cv::INTER_LINEAR, cv::BORDER_REPLICATE);
+  cv::resize(samples, warped, samples.size() * kSample, 0, 0, cv::INTER_LINEAR);
+  return warped(cv::Rect({}, region.size())) > 127;
 }
 
 }  // namespace stillpoint

@@ -17,9 +17,10 @@ struct ObjectMotion {
 /// Medians over the tracks that are not lost; zero without tracks.
 ObjectMotion median_motion(std::span<const Track> tracks);
 
-/// The reference mask (CV_8UC1, 0 or 255) as it lies in the part `region` of the current view.
-/// Every pixel moves as the tracks around it, so that legs swing. Beyond the edge of the image,
-/// masks go on as they are at the edge, because what comes into view is mostly more of the object.
-cv::Mat warp_mask(const cv::Mat& reference, std::span<const Track> tracks, cv::Rect region);
+/// The reference mask (CV_8UC1, 0 or 255, of `box`) as it lies in the part `region` of the current
+/// view. Every pixel moves as the tracks around it, so that legs swing. Outside its box, the mask
+/// goes on as it is at the edge, because what comes into view is mostly more of the object.
+cv::Mat warp_mask(const cv::Mat& reference, cv::Rect box, std::span<const Track> tracks,
+                  cv::Rect region);
 
 }  // namespace stillpoint

@@ -32,15 +32,13 @@ bool jumps(float before, float after) {
 
 }  // namespace
 
-std::vector<cv::Mat> flow_pyramid(const cv::Mat& gray) {
-  std::vector<cv::Mat> pyramid;
+void build_flow_pyramid(const cv::Mat& gray, std::vector<cv::Mat>& pyramid) {
   cv::buildOpticalFlowPyramid(gray, pyramid, kWindow, kLevels);
-  return pyramid;
 }
 
 std::vector<Track> choose_points(const View& view, const cv::Mat& mask, cv::Rect box, int most) {
   cv::Mat inner;
-  cv::erode(mask(box), inner, cv::getStructuringElement(cv::MORPH_RECT, {5, 5}), {-1, -1}, 1,
+  cv::erode(mask, inner, cv::getStructuringElement(cv::MORPH_RECT, {5, 5}), {-1, -1}, 1,
             cv::BORDER_CONSTANT, cv::Scalar(255));
   Points corners;
   cv::goodFeaturesToTrack(view.pyramid[0](box), corners, most, 0.01, 3.0, inner);

@@ -20,10 +20,10 @@ struct Track {
 };
 
 /// Gray levels and their derivatives as follow() needs them.
-std::vector<cv::Mat> flow_pyramid(const cv::Mat& gray);
+void build_flow_pyramid(const cv::Mat& gray, std::vector<cv::Mat>& pyramid);
 
-/// Up to `most` corners inside a mask (CV_8UC1), away from its outline, where the gradient is that
-/// of the object against what is behind it.
+/// Up to `most` corners inside a mask (CV_8UC1, of `box`), away from its outline, where the
+/// gradient is that of the object against what is behind it.
 std::vector<Track> choose_points(const View& view, const cv::Mat& mask, cv::Rect box, int most);
 
 /// Moves points from one view to another. Lost are those that do not come back to within

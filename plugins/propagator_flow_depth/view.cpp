@@ -2,21 +2,27 @@
 
 #include <algorithm>
 #include <opencv2/imgproc.hpp>
+#include <utility>
 
 #include "propagator_flow_depth/point_follower.hpp"
 
 namespace stillpoint {
 
-View make_view(const Frame& frame) {
-  View view{.frame = frame.index, .time = frame.time};
+View make_view(const Frame& frame, View recycled) {
+  View view = std::move(recycled);
+  view.frame = frame.index;
+  view.time = frame.time;
+  view.ids.clear();
+  view.instances.release();
   view.focal_length = frame.camera ? frame.camera->fx / kViewScale : frame.gray.cols / kViewScale;
   const cv::Size size(std::max(1, frame.gray.cols / kViewScale),
                       std::max(1, frame.gray.rows / kViewScale));
   cv::Mat gray;
   cv::resize(frame.gray, gray, size, 0, 0, cv::INTER_AREA);
-  view.pyramid = flow_pyramid(gray);
+  build_flow_pyramid(gray, view.pyramid);
+  view.depth.create(size, CV_32FC1);
   if (frame.depth.empty())
-    view.depth = cv::Mat(size, CV_32FC1, cv::Scalar(0));
+    view.depth.setTo(0);
   else
     cv::resize(frame.depth, view.depth, size, 0, 0, cv::INTER_NEAREST);
   return view;

@@ -24,7 +24,9 @@ struct View {
   cv::Size size() const { return depth.size(); }
 };
 
-View make_view(const Frame& frame);
+/// `recycled` is a view that is no longer needed: its images are written over, because fetching so
+/// much memory from the system for each frame costs more than filling it.
+View make_view(const Frame& frame, View recycled = {});
 
 /// Depth at a position, 0 = no measurement.
 float depth_at(const View& view, cv::Point2f position);
