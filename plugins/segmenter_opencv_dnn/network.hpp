@@ -42,6 +42,7 @@ class Network {
   cv::Size input_size() const { return {options_.width, options_.height}; }
 
  private:
+  cv::Mat input(const cv::Mat& bgr) const;
   std::vector<cv::Mat> forward(const cv::Mat& bgr);
 
   NetworkOptions options_;
