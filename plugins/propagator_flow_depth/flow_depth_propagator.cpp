@@ -1,6 +1,7 @@
 #include "propagator_flow_depth/flow_depth_propagator.hpp"
 
 #include <algorithm>
+#include <numeric>
 #include <opencv2/imgproc.hpp>
 
 #include "propagator_flow_depth/mask_warp.hpp"
@@ -10,8 +11,8 @@ namespace stillpoint {
 namespace {
 
 constexpr std::size_t kHistory = 16;  // views
-constexpr int kMostPoints = 150;      // of all objects together
-constexpr int kFewestPoints = 12;     // of each
+constexpr int kMostPoints = 120;      // of all objects together
+constexpr int kFewestPoints = 10;     // of each
 constexpr double kSupport = 0.25;     // share of measurements in the layer
 
 cv::Rect grown(cv::Rect box, int by, cv::Size image) {
@@ -142,9 +143,8 @@ void FlowDepthPropagator::learn(const Segmentation& segmentation, const View& vi
     masks.push_back(instances(boxes[i]) == static_cast<int>(i) + 1);
     layers.push_back(depth_layer(view.depth(boxes[i]), masks[i]));
   }
-  const int most_points =
-      std::clamp(kMostPoints / std::max(1, static_cast<int>(found.objects.size())), kFewestPoints,
-                 std::max(kFewestPoints, options_.points));
+  const auto pixels_of = [](int sum, const SegmentedObject& object) { return sum + object.pixels; };
+  const int all_pixels = std::accumulate(found.objects.begin(), found.objects.end(), 0, pixels_of);
   const View& before = followed_near(view);
   const Matches matches =
       match_objects({found.objects, instances, layers, objects_, before.instances, before.ids});
@@ -167,7 +167,10 @@ void FlowDepthPropagator::learn(const Segmentation& segmentation, const View& vi
     object.seen_time = view.time;
     ++object.sightings;
     object.misses = 0;
-    object.points = most_points;
+    // Large objects are worth more points, because they hide more.
+    const double share = static_cast<double>(found.objects[i].pixels) / std::max(1, all_pixels);
+    object.points = std::clamp(static_cast<int>(kMostPoints * share), kFewestPoints,
+                               std::max(kFewestPoints, options_.points));
     set_reference(object, masks[i], boxes[i], view);
     next.push_back(std::move(object));
   }
