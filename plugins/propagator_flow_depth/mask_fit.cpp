@@ -8,9 +8,12 @@ namespace stillpoint {
 namespace {
 
 constexpr float kDepthWeight = 1.2f;  // more than the mask's 1: depth can cut its middle, too
+constexpr int kSparse = 4;            // px between the depths that are averaged
 constexpr int kSurroundings = 4;      // margins to either side, over which depths are averaged
 
-cv::Size half(cv::Size size) { return {(size.width + 1) / 2, (size.height + 1) / 2}; }
+cv::Size sparse(cv::Size size) {
+  return {(size.width + kSparse - 1) / kSparse, (size.height + kSparse - 1) / kSparse};
+}
 
 /// Mean of `depth` around each pixel over those in `mask` (0 or 255); 0 where there are none.
 cv::Mat local_depth(const cv::Mat& depth, const cv::Mat& mask, cv::Size window) {
@@ -38,10 +41,10 @@ float depth_vote(float depth, float object, float surroundings, const DepthLayer
 cv::Mat fit_to_depth(const cv::Mat& predicted, const cv::Mat& depth, const DepthLayer& layer,
                      const MaskFitOptions& options) {
   cv::Mat sparse_depth, sparse_mask, in_layer;
-  cv::resize(depth, sparse_depth, half(depth.size()), 0, 0, cv::INTER_NEAREST);
-  cv::resize(predicted, sparse_mask, half(depth.size()), 0, 0, cv::INTER_NEAREST);
+  cv::resize(depth, sparse_depth, sparse(depth.size()), 0, 0, cv::INTER_NEAREST);
+  cv::resize(predicted, sparse_mask, sparse(depth.size()), 0, 0, cv::INTER_NEAREST);
   cv::inRange(sparse_depth, layer.near, layer.far, in_layer);
-  const int reach = kSurroundings * options.margin / 2;
+  const int reach = kSurroundings * options.margin / kSparse;
   const cv::Size window(2 * reach + 1, 2 * reach + 1);
   const cv::Mat object = local_depth(sparse_depth, sparse_mask & in_layer, window);
   const cv::Mat surroundings = local_depth(sparse_depth, ~sparse_mask & (sparse_depth > 0), window);
@@ -53,15 +56,16 @@ cv::Mat fit_to_depth(const cv::Mat& predicted, const cv::Mat& depth, const Depth
   for (int y = 0; y < fitted.rows; ++y) {
     const auto* near = nearness.ptr<unsigned char>(y);
     const auto* z = depth.ptr<float>(y);
-    const auto* object_z = object.ptr<float>(y / 2);
-    const auto* other_z = surroundings.ptr<float>(y / 2);
+    const auto* object_z = object.ptr<float>(y / kSparse);
+    const auto* other_z = surroundings.ptr<float>(y / kSparse);
     auto* out = fitted.ptr<unsigned char>(y);
     for (int x = 0; x < fitted.cols; ++x) {
       if (near[x] == 0) continue;
       const float tolerance =
           static_cast<float>(options.tolerance) * std::max(0.5f, z[x] * z[x] / 4);
       const float mask_vote = static_cast<float>(near[x]) / 127.5f - 1.0f;
-      const float vote = depth_vote(z[x], object_z[x / 2], other_z[x / 2], layer, tolerance);
+      const float vote =
+          depth_vote(z[x], object_z[x / kSparse], other_z[x / kSparse], layer, tolerance);
       out[x] = mask_vote + vote > 0 ? 255 : 0;
     }
   }

@@ -17,7 +17,7 @@ Points flow(const View& from, const View& to, const Points& points,
             std::vector<unsigned char>& found) {
   Points moved;
   cv::calcOpticalFlowPyrLK(from.pyramid, to.pyramid, points, moved, found, cv::noArray(), kWindow,
-                           kLevels, {cv::TermCriteria::COUNT + cv::TermCriteria::EPS, 10, 0.03});
+                           kLevels, {cv::TermCriteria::COUNT + cv::TermCriteria::EPS, 8, 0.03});
   return moved;
 }
 
