@@ -27,6 +27,10 @@ void ObjectMotionOptions::visit(OptionVisitor& v) {
 const std::vector<ObjectBelief>& ObjectBeliefs::update(const std::vector<SegmentedObject>& objects,
                                                        const std::vector<double>& priors,
                                                        const std::vector<PointCount>& counts) {
+  constexpr int kForget = 300;  // updates; ids are not used again
+  ++updates_;
+  std::erase_if(by_id_,
+                [&](const auto& entry) { return updates_ - entry.second.updated > kForget; });
   std::vector<ObjectBelief> beliefs;
   for (std::size_t i = 0; i < objects.size(); ++i) {
     const ObjectBelief* before = known(objects[i]);
@@ -35,6 +39,7 @@ const std::vector<ObjectBelief>& ObjectBeliefs::update(const std::vector<Segment
     belief.label = objects[i].label;
     belief.box = objects[i].box;
     belief.prior = priors[i];
+    belief.updated = updates_;
     learn(belief, counts.empty() ? PointCount{} : counts[i]);
     if (objects[i].id >= 0) by_id_[objects[i].id] = belief;
     beliefs.push_back(belief);

@@ -31,6 +31,7 @@ struct ObjectBelief {
   double prior = 0.0;
   double log_odds = 0.0;  ///< of moving
   bool moves = false;     ///< with hysteresis
+  int updated = 0;        ///< number of the update that saw it last
 };
 
 /// How many of the checked points lie on an object.
@@ -57,6 +58,7 @@ class ObjectBeliefs {
   ObjectMotionOptions options_;
   std::vector<ObjectBelief> latest_;
   std::map<int, ObjectBelief> by_id_;
+  int updates_ = 0;
 };
 
 }  // namespace stillpoint::decision

@@ -1,13 +1,19 @@
 #include "orb_slam/local_mapper.hpp"
 
+#include <algorithm>
+
 #include "orb_slam/culling.hpp"
 #include "orb_slam/landmark_creation.hpp"
 #include "orb_slam/landmark_fusion.hpp"
 #include "orb_slam/landmark_geometry.hpp"
+#include "orb_slam/static_evidence.hpp"
 
 namespace stillpoint::orb {
 namespace {
 
+constexpr float kMostLogOdds = 6.0F;  // of being static, either way: things do begin to move
+
+/// Landmarks that prove to have moved are removed.
 void add_evidence(MapEdit& edit, const std::vector<LandmarkEvidence>& evidence) {
   for (const LandmarkEvidence& e : evidence) {
     const LandmarkId id = edit.map().current_id(e.landmark);
@@ -15,7 +21,9 @@ void add_evidence(MapEdit& edit, const std::vector<LandmarkEvidence>& evidence) 
     Landmark& landmark = edit.landmark(id);
     landmark.visible += e.visible;
     landmark.found += e.found;
-    landmark.static_log_odds += e.static_log_odds;
+    landmark.static_log_odds =
+        std::clamp(landmark.static_log_odds + e.static_log_odds, -kMostLogOdds, kMostLogOdds);
+    if (landmark.static_log_odds < kMovedLogOdds) edit.remove_landmark(id);
   }
 }
 

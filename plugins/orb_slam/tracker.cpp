@@ -57,6 +57,7 @@ void OrbTracker::prepare(FramePtr frame) {
 TrackResult OrbTracker::track(FramePtr, const StaticWeights& weights, const SparseMap& map,
                               TrackHints hints) {
   current_.set_weights(weights);
+  visible_.clear();
   if (map.empty()) return start() ? tracked(map, hints) : not_tracked(TrackState::kWaiting);
 
   follow_map(map);
@@ -143,21 +144,19 @@ void OrbTracker::search_local_map(const SparseMap& map) {
   const Pose camera_from_world = current_.world_from_camera.inverse();
   const ScalePyramid pyramid(*current_.features);
   std::vector<Query> queries;
-  std::vector<LandmarkId> visible;
   for (const LandmarkId id : local.landmarks) {
     if (matched[id]) {
-      visible.push_back(id);
+      visible_.push_back(id);
       continue;
     }
     const auto query = predict(*map.landmark(id), camera_from_world, *current_.frame->camera,
                                pyramid, options_.local_window);
     if (!query) continue;
-    visible.push_back(id);
+    visible_.push_back(id);
     queries.push_back(*query);
   }
   current_.assign(match_near(queries, *current_.features, current_.grid,
                              [&](std::uint32_t i) { return current_.free(i); }, {.ratio = 0.8}));
-  for (const LandmarkId id : visible) ++evidence_[id].visible;
 }
 
 TrackResult OrbTracker::tracked(const SparseMap& map, TrackHints hints) {
@@ -175,10 +174,9 @@ TrackResult OrbTracker::tracked(const SparseMap& map, TrackHints hints) {
   const bool unknown_view = bridged_ && last_keyframe_ == kNoId;  // the last one is in the map
   const bool keep =
       map.empty() || unknown_view || needs_keyframe(quality, hints, options_.keyframe);
+  add_static_evidence(current_, map, visible_, evidence_);
   current_.drop_outliers();
   current_.drop_temporary();
-  for (const LandmarkId id : current_.landmarks)
-    if (id != kNoId) ++evidence_[id].found;
   last_keyframe_ = kNoId;
   if (keep) {
     result.keyframe = make_keyframe();

@@ -1,7 +1,6 @@
 // Tracker `orb`: the pose of each frame in the sparse map (DS-SLAM III-A; ORB-SLAM2).
 #pragma once
 
-#include <unordered_map>
 #include <vector>
 
 #include "orb_slam/keyframe_policy.hpp"
@@ -9,6 +8,7 @@
 #include "orb_slam/observed_frame.hpp"
 #include "orb_slam/orb_extractor.hpp"
 #include "orb_slam/relocaliser.hpp"
+#include "orb_slam/static_evidence.hpp"
 #include "stillpoint/contracts/tracker.hpp"
 
 namespace stillpoint::orb {
@@ -61,7 +61,8 @@ class OrbTracker final : public Tracker {
 
   KeyFrameId next_keyframe_ = 0;
   std::uint32_t last_keyframe_index_ = 0;  // frame index of the newest key frame
-  std::unordered_map<LandmarkId, LandmarkEvidence> evidence_;
+  std::vector<LandmarkId> visible_;        // landmarks that should be seen in this frame
+  EvidenceByLandmark evidence_;
 };
 
 }  // namespace stillpoint::orb

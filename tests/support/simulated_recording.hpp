@@ -1,4 +1,4 @@
-// A short recording of fr3_walking_xyz_empty on disk, and copies of it in which something is wrong.
+// Short simulated recordings on disk, and copies of it in which something is wrong.
 #pragma once
 
 #include <fcntl.h>
@@ -26,6 +26,7 @@ constexpr bool kSanitized = false;
 #endif
 
 constexpr const char* kScene = "fr3_walking_xyz_empty";
+constexpr const char* kSceneWithPeople = "fr3_walking_xyz";
 constexpr int kSimulatedFrames = kSanitized ? 30 : 60;
 
 /// Held while the file exists and until the end of the scope; other processes wait.
@@ -54,21 +55,28 @@ inline std::filesystem::file_time_type newest_of_simulator() {
 
 /// Rendering takes a while and ctest gives each test a process of its own: the recording stays in
 /// the build folder until the simulator is newer.
-inline const std::filesystem::path& simulated_recording() {
+inline std::filesystem::path recording_of(const std::string& scene) {
   namespace fs = std::filesystem;
-  static const fs::path recording = [] {
-    const fs::path folder = fs::path(STILLPOINT_BINARY_DIR) / "tests/recording";
-    const fs::path done = folder / "done";
-    fs::create_directories(folder.parent_path());
-    const FileLock lock(folder.string() + ".lock");
-    if (fs::exists(done) && fs::last_write_time(done) > newest_of_simulator()) return folder;
-    fs::remove_all(folder);
-    const Outcome outcome = call(
-        {"simulate", kScene, "--frames", std::to_string(kSimulatedFrames), "-o", folder.string()});
-    if (outcome.exit_code != 0) throw std::runtime_error("simulate failed: " + outcome.err);
-    std::ofstream(done) << "complete\n";
-    return folder;
-  }();
+  const fs::path folder = fs::path(STILLPOINT_BINARY_DIR) / "tests/recordings" / scene;
+  const fs::path done = folder / "done";
+  fs::create_directories(folder.parent_path());
+  const FileLock lock(folder.string() + ".lock");
+  if (fs::exists(done) && fs::last_write_time(done) > newest_of_simulator()) return folder;
+  fs::remove_all(folder);
+  const Outcome outcome = call(
+      {"simulate", scene, "--frames", std::to_string(kSimulatedFrames), "-o", folder.string()});
+  if (outcome.exit_code != 0) throw std::runtime_error("simulate failed: " + outcome.err);
+  std::ofstream(done) << "complete\n";
+  return folder;
+}
+
+inline const std::filesystem::path& simulated_recording() {
+  static const std::filesystem::path recording = recording_of(kScene);
+  return recording;
+}
+
+inline const std::filesystem::path& recording_with_people() {
+  static const std::filesystem::path recording = recording_of(kSceneWithPeople);
   return recording;
 }
 

@@ -2,7 +2,14 @@
 
 #include <utility>
 
+#include "stillpoint/objects.hpp"
+
 namespace stillpoint {
+namespace {
+
+constexpr int kMinObjectPixels = 1;  // segmenters that name no objects have all of them named
+
+}  // namespace
 
 SegmentationStage::SegmentationStage(Stage<Segmenter> segmenter, Stage<Propagator> propagator,
                                      const SegmentationOptions& options, Mode mode,
@@ -43,7 +50,10 @@ void SegmentationStage::segment(FramePtr frame) {
 
 Segmentation SegmentationStage::labels_of(const Frame& frame) {
   try {
-    return segmenter_.call("segmentation", frame.index, &Segmenter::segment, frame);
+    Segmentation labels =
+        segmenter_.call("segmentation", frame.index, &Segmenter::segment, frame);
+    if (labels.known() && labels.instances.empty()) find_objects(labels, kMinObjectPixels);
+    return labels;
   } catch (const StageError& error) {
     if (options_.on_failure == SegmentationOptions::OnFailure::kStop) throw;
     if (failures_++ == 0) first_failure_ = error.what();

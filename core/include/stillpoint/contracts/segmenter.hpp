@@ -16,7 +16,8 @@ class STILLPOINT_EXPORT Segmenter {
   /// What its labels mean. Other stages learn it from their StageContext.
   virtual ClassNames classes() const = 0;
 
-  /// Labels of the frame's size, or empty labels when this segmenter has none for it.
+  /// Labels of the frame's size, or empty labels when this segmenter has none for it. Objects may
+  /// be left out: the runtime finds them then (stillpoint/objects.hpp).
   virtual Segmentation segment(const Frame& frame) = 0;
 };
 

@@ -1,0 +1,51 @@
+#include "orb_slam/static_evidence.hpp"
+
+#include <vector>
+
+namespace stillpoint::orb {
+namespace {
+
+constexpr float kFound = 0.2F;       // log-odds of one frame, full weight
+constexpr float kLookedPast = 0.5F;  // log-odds of one frame
+constexpr double kBehind = 0.2;      // relative: what is seen is this much farther
+constexpr int kRadius = 2;           // px; nobody looks past a landmark beside an edge
+
+/// Whether everything around the landmark's place in the image is farther than the landmark.
+bool looked_past(const Frame& frame, const Eigen::Vector3d& in_camera) {
+  const Eigen::Vector2d at = frame.camera->project(in_camera);
+  const cv::Point pixel(cvRound(at.x()), cvRound(at.y()));
+  const cv::Mat& depth = frame.depth;
+  const cv::Rect inside(kRadius, kRadius, depth.cols - 2 * kRadius, depth.rows - 2 * kRadius);
+  if (!inside.contains(pixel)) return false;
+  for (int y = pixel.y - kRadius; y <= pixel.y + kRadius; ++y) {
+    const auto* row = depth.ptr<float>(y);
+    for (int x = pixel.x - kRadius; x <= pixel.x + kRadius; ++x)
+      if (row[x] <= (1 + kBehind) * in_camera.z()) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+void add_static_evidence(const ObservedFrame& frame, const SparseMap& map,
+                         std::span<const LandmarkId> visible, EvidenceByLandmark& evidence) {
+  std::vector<bool> matched(map.landmark_id_end());
+  for (std::size_t i = 0; i < frame.landmarks.size(); ++i) {
+    const LandmarkId id = frame.landmarks[i];
+    if (id == kNoId || frame.outlier[i]) continue;
+    matched[id] = true;
+    LandmarkEvidence& e = evidence[id];
+    ++e.found;
+    e.static_log_odds += kFound * static_cast<float>(frame.track_weights[i]) / 255;
+  }
+  const Pose camera_from_world = frame.world_from_camera.inverse();
+  for (const LandmarkId id : visible) {
+    LandmarkEvidence& e = evidence[id];
+    ++e.visible;
+    if (matched[id]) continue;
+    if (looked_past(*frame.frame, camera_from_world * map.landmark(id)->position_in_world))
+      e.static_log_odds -= kLookedPast;
+  }
+}
+
+}  // namespace stillpoint::orb
