@@ -1,5 +1,7 @@
 #include "orb_slam/keyframe_policy.hpp"
 
+#include "orb_slam/landmark_geometry.hpp"
+
 namespace stillpoint::orb {
 namespace {
 
@@ -40,7 +42,10 @@ TrackingQuality tracking_quality(const ObservedFrame& frame, const SparseMap& ma
     const float depth = frame.features->depth[i];
     if (depth <= 0 || depth > options.close_depth || !frame.usable(i)) continue;
     const bool tracked = frame.landmarks[i] != kNoId && !frame.outlier[i];
-    ++(tracked ? quality.close_tracked : quality.close_untracked);
+    const bool could_be =
+        frame.track_weights[i] >= kMinMapWeight && frame.map_weights[i] >= kMinMapWeight;
+    quality.close_tracked += tracked ? 1 : 0;
+    quality.close_untracked += !tracked && could_be ? 1 : 0;
   }
   return quality;
 }

@@ -23,7 +23,7 @@ struct TrackingQuality {
   int inliers = 0;            ///< landmarks of the map that fit the pose
   int reference_matches = 0;  ///< landmarks the reference key frame sees, of those well established
   int close_tracked = 0;      ///< features with near depth and a fitting landmark
-  int close_untracked = 0;    ///< features with near depth and none
+  int close_untracked = 0;    ///< features with near depth and none, which could become one
   int frames_since_last = 0;  ///< since the last key frame
 };
 

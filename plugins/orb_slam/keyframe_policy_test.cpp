@@ -85,13 +85,17 @@ TEST_F(TrackingQualityTest, CountsNearPointsByWhetherTheyAreTracked) {
       frame_.outlier[i] = true;
     else if (close <= 18)
       frame_.track_weights[i] = 0;
+    else if (close <= 21) {  // on something that is used, but never mapped
+      frame_.landmarks[i] = kNoId;
+      frame_.map_weights[i] = 0;
+    }
   }
-  ASSERT_GT(close, 20);
+  ASSERT_GT(close, 25);
   const TrackingQuality quality = tracking_quality(frame_, known_.map, 123, 7, options_);
   EXPECT_EQ(quality.inliers, 123);
   EXPECT_EQ(quality.frames_since_last, 7);
   EXPECT_EQ(quality.close_untracked, 15) << "without landmark, or not fitting it";
-  EXPECT_EQ(quality.close_tracked, close - 18) << "moving ones count nowhere";
+  EXPECT_EQ(quality.close_tracked, close - 21) << "what cannot be mapped counts nowhere";
 }
 
 TEST_F(TrackingQualityTest, CountsWellEstablishedLandmarksOfTheReference) {
