@@ -50,6 +50,16 @@ ClassNames named_classes(const std::string& list) {
                                  "; there are: " + join(names));
 }
 
+ClassNames classes_of(const std::vector<std::string>& option) {
+  constexpr std::size_t kMost = 256;  // labels are 8-bit
+  ClassNames classes = option.size() == 1 ? named_classes(option.front()) : option;
+  if (std::ranges::find(classes, "") != classes.end())
+    throw Error(Fault::kUsage, "'classes' has a class without a name", "", "name it");
+  if (classes.size() >= 2 && classes.size() <= kMost) return classes;
+  throw Error(Fault::kUsage, "'classes' has " + std::to_string(classes.size()) + " names", "",
+              "name a list (voc21, coco80, person), or the background and 1 to 255 classes");
+}
+
 int class_id(const ClassNames& classes, const std::string& name) {
   const auto found = std::ranges::find(classes, name);
   if (found != classes.end()) return static_cast<int>(found - classes.begin());

@@ -1,5 +1,7 @@
 #include "decision_objects/bayes.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <opencv2/imgproc.hpp>
 
 #include "decision_objects/class_selection.hpp"
@@ -61,11 +63,13 @@ StaticWeights Bayes::decide(const Frame& frame, const Segmentation& segmentation
 
 void Bayes::weigh_surfaces(const Frame& frame, StaticWeights& weights) const {
   const cv::Mat& field = field_.log_odds();
+  const double prior = log_odds(options_.other.prior);
   cv::Mat cells(field.size(), CV_8U);
-  for (int y = 0; y < field.rows; ++y)
-    for (int x = 0; x < field.cols; ++x)
-      cells.at<std::uint8_t>(y, x) =
-          weight_of(field.at<float>(y, x) + log_odds(options_.other.prior));
+  for (int y = 0; y < field.rows; ++y) {
+    const auto* evidence = field.ptr<float>(y);
+    auto* weight = cells.ptr<std::uint8_t>(y);
+    for (int x = 0; x < field.cols; ++x) weight[x] = weight_of(prior + evidence[x]);
+  }
   cv::resize(cells, weights.track, frame.gray.size(), 0, 0, cv::INTER_NEAREST);
 }
 
@@ -96,6 +100,7 @@ const ClassPolicy& Bayes::policy_of(const SegmentedObject& object) const {
 /// Full weight while moving is unlikely, none when it is likely.
 std::uint8_t Bayes::weight_of(double log_odds) const {
   constexpr double kUnlikely = 0.15;
+  if (log_odds < -2) return 255;  // most surfaces: not even 0.12
   const double p = probability(log_odds);
   const double doubt = (p - kUnlikely) / (options_.objects.moves_above - kUnlikely);
   return static_cast<std::uint8_t>(std::lround(255 * (1 - std::clamp(doubt, 0.0, 1.0))));

@@ -78,21 +78,21 @@ double parallax(const Pairs& inliers, const ImageModel& homography) {
   return *nth;
 }
 
-void visit_reliability(OptionVisitor& v, int& min_matches, double& min_inlier_share) {
+}  // namespace
+
+void LkOptions::visit(OptionVisitor& v) {
+  consensus.visit(v);
+  follow.visit(v);
   v("min_matches", min_matches,
     {.min = 8, .max = 100000, .help = "fewer decide nothing (reliable: false)"});
   v("min_inlier_share", min_inlier_share,
     {.min = 0, .max = 1, .help = "when fewer matches agree, nothing is decided"});
 }
 
-}  // namespace
-
 void EpipolarChecker::Options::visit(OptionVisitor& v) {
   v("epsilon", epsilon,
     {.min = 0, .unit = "px", .help = "farther from its epipolar line a point moves (eq. 3)"});
-  consensus.visit(v);
-  follow.visit(v);
-  visit_reliability(v, min_matches, min_inlier_share);
+  lk.visit(v);
   v("min_parallax", min_parallax,
     {.min = 0,
      .unit = "px",
@@ -109,19 +109,19 @@ EpipolarChecker::EpipolarChecker(const Options& options, moving::Consensus conse
     : options_(options),
       consensus_(consensus),
       seed_(static_cast<int>(context.seed % 0x7fffffff)),
-      follower_(options.follow) {}
+      follower_(options.lk.follow) {}
 
 MovingPoints EpipolarChecker::check(const Frame& previous, const Frame& current) {
   const std::vector<Match> matches = follower_.follow(previous, current);
-  if (matches.size() < static_cast<std::size_t>(options_.min_matches)) return undecided(matches);
+  if (matches.size() < static_cast<std::size_t>(options_.lk.min_matches)) return undecided(matches);
   const Pairs pairs = pairs_of(matches);
   const auto model = moving::find_fundamental(pairs.previous, pairs.current, consensus_,
-                                              options_.consensus, seed_);
-  if (!model || !agreed(*model, matches, options_.min_inlier_share)) return undecided(matches);
+                                              options_.lk.consensus, seed_);
+  if (!model || !agreed(*model, matches, options_.lk.min_inlier_share)) return undecided(matches);
   if (options_.when_degenerate != Degenerate::kIgnore) {
     const Pairs inliers = inliers_of(pairs, *model);
     const auto plane =
-        moving::find_homography(inliers.previous, inliers.current, options_.consensus);
+        moving::find_homography(inliers.previous, inliers.current, options_.lk.consensus);
     if (plane && parallax(inliers, *plane) < options_.min_parallax) {
       if (options_.when_degenerate == Degenerate::kUnreliable) return undecided(matches);
       return judged_by_homography(matches, options_.epsilon, *plane);
@@ -135,17 +135,15 @@ MovingPoints EpipolarChecker::check(const Frame& previous, const Frame& current)
 void LkHomography::Options::visit(OptionVisitor& v) {
   v("epsilon", epsilon,
     {.min = 0, .unit = "px", .help = "farther from where the homography puts it a point moves"});
-  consensus.visit(v);
-  follow.visit(v);
-  visit_reliability(v, min_matches, min_inlier_share);
+  lk.visit(v);
 }
 
 MovingPoints LkHomography::check(const Frame& previous, const Frame& current) {
   const std::vector<Match> matches = follower_.follow(previous, current);
-  if (matches.size() < static_cast<std::size_t>(options_.min_matches)) return undecided(matches);
+  if (matches.size() < static_cast<std::size_t>(options_.lk.min_matches)) return undecided(matches);
   const Pairs pairs = pairs_of(matches);
-  const auto model = moving::find_homography(pairs.previous, pairs.current, options_.consensus);
-  if (!model || !agreed(*model, matches, options_.min_inlier_share)) return undecided(matches);
+  const auto model = moving::find_homography(pairs.previous, pairs.current, options_.lk.consensus);
+  if (!model || !agreed(*model, matches, options_.lk.min_inlier_share)) return undecided(matches);
   return judged_by_homography(matches, options_.epsilon, *model);
 }
 

@@ -9,6 +9,16 @@
 
 namespace stillpoint {
 
+/// What the checks from images alone have in common: matches, and a model that most agree on.
+struct LkOptions {
+  moving::ConsensusOptions consensus;
+  moving::FollowOptions follow;
+  int min_matches = 30;
+  double min_inlier_share = 0.5;
+
+  void visit(OptionVisitor& v);
+};
+
 /// `lk_epipolar` exactly as in the paper; `lk_usac` and `lk_magsac` find the fundamental matrix
 /// with other estimators. Without parallax a fundamental matrix is not determined (camera that
 /// stands still or only turns, a plane): `when_degenerate` says what happens then.
@@ -18,10 +28,7 @@ class EpipolarChecker : public MovingChecker {
 
   struct Options {
     double epsilon = 1.0;  ///< px
-    moving::ConsensusOptions consensus;
-    moving::FollowOptions follow;
-    int min_matches = 30;
-    double min_inlier_share = 0.5;
+    LkOptions lk;
     double min_parallax = 0.3;  ///< px
     Degenerate when_degenerate = Degenerate::kUnreliable;
 
@@ -64,15 +71,12 @@ class LkHomography final : public MovingChecker {
  public:
   struct Options {
     double epsilon = 2.0;  ///< px
-    moving::ConsensusOptions consensus;
-    moving::FollowOptions follow;
-    int min_matches = 30;
-    double min_inlier_share = 0.5;
+    LkOptions lk;
 
     void visit(OptionVisitor& v);
   };
 
-  explicit LkHomography(const Options& options) : options_(options), follower_(options.follow) {}
+  explicit LkHomography(const Options& options) : options_(options), follower_(options.lk.follow) {}
 
   MovingPoints check(const Frame& previous, const Frame& current) override;
 

@@ -6,6 +6,8 @@
 #include <limits>
 #include <utility>
 
+#include "stillpoint/median.hpp"
+
 namespace stillpoint {
 
 using moving::Match;
@@ -50,12 +52,6 @@ double distance_to_segment(const Eigen::Vector2d& p, const Eigen::Vector2d& a,
   const double squared = along.squaredNorm();
   const double t = squared > 0 ? std::clamp((p - a).dot(along) / squared, 0.0, 1.0) : 0.0;
   return (p - a - t * along).norm();
-}
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 bool usable_depth(const Frame& frame) {

@@ -20,11 +20,7 @@ using Matrix36 = Eigen::Matrix<double, 3, 6>;
 
 // d (pixel, inverse depth) / d tangent of the pose at a point in the current camera frame.
 Matrix36 jacobian(const Eigen::Vector3d& p, const Camera& camera) {
-  const double iz = 1.0 / p.z();
-  Eigen::Matrix3d by_point;
-  by_point << camera.fx * iz, 0, -camera.fx * p.x() * iz * iz,  //
-      0, camera.fy * iz, -camera.fy * p.y() * iz * iz,          //
-      0, 0, -iz * iz;
+  const Eigen::Matrix3d by_point = camera.measurement_jacobian(p);
   Matrix36 result;
   result.leftCols<3>() = by_point;
   result.rightCols<3>() = -by_point * skew(p);

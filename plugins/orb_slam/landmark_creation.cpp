@@ -2,10 +2,12 @@
 
 #include <Eigen/LU>
 #include <algorithm>
+#include <utility>
 
 #include "orb_slam/landmark_geometry.hpp"
 #include "orb_slam/matcher.hpp"
 #include "orb_slam/pose_solver.hpp"
+#include "stillpoint/median.hpp"
 
 namespace stillpoint::orb {
 namespace {
@@ -30,10 +32,7 @@ double median_depth(const KeyFrame& keyframe) {
   std::vector<float> depths;
   for (const float d : keyframe.features->depth)
     if (d > 0) depths.push_back(d);
-  if (depths.empty()) return 0.0;
-  const auto middle = depths.begin() + static_cast<std::ptrdiff_t>(depths.size() / 2);
-  std::nth_element(depths.begin(), middle, depths.end());
-  return *middle;
+  return median(std::move(depths));
 }
 
 LandmarkId add_seen_by(MapEdit& edit, const Eigen::Vector3d& position, KeyFrameId creator,

@@ -99,12 +99,9 @@ class Solver {
     if (robust_ && squared > limit) weight *= std::sqrt(limit / squared);
 
     // d p / d (translation, rotation) = [I, -skew(p)] for a perturbation on the left.
-    const double iz = 1.0 / p.z();
-    Eigen::Matrix3d by_point;
-    by_point << camera_.fx * iz / o.pixel_sigma, 0,
-        -camera_.fx * p.x() * iz * iz / o.pixel_sigma,                                      //
-        0, camera_.fy * iz / o.pixel_sigma, -camera_.fy * p.y() * iz * iz / o.pixel_sigma,  //
-        0, 0, o.inverse_depth > 0 ? -iz * iz / o.inverse_depth_sigma : 0.0;
+    Eigen::Matrix3d by_point = camera_.measurement_jacobian(p);
+    by_point.topRows<2>() /= o.pixel_sigma;
+    by_point(2, 2) = o.inverse_depth > 0 ? by_point(2, 2) / o.inverse_depth_sigma : 0.0;
     Eigen::Matrix<double, 3, 6> jacobian;
     jacobian.leftCols<3>() = by_point;
     for (int row = 0; row < 3; ++row)

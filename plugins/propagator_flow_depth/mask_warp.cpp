@@ -1,8 +1,9 @@
 #include "propagator_flow_depth/mask_warp.hpp"
 
-#include <algorithm>
 #include <opencv2/imgproc.hpp>
 #include <vector>
+
+#include "stillpoint/median.hpp"
 
 namespace stillpoint {
 namespace {
@@ -13,13 +14,6 @@ const cv::Point2f kSampleCentre =
     cv::Point2f(kSample - 1, kSample - 1) / 2;  // as cv::resize has it
 constexpr float kReach = 12.0f;                 // px around a track that move with it
 constexpr float kMedianWeight = 0.1f;           // of the median motion against a track right there
-
-float median(std::vector<float>& values) {
-  if (values.empty()) return 0.0f;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::ranges::nth_element(values, middle);
-  return *middle;
-}
 
 /// From a position in the current view back to the reference: the motion of the tracks around it.
 cv::Point2f way_back(cv::Point2f position, std::span<const Track> tracks,

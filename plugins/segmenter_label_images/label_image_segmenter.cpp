@@ -15,19 +15,6 @@ std::filesystem::path label_folder(const std::string& path, const StageContext& 
               "name it as 'path' of the segmenter");
 }
 
-ClassNames class_names(const std::string& text) {
-  if (text.find(',') == std::string::npos) return named_classes(text);
-  ClassNames names;
-  std::istringstream stream(text);
-  for (std::string name; std::getline(stream, name, ',');) {
-    const std::size_t first = name.find_first_not_of(' ');
-    if (first == std::string::npos)
-      throw Error(Fault::kUsage, "'" + text + "' has a class without a name", "classes");
-    names.push_back(name.substr(first, name.find_last_not_of(' ') + 1 - first));
-  }
-  return names;
-}
-
 /// Only asked for when there are to be false objects, because other lists may lack the default.
 int false_label(const NetworkErrorOptions& options, const ClassNames& classes) {
   return options.false_objects > 0 ? class_id(classes, options.false_class) : 0;
@@ -43,7 +30,8 @@ void LabelImageSegmenter::Options::visit(OptionVisitor& v) {
   v("path", path,
     {.help = "folder of the label images; empty for 'labels' in the recording", .is_path = true});
   v("classes", classes,
-    {.help = "voc21, coco80, person, or names in order of id, separated by commas"});
+    {.help = "names by class id, the background first; or one of the lists [voc21], [coco80], "
+             "[person]"});
   v("max_difference", max_difference,
     {.min = 0, .max = 10, .unit = "s", .help = "labels farther from a frame are not its own"});
   v("min_object_pixels", min_object_pixels,
@@ -53,7 +41,7 @@ void LabelImageSegmenter::Options::visit(OptionVisitor& v) {
 
 LabelImageSegmenter::LabelImageSegmenter(Options options, const StageContext& context)
     : options_(std::move(options)),
-      classes_(class_names(options_.classes)),
+      classes_(classes_of(options_.classes)),
       files_(label_folder(options_.path, context)),
       errors_(options_.errors, false_label(options_.errors, classes_), context.seed),
       log_(context.log) {
@@ -75,7 +63,8 @@ Segmentation LabelImageSegmenter::segment(const Frame& frame) {
                 "the label image has " + size_text(labels.size()) + " pixels, but the frame has " +
                     size_text(frame.gray.size()),
                 nearest.file.string(), "labels must belong to the undistorted and cropped images");
-  result.labels = errors_.apply(labels, frame.index, options_.min_object_pixels);
+  result.labels =
+      errors_.any() ? errors_.apply(labels, frame.index, options_.min_object_pixels) : labels;
   find_objects(result, options_.min_object_pixels);
   return result;
 }

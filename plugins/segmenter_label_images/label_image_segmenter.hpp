@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <string>
+#include <vector>
 
 #include "segmenter_label_images/label_files.hpp"
 #include "segmenter_label_images/network_errors.hpp"
@@ -15,8 +16,8 @@ namespace stillpoint {
 class LabelImageSegmenter final : public Segmenter {
  public:
   struct Options {
-    std::string path;               ///< folder; empty: `labels` in the recording
-    std::string classes = "voc21";  ///< name of a list, or names separated by commas
+    std::string path;                              ///< folder; empty: `labels` in the recording
+    std::vector<std::string> classes = {"voc21"};  ///< one: the name of a list
     double max_difference = 0.001;  ///< seconds between an image's stamp and the frame's
     int min_object_pixels = 100;    ///< smaller objects become background
     NetworkErrorOptions errors;

@@ -89,13 +89,13 @@ TEST_F(LabelImageSegmenterTest, VoidAndSmallObjectsAreBackground) {
 
 TEST_F(LabelImageSegmenterTest, ClassesAreNamedOrListed) {
   write(1.0, cv::Mat(kSize, CV_8UC1, cv::Scalar(1)));
-  options_.classes = "background, person";
+  options_.classes = {"background", "person"};
   EXPECT_EQ(open().classes(), (ClassNames{"background", "person"}));
-  options_.classes = "coco80";
+  options_.classes = {"coco80"};
   EXPECT_EQ(open().classes().size(), 81U);
-  options_.classes = "voc12";
+  options_.classes = {"voc12"};
   EXPECT_THAT(message_of([&] { open(); }, Fault::kUsage), HasSubstr("did you mean 'voc21'?"));
-  options_.classes = "background,,person";
+  options_.classes = {"background", "", "person"};
   EXPECT_THAT(message_of([&] { open(); }, Fault::kUsage), HasSubstr("class without a name"));
 }
 

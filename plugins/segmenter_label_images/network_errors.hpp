@@ -26,6 +26,10 @@ class NetworkErrors {
   NetworkErrors(NetworkErrorOptions options, int false_label, std::uint64_t seed)
       : options_(std::move(options)), false_label_(false_label), seed_(seed) {}
 
+  bool any() const {
+    return options_.miss_rate > 0 || options_.boundary != 0 || options_.wobble > 0 ||
+           options_.false_objects > 0;
+  }
   /// Objects are the connected parts of each class; those below `min_object_pixels` are left out.
   cv::Mat apply(const cv::Mat& labels, std::uint32_t frame, int min_object_pixels) const;
 

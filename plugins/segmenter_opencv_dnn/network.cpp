@@ -4,14 +4,16 @@
 #include <opencv2/core.hpp>
 #include <opencv2/imgproc.hpp>
 
-#include "segmenter_opencv_dnn/model_lookup.hpp"
 #include "segmenter_opencv_dnn/network_file.hpp"
 #include "segmenter_opencv_dnn/quiet_opencv.hpp"
 #include "stillpoint/did_you_mean.hpp"
 #include "stillpoint/error.hpp"
+#include "stillpoint/model_lookup.hpp"
 
 namespace stillpoint {
 namespace {
+
+const char kOwnCode = 0;  // models lie beside the library that this is in
 
 double of_channel(const std::vector<double>& values, int channel) {
   return values.size() == 1 ? values[0] : values[static_cast<std::size_t>(channel)];
@@ -53,8 +55,9 @@ void NetworkOptions::visit(OptionVisitor& v) {
 }
 
 Network::Network(const NetworkOptions& options, bool all_outputs)
-    : options_(options), file_(find_model(options.model).string()) {
-  const std::string config = options.config.empty() ? "" : find_model(options.config).string();
+    : options_(options), file_(find_model(options.model, &kOwnCode).string()) {
+  const std::string config =
+      options.config.empty() ? "" : find_model(options.config, &kOwnCode).string();
   net_ = read_network(file_, config);
   const QuietOpenCv quiet;
   outputs_ = chosen_outputs(net_, options_, file_, all_outputs);

@@ -8,16 +8,7 @@
 namespace stillpoint {
 namespace {
 
-constexpr std::size_t kMostClasses = 256;  // labels are 8-bit
 constexpr std::size_t kMostObjects = 255;  // instances are 8-bit
-
-ClassNames class_names(const std::vector<std::string>& given) {
-  ClassNames names = given.size() == 1 ? named_classes(given.front()) : given;
-  if (names.size() >= 2 && names.size() <= kMostClasses) return names;
-  throw Error(Fault::kUsage, "'classes' has " + std::to_string(names.size()) + " names",
-              "segmenter",
-              "name a list (voc21, coco80, person), or the background and 1 to 255 classes");
-}
 
 std::string shape_text(const cv::Mat& output) {
   std::string text;
@@ -95,7 +86,7 @@ void OpenCvDnnSegmenter::Options::visit(OptionVisitor& v) {
 
 OpenCvDnnSegmenter::OpenCvDnnSegmenter(const Options& options, const StageContext& context)
     : options_(options),
-      classes_(class_names(options.classes)),
+      classes_(classes_of(options.classes)),
       network_((use_threads(options.threads, context), options.network),
                options.rule.result == ResultKind::kBoxes) {
   check_outputs();

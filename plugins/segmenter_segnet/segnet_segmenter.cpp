@@ -5,19 +5,13 @@
 #include <utility>
 
 #include "segmenter_segnet/class_picking.hpp"
+#include "stillpoint/model_lookup.hpp"
 #include "stillpoint/objects.hpp"
 
 namespace stillpoint {
 namespace {
 
-constexpr std::size_t kMostClasses = 256;  // labels are 8-bit
-
-ClassNames classes_of(const std::vector<std::string>& given) {
-  ClassNames names = given.size() == 1 ? named_classes(given.front()) : given;
-  if (names.size() >= 2 && names.size() <= kMostClasses) return names;
-  throw Error(Fault::kUsage, "'classes' has " + std::to_string(names.size()) + " names",
-              "segmenter", "name a list (voc21, coco80, person), or 2 to 256 classes");
-}
+const char kOwnCode = 0;  // models may lie beside the library that this is in
 
 void check_classes(int channels, const ClassNames& classes, const std::string& prototxt) {
   if (static_cast<std::size_t>(channels) == classes.size()) return;
@@ -57,7 +51,7 @@ void SegnetSegmenter::Options::visit(OptionVisitor& v) {
 SegnetSegmenter::SegnetSegmenter(Options options, const StageContext& context)
     : options_(std::move(options)),
       classes_(classes_of(options_.classes)),
-      network_(options_.prototxt, options_.model) {
+      network_(find_model(options_.prototxt, &kOwnCode), find_model(options_.model, &kOwnCode)) {
   check_classes(network_.channels(), classes_, options_.prototxt);
   cv::setNumThreads(options_.threads > 0 ? options_.threads : context.threads);
 }

@@ -26,7 +26,7 @@ function(stillpoint_add_tests name)
   target_compile_definitions(${name} PRIVATE
     STILLPOINT_SOURCE_DIR="${PROJECT_SOURCE_DIR}" STILLPOINT_BINARY_DIR="${PROJECT_BINARY_DIR}")
   target_link_libraries(${name} PRIVATE ${ARG_LINK} stillpoint::sdk GTest::gmock GTest::gtest_main)
-  gtest_discover_tests(${name} DISCOVERY_MODE PRE_TEST DISCOVERY_TIMEOUT 60)
+  gtest_discover_tests(${name} DISCOVERY_MODE PRE_TEST NO_PRETTY_VALUES DISCOVERY_TIMEOUT 60)
 endfunction()
 
 # stillpoint_add_project_plugin(NAME LINK libraries…): a plugin of this project from the sources in

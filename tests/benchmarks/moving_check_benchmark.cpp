@@ -191,17 +191,17 @@ const bool kRegistered = [] {
     if (!fs::exists(entry.path() / "instances")) continue;
     for (const std::size_t stride : {1, 3}) {
       LkEpipolar::Options released;
-      released.consensus.ransac_threshold = 0.1;
-      released.follow = {.corners = {.corners = moving::CornerOptions::Method::kShiTomasi,
-                                     .max_corners = 1000,
-                                     .corner_quality = 0.01},
-                         .window = 22,
-                         .pyramid_levels = 6,
-                         .iterations = 20,
-                         .accuracy = 0.01,
-                         .max_patch_difference = 2120};
+      released.lk.consensus.ransac_threshold = 0.1;
+      released.lk.follow = {.corners = {.corners = moving::CornerOptions::Method::kShiTomasi,
+                                        .max_corners = 1000,
+                                        .corner_quality = 0.01},
+                            .window = 22,
+                            .pyramid_levels = 6,
+                            .iterations = 20,
+                            .accuracy = 0.01,
+                            .max_patch_difference = 2120};
       released.when_degenerate = EpipolarChecker::Degenerate::kIgnore;
-      released.min_inlier_share = 0;
+      released.lk.min_inlier_share = 0;
       add<LkEpipolar>("lk_epipolar", entry.path(), stride);
       add<LkEpipolar>("lk_epipolar_ignore", entry.path(), stride,
                       {.when_degenerate = EpipolarChecker::Degenerate::kIgnore});

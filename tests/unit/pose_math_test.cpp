@@ -35,8 +35,7 @@ TEST(PoseMath, InterpolationStopsAtBothEnds) {
 TEST(PoseMath, AlignmentFindsScaleRotationAndTranslation) {
   const Eigen::Matrix3Xd source = Eigen::Matrix3Xd::Random(3, 20);
   const Pose truth = random_pose();
-  const Eigen::Matrix3Xd target =
-      (2.5 * (truth.linear() * source)).colwise() + truth.translation();
+  const Eigen::Matrix3Xd target = (2.5 * (truth.linear() * source)).colwise() + truth.translation();
   const Alignment found = align_points(source, target, true);
   EXPECT_NEAR(found.scale, 2.5, 1e-12);
   EXPECT_TRUE(found.target_from_source.isApprox(truth, 1e-12));

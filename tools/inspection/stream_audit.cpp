@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "stillpoint/median.hpp"
+
 namespace stillpoint::inspection {
 
 StreamAudit audit_stream(const std::vector<StampedImage>& images) {
@@ -14,10 +16,7 @@ StreamAudit audit_stream(const std::vector<StampedImage>& images) {
   for (std::size_t i = 1; i < images.size(); ++i)
     intervals.push_back(images[i].time - images[i - 1].time);
   if (intervals.empty()) return audit;
-  std::vector<double> sorted = intervals;
-  const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
-  std::nth_element(sorted.begin(), middle, sorted.end());
-  audit.interval = *middle;
+  audit.interval = median(intervals);
   for (std::size_t i = 0; i < intervals.size(); ++i)
     if (intervals[i] > kGap * audit.interval) audit.gaps.push_back({images[i].time, intervals[i]});
   std::stable_sort(audit.gaps.begin(), audit.gaps.end(),

@@ -14,6 +14,7 @@
 #include "stillpoint/contracts/tracker.hpp"
 #include "stillpoint/did_you_mean.hpp"
 #include "stillpoint/error.hpp"
+#include "stillpoint/model_lookup.hpp"
 #include "stillpoint/objects.hpp"
 #include "stillpoint/options.hpp"
 #include "stillpoint/plugin.hpp"

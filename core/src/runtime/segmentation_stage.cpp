@@ -50,8 +50,7 @@ void SegmentationStage::segment(FramePtr frame) {
 
 Segmentation SegmentationStage::labels_of(const Frame& frame) {
   try {
-    Segmentation labels =
-        segmenter_.call("segmentation", frame.index, &Segmenter::segment, frame);
+    Segmentation labels = segmenter_.call("segmentation", frame.index, &Segmenter::segment, frame);
     if (labels.known() && labels.instances.empty()) find_objects(labels, kMinObjectPixels);
     return labels;
   } catch (const StageError& error) {

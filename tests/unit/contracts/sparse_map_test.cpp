@@ -7,7 +7,8 @@
 namespace stillpoint {
 namespace {
 
-KeyFrame make_keyframe(KeyFrameId id, std::vector<LandmarkId> landmarks, std::size_t features = 30) {
+KeyFrame make_keyframe(KeyFrameId id, std::vector<LandmarkId> landmarks,
+                       std::size_t features = 30) {
   auto points = std::make_shared<Features>();
   points->keypoints.resize(features);
   points->descriptors.resize(features);

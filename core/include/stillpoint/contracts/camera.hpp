@@ -34,6 +34,16 @@ struct STILLPOINT_EXPORT Camera {
   Eigen::Vector3d unproject(double u, double v, double z) const {
     return {(u - cx) / fx * z, (v - cy) / fy * z, z};
   }
+  /// Derivative of what is measured of a point, (u, v, 1 / z), by the point in the camera frame.
+  Eigen::Matrix3d measurement_jacobian(const Eigen::Vector3d& point_in_camera) const {
+    const Eigen::Vector3d& p = point_in_camera;
+    const double iz = 1.0 / p.z();
+    Eigen::Matrix3d jacobian;
+    jacobian << fx * iz, 0, -fx * p.x() * iz * iz,  //
+        0, fy * iz, -fy * p.y() * iz * iz,          //
+        0, 0, -iz * iz;
+    return jacobian;
+  }
   /// Whether a pixel position lies in the image, `border` pixels away from its edges.
   bool contains(double u, double v, double border = 0.0) const {
     return u >= border && v >= border && u <= width - 1 - border && v <= height - 1 - border;

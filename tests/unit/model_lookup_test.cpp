@@ -1,4 +1,4 @@
-#include "segmenter_opencv_dnn/model_lookup.hpp"
+#include "stillpoint/model_lookup.hpp"
 
 #include <gmock/gmock.h>
 
@@ -11,6 +11,8 @@ namespace stillpoint {
 namespace {
 
 using ::testing::HasSubstr;
+
+const int own = 0;
 
 class ModelLookup : public ::testing::Test {
  protected:
@@ -29,25 +31,25 @@ class ModelLookup : public ::testing::Test {
 TEST_F(ModelLookup, TakesTheFileItselfFirst) {
   const auto file = data_.write("here/net.onnx", "");
   first_.write("net.onnx", "");
-  EXPECT_EQ(find_model(file), file);
+  EXPECT_EQ(find_model(file, &own), file);
 }
 
 TEST_F(ModelLookup, SearchesTheFoldersInOrder) {
   data_.write("stillpoint/models/net.onnx", "");
-  EXPECT_EQ(find_model("/configs/net.onnx"), data_.path() / "stillpoint/models/net.onnx");
+  EXPECT_EQ(find_model("/configs/net.onnx", &own), data_.path() / "stillpoint/models/net.onnx");
   second_.write("net.onnx", "");
-  EXPECT_EQ(find_model("/configs/net.onnx"), second_.path() / "net.onnx");
+  EXPECT_EQ(find_model("/configs/net.onnx", &own), second_.path() / "net.onnx");
   first_.write("net.onnx", "");
-  EXPECT_EQ(find_model("/configs/net.onnx"), first_.path() / "net.onnx");
+  EXPECT_EQ(find_model("/configs/net.onnx", &own), first_.path() / "net.onnx");
 }
 
 TEST_F(ModelLookup, NamesEveryPlaceWhenThereIsNone) {
   try {
-    find_model("/configs/net.onnx");
+    find_model("/configs/net.onnx", &own);
     FAIL() << "found";
   } catch (const Error& error) {
     EXPECT_EQ(error.fault(), Fault::kUsage);
-    for (const auto& folder : model_folders())
+    for (const auto& folder : model_folders(&own))
       EXPECT_THAT(error.what(), HasSubstr((folder / "net.onnx").string()));
     EXPECT_THAT(error.what(), HasSubstr("tools/get_models"));
   }
@@ -55,7 +57,7 @@ TEST_F(ModelLookup, NamesEveryPlaceWhenThereIsNone) {
 
 TEST_F(ModelLookup, FoldersAreNoModels) {
   std::filesystem::create_directory(first_.path() / "net.onnx");
-  EXPECT_THROW(find_model((first_.path() / "net.onnx").string()), Error);
+  EXPECT_THROW(find_model((first_.path() / "net.onnx").string(), &own), Error);
 }
 
 }  // namespace

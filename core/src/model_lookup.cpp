@@ -1,4 +1,4 @@
-#include "segmenter_opencv_dnn/model_lookup.hpp"
+#include "stillpoint/model_lookup.hpp"
 
 #include <dlfcn.h>
 
@@ -18,10 +18,10 @@ std::string environment(const char* name) {
   return value ? value : "";
 }
 
-/// The folder of the library or program that this code has become part of.
-fs::path own_folder() {
+/// The folder of the library or program that code has become part of.
+fs::path folder_of(const void* code) {
   Dl_info info{};
-  if (dladdr(reinterpret_cast<const void*>(&own_folder), &info) == 0) return {};
+  if (dladdr(code, &info) == 0) return {};
   std::error_code failed;
   const fs::path file = fs::canonical(info.dli_fname, failed);
   return failed ? fs::path() : file.parent_path();
@@ -34,12 +34,12 @@ bool is_file(const fs::path& file) {
 
 }  // namespace
 
-std::vector<fs::path> model_folders() {
+std::vector<fs::path> model_folders(const void* own_code) {
   std::vector<fs::path> folders;
   std::istringstream listed(environment("STILLPOINT_MODEL_PATH"));
   for (std::string folder; std::getline(listed, folder, ':');)
     if (!folder.empty()) folders.emplace_back(folder);
-  if (const fs::path own = own_folder(); !own.empty()) folders.push_back(own / "models");
+  if (const fs::path own = folder_of(own_code); !own.empty()) folders.push_back(own / "models");
   if (const std::string data = environment("XDG_DATA_HOME"); !data.empty())
     folders.push_back(fs::path(data) / "stillpoint/models");
   else if (const std::string home = environment("HOME"); !home.empty())
@@ -47,10 +47,10 @@ std::vector<fs::path> model_folders() {
   return folders;
 }
 
-fs::path find_model(const std::string& file) {
+fs::path find_model(const std::string& file, const void* own_code) {
   if (is_file(file)) return file;
   std::vector<std::string> searched = {file};
-  for (const fs::path& folder : model_folders()) {
+  for (const fs::path& folder : model_folders(own_code)) {
     fs::path candidate = folder / fs::path(file).filename();
     if (is_file(candidate)) return candidate;
     searched.push_back(candidate.string());
