@@ -11,8 +11,6 @@
 namespace stillpoint {
 
 using moving::Match;
-using moving::RigidMatch;
-using moving::RigidMotion;
 using moving::Surface;
 
 namespace {
@@ -96,10 +94,10 @@ MovingPoints RgbdChecker::check(const Frame& previous, const Frame& current) {
     result.points.push_back({.previous = o.match.previous, .current = o.match.current});
   const auto motion = camera_motion(observations, current);
   if (motion) {
-    judge(observations, motion->current_from_previous, *current.camera, result);
-    recheck(observations, motion->current_from_previous, *current.camera, result);
+    judge(observations, motion->target_from_source, *current.camera, result);
+    recheck(observations, motion->target_from_source, *current.camera, result);
   }
-  remember(observations, result, motion ? motion->current_from_previous : memory_.motion,
+  remember(observations, result, motion ? motion->target_from_source : memory_.motion,
            current.index);
   return result;
 }

@@ -8,7 +8,7 @@
 
 #include "moving_checks/depth_surface.hpp"
 #include "moving_checks/point_follower.hpp"
-#include "moving_checks/rigid_motion.hpp"
+#include "stillpoint/rigid_motion.hpp"
 
 namespace stillpoint {
 
@@ -20,7 +20,7 @@ class RgbdChecker final : public MovingChecker {
   struct Options {
     double epsilon = 1.0;         ///< px
     double noise_multiple = 4.0;  ///< of the median residual of inliers
-    moving::RigidNoise noise;
+    RigidNoise noise;
     moving::SurfaceOptions surface;
     moving::FollowOptions follow;
     int samples = 60;
@@ -56,9 +56,9 @@ class RgbdChecker final : public MovingChecker {
   std::vector<Observation> observe(const Frame& previous, const Frame& current);
   void inherit_trust(std::vector<Observation>& observations) const;
   double inherited_trust(const Observation& observation) const;
-  std::optional<moving::RigidMotion> camera_motion(const std::vector<Observation>& observations,
+  std::optional<RigidMotion> camera_motion(const std::vector<Observation>& observations,
                                                    const Frame& current) const;
-  bool determined(const moving::RigidMotion& motion, const Camera& camera) const;
+  bool determined(const RigidMotion& motion, const Camera& camera) const;
   void judge(const std::vector<Observation>& observations, const Pose& motion, const Camera& camera,
              MovingPoints& result) const;
   void recheck(std::vector<Observation>& observations, const Pose& motion, const Camera& camera,

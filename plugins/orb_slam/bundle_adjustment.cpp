@@ -8,6 +8,7 @@
 #include <map>
 #include <set>
 
+#include "orb_slam/ceres_stop.hpp"
 #include "orb_slam/landmark_geometry.hpp"
 #include "orb_slam/pose_solver.hpp"
 #include "orb_slam/scale_pyramid.hpp"
@@ -112,27 +113,25 @@ class FixedCameraCost final : public ceres::SizedCostFunction<3, 3> {
   const Pose& camera_from_world_;
 };
 
-class StopCallback final : public ceres::IterationCallback {
+// Cameras that move, points, and further cameras that see the points and stay.
+class BundleProblem {
  public:
-  explicit StopCallback(std::stop_token hurry) : hurry_(std::move(hurry)) {}
-  ceres::CallbackReturnType operator()(const ceres::IterationSummary&) override {
-    return hurry_.stop_requested() ? ceres::SOLVER_TERMINATE_SUCCESSFULLY : ceres::SOLVER_CONTINUE;
-  }
-
- private:
-  std::stop_token hurry_;
-};
-
-class LocalProblem {
- public:
-  LocalProblem(const SparseMap& map, KeyFrameId centre, int max_keyframes) : map_(map) {
-    choose_cameras(centre, max_keyframes);
-    choose_points();
+  BundleProblem(const SparseMap& map, std::vector<KeyFrameId> moving,
+                const std::vector<LandmarkId>& points)
+      : map_(map), moving_index_(map.keyframe_id_end(), -1) {
+    std::erase(moving, KeyFrameId{0});  // the origin stays
+    for (const KeyFrameId id : moving) {
+      moving_index_[id] = static_cast<int>(moving_.size());
+      moving_.push_back({id, map.keyframe(id)->world_from_camera.inverse()});
+    }
+    for (const LandmarkId id : points)
+      points_.emplace_back(id, map.landmark(id)->position_in_world);
     for (auto& [id, position] : points_) add_point(id, position);
   }
 
-  void solve(const BundleOptions& options, std::stop_token hurry) {
-    if (problem_.NumResidualBlocks() == 0) return;
+  /// Whether there is a result.
+  bool solve(const BundleOptions& options, std::stop_token hurry) {
+    if (problem_.NumResidualBlocks() == 0) return false;
     StopCallback stop(std::move(hurry));
     ceres::Solver::Options solver;
     solver.linear_solver_type = ceres::SPARSE_SCHUR;
@@ -149,53 +148,26 @@ class LocalProblem {
         solver.linear_solver_ordering->AddElementToGroup(camera.change.data(), 1);
     ceres::Solver::Summary summary;
     ceres::Solve(solver, &problem_, &summary);
-    usable_ = summary.IsSolutionUsable();
+    return summary.IsSolutionUsable();
   }
 
-  /// Writes the result and drops what does not fit it.
-  std::vector<LandmarkId> store(MapEdit& edit) const {
-    std::vector<LandmarkId> adjusted;
-    if (!usable_) return adjusted;
+  std::vector<MovedKeyFrame> keyframes() const {
+    std::vector<MovedKeyFrame> moved;
     for (const CameraState& camera : moving_)
-      edit.keyframe(camera.id).world_from_camera =
-          orthonormalised(camera.camera_from_world().inverse());
-    for (const auto& [id, position] : points_) {
-      edit.landmark(id).position_in_world = position;
-      adjusted.push_back(id);
-    }
-    for (const LandmarkId id : adjusted) drop_outliers(edit, id);
-    return adjusted;
+      moved.push_back({camera.id, orthonormalised(camera.camera_from_world().inverse())});
+    return moved;
   }
+  const std::vector<std::pair<LandmarkId, Eigen::Vector3d>>& landmarks() const { return points_; }
 
  private:
-  void choose_cameras(KeyFrameId centre, int max_keyframes) {
-    std::vector<KeyFrameId> ids{centre};
-    for (const Covisibility& c : map_.keyframe(centre)->covisible)
-      if (static_cast<int>(ids.size()) < max_keyframes) ids.push_back(c.keyframe);
-    local_ = ids;
-    std::erase(ids, KeyFrameId{0});  // the origin stays
-    for (const KeyFrameId id : ids)
-      moving_.push_back({id, map_.keyframe(id)->world_from_camera.inverse()});
-  }
-
-  void choose_points() {
-    std::set<LandmarkId> ids;
-    for (const KeyFrameId keyframe : local_)
-      for (const LandmarkId id : map_.keyframe(keyframe)->landmarks)
-        if (id != kNoId) ids.insert(id);
-    for (const LandmarkId id : ids) points_.emplace_back(id, map_.landmark(id)->position_in_world);
-  }
-
   void add_point(LandmarkId id, Eigen::Vector3d& position) {
     for (const Observation& o : map_.landmark(id)->observations) {
       const KeyFrame& keyframe = *map_.keyframe(o.keyframe);
       const Measurement m = measurement(keyframe, o.feature);
-      const auto moving =
-          std::find_if(moving_.begin(), moving_.end(),
-                       [&](const CameraState& camera) { return camera.id == o.keyframe; });
-      if (moving != moving_.end()) {
-        auto& cost = moving_costs_.emplace_back(m, *moving);
-        problem_.AddResidualBlock(&cost, &loss_, moving->change.data(), position.data());
+      if (const int moving = moving_index_[o.keyframe]; moving >= 0) {
+        CameraState& camera = moving_[static_cast<std::size_t>(moving)];
+        auto& cost = moving_costs_.emplace_back(m, camera);
+        problem_.AddResidualBlock(&cost, &loss_, camera.change.data(), position.data());
       } else {
         auto [fixed, is_new] = fixed_.try_emplace(o.keyframe);
         if (is_new) fixed->second = keyframe.world_from_camera.inverse();
@@ -223,19 +195,6 @@ class LocalProblem {
             depth > 0 ? trust / c.depth_noise : 0.0};
   }
 
-  static void drop_outliers(MapEdit& edit, LandmarkId id) {
-    const std::vector<Observation> observations = edit.map().landmark(id)->observations;
-    for (const Observation& o : observations) {
-      const Landmark* landmark = edit.map().landmark(id);
-      if (!landmark) return;
-      const KeyFrame& keyframe = *edit.map().keyframe(o.keyframe);
-      if (!observation_error(landmark->position_in_world, keyframe.world_from_camera.inverse(),
-                             keyframe, o.feature)
-               .fits())
-        edit.remove_observation(id, o.keyframe);
-    }
-  }
-
   static ceres::Problem::Options problem_options() {
     ceres::Problem::Options options;
     options.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
@@ -245,8 +204,8 @@ class LocalProblem {
   }
 
   const SparseMap& map_;
-  std::vector<KeyFrameId> local_;
   std::map<KeyFrameId, Pose> fixed_;
+  std::vector<int> moving_index_;  // of moving_, by key frame id; -1 = does not move
   // Parameters lie in arrays, because Ceres orders them by address: results repeat to the bit.
   std::vector<CameraState> moving_;
   std::vector<std::pair<LandmarkId, Eigen::Vector3d>> points_;
@@ -254,16 +213,63 @@ class LocalProblem {
   std::deque<FixedCameraCost> fixed_costs_;
   ceres::HuberLoss loss_{std::sqrt(kChiSquare3)};
   ceres::Problem problem_{problem_options()};
-  bool usable_ = false;
 };
+
+std::vector<KeyFrameId> most_covisible(const SparseMap& map, KeyFrameId centre, int count) {
+  std::vector<KeyFrameId> ids{centre};
+  for (const Covisibility& c : map.keyframe(centre)->covisible)
+    if (static_cast<int>(ids.size()) < count) ids.push_back(c.keyframe);
+  return ids;
+}
+
+std::vector<LandmarkId> seen_by(const SparseMap& map, const std::vector<KeyFrameId>& keyframes) {
+  std::set<LandmarkId> ids;
+  for (const KeyFrameId keyframe : keyframes)
+    for (const LandmarkId id : map.keyframe(keyframe)->landmarks)
+      if (id != kNoId) ids.insert(id);
+  return {ids.begin(), ids.end()};
+}
+
+void drop_outliers(MapEdit& edit, LandmarkId id) {
+  const std::vector<Observation> observations = edit.map().landmark(id)->observations;
+  for (const Observation& o : observations) {
+    const Landmark* landmark = edit.map().landmark(id);
+    if (!landmark) return;
+    const KeyFrame& keyframe = *edit.map().keyframe(o.keyframe);
+    if (!observation_error(landmark->position_in_world, keyframe.world_from_camera.inverse(),
+                           keyframe, o.feature)
+             .fits())
+      edit.remove_observation(id, o.keyframe);
+  }
+}
 
 }  // namespace
 
 std::vector<LandmarkId> adjust_locally(MapEdit& edit, KeyFrameId centre,
                                        const BundleOptions& options, std::stop_token hurry) {
-  LocalProblem problem(edit.map(), centre, options.max_keyframes);
-  problem.solve(options, std::move(hurry));
-  return problem.store(edit);
+  const std::vector<KeyFrameId> local = most_covisible(edit.map(), centre, options.max_keyframes);
+  std::vector<LandmarkId> points = seen_by(edit.map(), local);
+  BundleProblem problem(edit.map(), local, points);
+  if (!problem.solve(options, std::move(hurry))) return {};
+  for (const MovedKeyFrame& moved : problem.keyframes())
+    edit.keyframe(moved.keyframe).world_from_camera = moved.world_from_camera;
+  for (const auto& [id, position] : problem.landmarks())
+    edit.landmark(id).position_in_world = position;
+  for (const LandmarkId id : points) drop_outliers(edit, id);
+  return points;
+}
+
+std::optional<MapCorrection> adjust_all(const SparseMap& map, const BundleOptions& options,
+                                        std::stop_token hurry) {
+  std::vector<KeyFrameId> keyframes;
+  for (KeyFrameId id = 0; id < map.keyframe_id_end(); ++id)
+    if (map.keyframe(id)) keyframes.push_back(id);
+  BundleProblem problem(map, keyframes, seen_by(map, keyframes));
+  if (!problem.solve(options, std::move(hurry))) return std::nullopt;
+  return MapCorrection{.base_version = map.version(),
+                       .keyframe_id_end = static_cast<KeyFrameId>(map.keyframe_id_end()),
+                       .moved = problem.keyframes(),
+                       .landmarks = problem.landmarks()};
 }
 
 }  // namespace stillpoint::orb

@@ -1,15 +1,17 @@
-// Local bundle adjustment with Ceres.
+// Local and full bundle adjustment with Ceres.
 #pragma once
 
+#include <optional>
 #include <stop_token>
 #include <vector>
 
+#include "stillpoint/contracts/map_correction.hpp"
 #include "stillpoint/contracts/sparse_map.hpp"
 
 namespace stillpoint::orb {
 
 struct BundleOptions {
-  int max_keyframes = 10;  ///< adjusted; others that see the same landmarks stay fixed
+  int max_keyframes = 10;  ///< adjusted locally; others that see the same landmarks stay fixed
   int max_iterations = 5;
   int threads = 1;
 };
@@ -20,5 +22,9 @@ struct BundleOptions {
 /// after the current iteration when `hurry` is requested. Returns the landmarks that were adjusted.
 std::vector<LandmarkId> adjust_locally(MapEdit& edit, KeyFrameId centre,
                                        const BundleOptions& options, std::stop_token hurry);
+
+/// The same over all key frames and landmarks. Observations stay; nothing when there are none.
+std::optional<MapCorrection> adjust_all(const SparseMap& map, const BundleOptions& options,
+                                        std::stop_token hurry);
 
 }  // namespace stillpoint::orb

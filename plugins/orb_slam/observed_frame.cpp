@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "orb_slam/landmark_geometry.hpp"
 #include "orb_slam/pose_solver.hpp"
 
 namespace stillpoint::orb {
@@ -27,23 +28,36 @@ float depth_at(const cv::Mat& depth, cv::Point2f pixel) {
   return centre;
 }
 
-}  // namespace
-
-ObservedFrame observe(FramePtr frame, Features features) {
-  const std::size_t count = features.size();
-  features.depth.resize(count);
-  for (std::size_t i = 0; i < count; ++i) {
-    features.depth[i] = depth_at(frame->depth, features.keypoints[i].pt);
-  }
+ObservedFrame unmatched(FramePtr frame, FeaturesPtr features) {
+  const std::size_t count = features->size();
   ObservedFrame observed;
-  observed.grid = FeatureGrid(features, *frame->camera);
-  observed.features = std::make_shared<Features>(std::move(features));
+  observed.grid = FeatureGrid(*features, *frame->camera);
+  observed.features = std::move(features);
   observed.frame = std::move(frame);
   observed.landmarks.assign(count, kNoId);
   observed.temporary.resize(count);
   observed.outlier.assign(count, false);
   observed.track_weights.assign(count, 255);
   observed.map_weights.assign(count, 255);
+  return observed;
+}
+
+}  // namespace
+
+ObservedFrame observe(FramePtr frame, Features features) {
+  features.depth.resize(features.size());
+  for (std::size_t i = 0; i < features.size(); ++i)
+    features.depth[i] = depth_at(frame->depth, features.keypoints[i].pt);
+  return unmatched(std::move(frame), std::make_shared<Features>(std::move(features)));
+}
+
+ObservedFrame observe_again(const KeyFrame& keyframe) {
+  Frame frame{.index = keyframe.frame, .time = keyframe.time, .camera = keyframe.camera};
+  ObservedFrame observed =
+      unmatched(std::make_shared<const Frame>(std::move(frame)), keyframe.features);
+  for (std::size_t i = 0; i < observed.track_weights.size(); ++i)
+    observed.track_weights[i] =
+        keyframe.map_weights[i] >= kMinMapWeight ? keyframe.track_weights[i] : std::uint8_t{0};
   return observed;
 }
 

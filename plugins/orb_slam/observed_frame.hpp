@@ -48,6 +48,10 @@ struct ObservedFrame {
 /// Samples depth at the keypoints.
 ObservedFrame observe(FramePtr frame, Features features);
 
+/// A key frame's features to be matched anew, without images; what must not be mapped has no
+/// weight.
+ObservedFrame observe_again(const KeyFrame& keyframe);
+
 /// Pose from the landmarks and temporary points assigned so far, starting from the frame's own;
 /// marks the outliers and returns the number of inliers.
 int solve_pose(ObservedFrame& frame, const SparseMap& map);

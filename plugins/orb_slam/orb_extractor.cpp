@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <opencv2/imgproc.hpp>
 #include <string>
 
@@ -33,6 +34,16 @@ std::vector<int> share_features(const OrbOptions& options) {
   return shares;
 }
 
+// Moves the corners of a level where `spare` is not zero.
+void set_apart(std::vector<Corner>& corners, const cv::Mat& spare, cv::Size level,
+               std::vector<Corner>& apart) {
+  const auto is_spare = [&](const Corner& c) {
+    return spare.at<std::uint8_t>(c.y * spare.rows / level.height, c.x * spare.cols / level.width);
+  };
+  std::ranges::copy_if(corners, std::back_inserter(apart), is_spare);
+  std::erase_if(corners, is_spare);
+}
+
 }  // namespace
 
 void OrbOptions::visit(OptionVisitor& v) {
@@ -58,7 +69,7 @@ void OrbOptions::visit(OptionVisitor& v) {
 OrbExtractor::OrbExtractor(const OrbOptions& options)
     : options_(options), features_per_level_(share_features(options)) {}
 
-Features OrbExtractor::extract(const cv::Mat& gray) {
+Features OrbExtractor::extract(const cv::Mat& gray, const cv::Mat& spare) {
   if (!gray.empty() && gray.type() != CV_8UC1)
     throw Error(Fault::kStage,
                 "needs a gray image of 8 bits, got OpenCV type " + cv::typeToString(gray.type()),
@@ -73,7 +84,7 @@ Features OrbExtractor::extract(const cv::Mat& gray) {
   features.levels = options_.levels;
   build_pyramid(gray);
   for (std::size_t level = 0; level < pyramid_.size(); ++level) {
-    detect(pyramid_[level], features_per_level_[level]);
+    detect(pyramid_[level], spare, features_per_level_[level]);
     describe(pyramid_[level], static_cast<int>(level), gray.size(), features);
   }
   return features;
@@ -100,12 +111,22 @@ void OrbExtractor::build_pyramid(const cv::Mat& gray) {
   }
 }
 
-void OrbExtractor::detect(const cv::Mat& image, int count) {
+void OrbExtractor::detect(const cv::Mat& image, const cv::Mat& spare, int count) {
   fast_.detect(image, options_.fast_min_threshold, kPatchBorder, corners_);
-  drop_weak_beside_strong(corners_, image.size(), kCell, options_.fast_threshold);
+  spare_corners_.clear();
+  if (!spare.empty()) set_apart(corners_, spare, image.size(), spare_corners_);
+  keep_best(corners_, image.size(), count);
+  const int missing = count - static_cast<int>(corners_.size());
+  if (missing == 0 || spare_corners_.empty()) return;
+  keep_best(spare_corners_, image.size(), missing);
+  corners_.insert(corners_.end(), spare_corners_.begin(), spare_corners_.end());
+}
+
+void OrbExtractor::keep_best(std::vector<Corner>& corners, cv::Size image, int count) const {
+  drop_weak_beside_strong(corners, image, kCell, options_.fast_threshold);
   const auto candidates = static_cast<int>(std::lround(options_.oversampling * count));
-  keep_evenly_spread(corners_, image.size(), candidates);
-  corners_.resize(std::min(corners_.size(), static_cast<std::size_t>(count)));
+  keep_evenly_spread(corners, image, candidates);
+  corners.resize(std::min(corners.size(), static_cast<std::size_t>(count)));
 }
 
 void OrbExtractor::describe(const cv::Mat& image, int level, cv::Size full_size,

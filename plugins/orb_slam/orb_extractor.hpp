@@ -30,17 +30,19 @@ class OrbExtractor {
   explicit OrbExtractor(const OrbOptions& options);
 
   /// Features of a CV_8UC1 image, level by level, strongest first; `depth` stays empty. Fewer than
-  /// asked for where the image has too few corners; none where it is smaller than a patch.
-  /// Keypoints are in px of `gray` with pixel centres at whole numbers. Throws Error for another
-  /// type of image.
-  Features extract(const cv::Mat& gray);
+  /// asked for where the image has too few corners; none where it is smaller than a patch. Where
+  /// `spare` (CV_8U, the image's size; empty: nowhere) is not zero, features are taken only when
+  /// the rest of the image has too few. Keypoints are in px of `gray` with pixel centres at whole
+  /// numbers. Throws Error for another type of image.
+  Features extract(const cv::Mat& gray, const cv::Mat& spare = {});
 
   /// Features wanted of each level: in proportion to the level's width.
   const std::vector<int>& features_per_level() const { return features_per_level_; }
 
  private:
   void build_pyramid(const cv::Mat& gray);
-  void detect(const cv::Mat& image, int count);
+  void detect(const cv::Mat& image, const cv::Mat& spare, int count);
+  void keep_best(std::vector<Corner>& corners, cv::Size image, int count) const;
   void describe(const cv::Mat& image, int level, cv::Size full_size, Features& features);
 
   OrbOptions options_;
@@ -48,7 +50,8 @@ class OrbExtractor {
   std::vector<cv::Mat> pyramid_;
   cv::Mat blurred_;
   FastDetector fast_;
-  std::vector<Corner> corners_;  // of the level at hand
+  std::vector<Corner> corners_;        // of the level at hand
+  std::vector<Corner> spare_corners_;  // those that are not wanted there
 };
 
 }  // namespace stillpoint::orb

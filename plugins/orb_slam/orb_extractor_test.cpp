@@ -206,6 +206,39 @@ TEST(OrbExtractor, CoversFaintRegions) {
   EXPECT_LT(cells_of(opencv_features(faint)), 80U);
 }
 
+int inside(const Features& features, const cv::Rect& area) {
+  return static_cast<int>(std::ranges::count_if(
+      features.keypoints, [&](const cv::KeyPoint& k) { return area.contains(k.pt); }));
+}
+
+TEST(OrbExtractor, SpendsFeaturesOutsideTheSpareArea) {
+  OrbExtractor extractor(OrbOptions{});
+  const cv::Mat image = textured_image();
+  const cv::Rect half(0, 0, kWidth / 2, kHeight);
+  cv::Mat spare(image.size(), CV_8U, cv::Scalar(0));
+  spare(half) = 255;
+  EXPECT_GT(inside(extractor.extract(image), half), 350);
+  const Features features = extractor.extract(image, spare);
+  EXPECT_EQ(features.size(), 1000U);
+  // A pixel of the coarsest level is 3.6 px wide.
+  EXPECT_EQ(inside(features, {0, 0, kWidth / 2 - 4, kHeight}), 0);
+}
+
+TEST(OrbExtractor, TakesSpareFeaturesWhereOthersAreTooFew) {
+  OrbExtractor extractor(OrbOptions{});
+  cv::Mat image = textured_image();
+  const cv::Rect half(0, 0, kWidth / 2, kHeight);
+  image(cv::Rect(kWidth / 2, 0, kWidth / 2, kHeight - 100)) = 128;
+  cv::Mat spare(image.size(), CV_8U, cv::Scalar(0));
+  spare(half) = 255;
+  const Features without = extractor.extract(image), features = extractor.extract(image, spare);
+  const int others = static_cast<int>(without.size()) - inside(without, half);
+  EXPECT_GE(inside(features, half), 200);
+  EXPECT_GT(static_cast<int>(features.size()) - inside(features, half), 3 * others / 2);
+  EXPECT_EQ(extractor.extract(image, cv::Mat(image.size(), CV_8U, cv::Scalar(1))).keypoints.size(),
+            without.keypoints.size());
+}
+
 TEST(OrbExtractor, StaysInsideImagesOfAllSizes) {
   for (const cv::Size size : {cv::Size(39, 39), cv::Size(41, 127), cv::Size(101, 57),
                               cv::Size(321, 243), cv::Size(1001, 333)}) {

@@ -1,4 +1,5 @@
 #include "orb_slam/local_mapper.hpp"
+#include "orb_slam/loop_closer.hpp"
 #include "orb_slam/tracker.hpp"
 #include "stillpoint/sdk.hpp"
 
@@ -6,4 +7,6 @@ STILLPOINT_PLUGIN(orb_slam, "0.1.0",
                   stillpoint::provide<stillpoint::Tracker, stillpoint::orb::OrbTracker>(
                       "orb", "ORB features tracked in the sparse map (ORB-SLAM2)"),
                   stillpoint::provide<stillpoint::LocalMapper, stillpoint::orb::OrbLocalMapper>(
-                      "orb", "landmarks, culling and local bundle adjustment (ORB-SLAM2)"));
+                      "orb", "landmarks, culling and local bundle adjustment (ORB-SLAM2)"),
+                  stillpoint::provide<stillpoint::LoopCloser, stillpoint::orb::OrbLoopCloser>(
+                      "orb", "place index, pose graph and full bundle adjustment (ORB-SLAM2)"));

@@ -7,31 +7,29 @@
 namespace stillpoint::orb {
 namespace {
 
-constexpr int kNearby = 2;  // candidates per frame around the last known place
-constexpr int kAround = 2;  // candidates per frame on the way round the map
+constexpr std::size_t kCandidates = 5;   // per frame, two of them around the last known place
+constexpr std::size_t kNewPlaces = 100;  // taken into the index per frame; 10 ms
 constexpr int kMinInliers = 30;
 
 }  // namespace
 
-std::vector<KeyFrameId> Relocaliser::candidates(const SparseMap& map) {
+std::vector<KeyFrameId> Relocaliser::candidates(const ObservedFrame& frame, const SparseMap& map) {
   std::vector<KeyFrameId> result;
   if (const KeyFrame* place = map.keyframe(last_place_)) {
     result.push_back(place->id);
     if (!place->covisible.empty()) result.push_back(place->covisible.front().keyframe);
   }
-  result.resize(std::min<std::size_t>(result.size(), kNearby));
-  const auto end = static_cast<KeyFrameId>(map.keyframe_id_end());
-  for (KeyFrameId step = 0; step < end && result.size() < kNearby + kAround; ++step) {
-    next_ = next_ % end;
-    const KeyFrameId id = next_++;
-    if (map.keyframe(id) && std::find(result.begin(), result.end(), id) == result.end())
-      result.push_back(id);
+  places_.update(map, kNewPlaces);
+  const auto usable = [&](std::uint32_t i) { return frame.usable(i); };
+  for (const PlaceVote& vote : places_.query(place_descriptors(*frame.features, usable))) {
+    if (result.size() >= kCandidates) break;
+    if (std::ranges::find(result, vote.keyframe) == result.end()) result.push_back(vote.keyframe);
   }
   return result;
 }
 
 bool Relocaliser::find(ObservedFrame& frame, const SparseMap& map) {
-  for (const KeyFrameId id : candidates(map)) {
+  for (const KeyFrameId id : candidates(frame, map)) {
     if (locate_by_appearance(frame, targets_of(*map.keyframe(id), map), map) < kMinInliers)
       continue;
     frame.reference = id;

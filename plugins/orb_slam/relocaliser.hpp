@@ -1,15 +1,15 @@
 // Finds a lost camera again among earlier key frames.
 #pragma once
 
-#include <optional>
 #include <vector>
 
 #include "orb_slam/observed_frame.hpp"
+#include "orb_slam/place_index.hpp"
 
 namespace stillpoint::orb {
 
-/// Tries a few key frames per call, the last known place first and then round the map, so that a
-/// lost frame costs a bounded time however large the map is.
+/// Tries a few key frames per call: around the place where tracking was lost, and those that look
+/// like the frame. A lost frame costs a bounded time however large the map is.
 class Relocaliser {
  public:
   /// Starts anew at the key frame where tracking was lost.
@@ -20,10 +20,10 @@ class Relocaliser {
   bool find(ObservedFrame& frame, const SparseMap& map);
 
  private:
-  std::vector<KeyFrameId> candidates(const SparseMap& map);
+  std::vector<KeyFrameId> candidates(const ObservedFrame& frame, const SparseMap& map);
 
   KeyFrameId last_place_ = kNoId;
-  KeyFrameId next_ = 0;  // where the way round the map goes on
+  PlaceIndex places_;
 };
 
 }  // namespace stillpoint::orb

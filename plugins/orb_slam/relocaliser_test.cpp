@@ -57,16 +57,9 @@ TEST_F(RelocaliserTest, LastPlaceIsFoundAtOnce) {
   }
 }
 
-TEST_F(RelocaliserTest, GoesRoundTheMapInBoundedSteps) {
-  relocaliser_.begin(2);
-  const int calls = calls_to_find(kRooms - 1);
-  EXPECT_GT(calls, 1) << "not the whole map in one frame";
-  EXPECT_LE(calls, kRooms);
-}
-
-TEST_F(RelocaliserTest, EveryPlaceIsFoundFromAnywhere) {
+TEST_F(RelocaliserTest, EveryPlaceIsFoundByItsLooks) {
   relocaliser_.begin(12);
-  for (const KeyFrameId room : {0u, 20u, 7u, 6u, 23u}) EXPECT_GT(calls_to_find(room), 0) << room;
+  for (const KeyFrameId room : {0u, 20u, 7u, 6u, 23u}) EXPECT_EQ(calls_to_find(room), 1) << room;
 }
 
 TEST_F(RelocaliserTest, LastPlaceMayBeGone) {

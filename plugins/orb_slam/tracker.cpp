@@ -1,9 +1,11 @@
 #include "orb_slam/tracker.hpp"
 
 #include <algorithm>
+#include <opencv2/imgproc.hpp>
 #include <utility>
 
 #include "orb_slam/appearance.hpp"
+#include "orb_slam/landmark_geometry.hpp"
 
 namespace stillpoint::orb {
 namespace {
@@ -23,6 +25,21 @@ std::vector<TrackedFeature> describe(const ObservedFrame& frame) {
           frame.outlier[i] ? TrackedFeature::Use::kOutlier : TrackedFeature::Use::kInlier;
   }
   return tracked;
+}
+
+// Where no feature nearby could have a landmark, not 0: the next frame's are better spent
+// elsewhere.
+cv::Mat unmapped_area(const StaticWeights& weights) {
+  constexpr int kReach = 8;  // px that what moves may uncover until the next frame
+  cv::Mat used;
+  if (!weights.track.empty()) used = weights.track >= ObservedFrame::kMinWeight;
+  if (!weights.map.empty()) {
+    const cv::Mat mapped = weights.map >= kMinMapWeight;
+    used = used.empty() ? mapped : cv::Mat(used & mapped);
+  }
+  if (used.empty()) return {};
+  cv::dilate(used, used, cv::Mat::ones(2 * kReach + 1, 2 * kReach + 1, CV_8U));
+  return used == 0;
 }
 
 }  // namespace
@@ -50,15 +67,18 @@ void OrbTracker::Options::visit(OptionVisitor& v) {
 OrbTracker::OrbTracker(Options options) : options_(options), extractor_(options.orb) {}
 
 void OrbTracker::prepare(FramePtr frame) {
-  Features features = extractor_.extract(frame->gray);
+  Features features = extractor_.extract(frame->gray, unmapped_);
   current_ = observe(std::move(frame), std::move(features));
 }
 
 TrackResult OrbTracker::track(FramePtr, const StaticWeights& weights, const SparseMap& map,
                               TrackHints hints) {
   current_.set_weights(weights);
+  unmapped_ = unmapped_area(weights);
   visible_.clear();
-  if (map.empty()) return start() ? tracked(map, hints) : not_tracked(TrackState::kWaiting);
+  if (map.empty())
+    return !hints.localise_only && start() ? tracked(map, hints)
+                                           : not_tracked(TrackState::kWaiting);
 
   follow_map(map);
   bool found = false;
@@ -172,8 +192,8 @@ TrackResult OrbTracker::tracked(const SparseMap& map, TrackHints hints) {
       current_, map, inliers_, static_cast<int>(current_.frame->index - last_keyframe_index_),
       options_.keyframe);
   const bool unknown_view = bridged_ && last_keyframe_ == kNoId;  // the last one is in the map
-  const bool keep =
-      map.empty() || unknown_view || needs_keyframe(quality, hints, options_.keyframe);
+  const bool keep = !hints.localise_only && (map.empty() || unknown_view ||
+                                             needs_keyframe(quality, hints, options_.keyframe));
   add_static_evidence(current_, map, visible_, evidence_);
   current_.drop_outliers();
   current_.drop_temporary();

@@ -49,6 +49,7 @@ class OrbTracker final : public Tracker {
   Options options_;
   OrbExtractor extractor_;
   Relocaliser relocaliser_;
+  cv::Mat unmapped_;  // where the last frame's features could have no landmark: not 0, CV_8U
 
   ObservedFrame current_;
   ObservedFrame last_;                // the last one with a pose

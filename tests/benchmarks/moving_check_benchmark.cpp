@@ -12,18 +12,15 @@
 // moving. reliable: share of frames.
 #include <benchmark/benchmark.h>
 
-#include <cstdlib>
 #include <filesystem>
-#include <fstream>
 #include <memory>
 #include <opencv2/core/utility.hpp>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
-#include <sstream>
 #include <string>
 #include <vector>
 
-#include "evaluation/trajectory.hpp"
+#include "benchmarks/true_recording.hpp"
 #include "moving_checks/lk_checker.hpp"
 #include "moving_checks/rgbd_checker.hpp"
 
@@ -34,61 +31,28 @@ namespace fs = std::filesystem;
 
 constexpr int kPerson = 15;                            // PASCAL VOC
 constexpr double kInverseDepthNoise = 0.0016 * 1.414;  // 1/m, of a difference
-constexpr double kDepthFactor = 5000;
 
-struct TrueFrame {
+struct JudgedFrame {
   Frame frame;
   cv::Mat moves;  // CV_8UC1, instance of what may move by itself, 0 = static world
   Pose world_from_camera;
 };
 
-Pose pose_at(const evaluation::Trajectory& truth, double time) {
-  std::size_t i = 1;
-  while (i + 1 < truth.poses.size() && truth.poses[i].time < time) ++i;
-  const auto& [before, a] = truth.poses[i - 1];
-  const auto& [after, b] = truth.poses[i];
-  return interpolate(a, b, (time - before) / (after - before));
-}
-
-TrueFrame load(const fs::path& folder, double time, const std::string& color,
-               const std::string& depth) {
-  const std::string name = fs::path(color).filename();
-  TrueFrame result;
-  result.frame.time = time;
-  cv::cvtColor(cv::imread(folder / color), result.frame.gray, cv::COLOR_BGR2GRAY);
-  cv::imread(folder / depth, cv::IMREAD_UNCHANGED)
-      .convertTo(result.frame.depth, CV_32F, 1 / kDepthFactor);
-  const cv::Mat labels = cv::imread(folder / "labels" / name, cv::IMREAD_UNCHANGED);
-  result.moves = cv::imread(folder / "instances" / name, cv::IMREAD_UNCHANGED);
-  result.moves.setTo(0, (labels != kPerson) & (labels != 0));
-  return result;
-}
-
-std::vector<TrueFrame> read_recording(const fs::path& folder) {
-  const auto truth = evaluation::read_trajectory(folder / "groundtruth.txt");
-  const auto camera = std::make_shared<const Camera>(
-      Camera{.fx = 535.4, .fy = 539.2, .cx = 320.1, .cy = 247.6, .depth_noise = 0.0016});
-  std::vector<TrueFrame> frames;
-  std::ifstream list(folder / "associations.txt");
-  for (std::string line; std::getline(list, line);) {
-    std::istringstream columns(line);
-    double time = 0;
-    double depth_time = 0;
-    std::string color;
-    std::string depth;
-    if (!(columns >> time >> color >> depth_time >> depth)) continue;
-    frames.push_back(load(folder, time, color, depth));
-    frames.back().world_from_camera = pose_at(truth, time);
-    frames.back().frame.index = static_cast<std::uint32_t>(frames.size() - 1);
-    frames.back().frame.camera = camera;
+std::vector<JudgedFrame> read_recording(const fs::path& folder) {
+  std::vector<JudgedFrame> frames;
+  for (const TrueFrame& read : read_true_frames(folder)) {
+    const cv::Mat labels = cv::imread(folder / "labels" / read.name, cv::IMREAD_UNCHANGED);
+    cv::Mat moves = cv::imread(folder / "instances" / read.name, cv::IMREAD_UNCHANGED);
+    moves.setTo(0, (labels != kPerson) & (labels != 0));
+    frames.push_back({*read.frame, moves, read.world_from_camera});
   }
   return frames;
 }
 
 // The benchmarks of one recording follow each other.
-const std::vector<TrueFrame>& recording(const fs::path& folder) {
+const std::vector<JudgedFrame>& recording(const fs::path& folder) {
   static fs::path loaded;
-  static std::vector<TrueFrame> frames;
+  static std::vector<JudgedFrame> frames;
   if (loaded != folder) frames = read_recording(loaded = folder);
   return frames;
 }
@@ -99,7 +63,7 @@ float depth_at(const Frame& frame, const cv::Point2f& p) {
   return frame.depth.at<float>(cvRound(p.y), cvRound(p.x));
 }
 
-Truth truth_of(const PointMotion& point, const TrueFrame& previous, const TrueFrame& current) {
+Truth truth_of(const PointMotion& point, const JudgedFrame& previous, const JudgedFrame& current) {
   const int from =
       previous.moves.at<std::uint8_t>(cvRound(point.previous.y), cvRound(point.previous.x));
   const int to = current.moves.at<std::uint8_t>(cvRound(point.current.y), cvRound(point.current.x));
@@ -122,7 +86,7 @@ struct Counts {
   double found = 0, missed = 0, wrong = 0, right = 0;
   double frames = 0, reliable = 0, points = 0;
 
-  void add(const MovingPoints& result, const TrueFrame& previous, const TrueFrame& current) {
+  void add(const MovingPoints& result, const JudgedFrame& previous, const JudgedFrame& current) {
     ++frames;
     reliable += result.reliable;
     points += static_cast<double>(result.points.size());
@@ -157,7 +121,7 @@ template <class Checker>
 void check(benchmark::State& state, const fs::path& folder, std::size_t stride,
            const typename Checker::Options& options) {
   cv::setNumThreads(1);
-  const std::vector<TrueFrame>& frames = recording(folder);
+  const std::vector<JudgedFrame>& frames = recording(folder);
   const auto checker = make<Checker>(options);
   Counts counts;
   std::size_t i = stride;
@@ -185,10 +149,8 @@ void add(const std::string& name, const fs::path& folder, std::size_t stride,
 }
 
 const bool kRegistered = [] {
-  const char* folder = std::getenv("STILLPOINT_RECORDINGS");
-  if (!folder) return false;
-  for (const auto& entry : fs::directory_iterator(folder)) {
-    if (!fs::exists(entry.path() / "instances")) continue;
+  for (const fs::path& folder : recordings_to_measure()) {
+    if (!fs::exists(folder / "instances")) continue;
     for (const std::size_t stride : {1, 3}) {
       LkEpipolar::Options released;
       released.lk.consensus.ransac_threshold = 0.1;
@@ -202,16 +164,16 @@ const bool kRegistered = [] {
                             .max_patch_difference = 2120};
       released.when_degenerate = EpipolarChecker::Degenerate::kIgnore;
       released.lk.min_inlier_share = 0;
-      add<LkEpipolar>("lk_epipolar", entry.path(), stride);
-      add<LkEpipolar>("lk_epipolar_ignore", entry.path(), stride,
+      add<LkEpipolar>("lk_epipolar", folder, stride);
+      add<LkEpipolar>("lk_epipolar_ignore", folder, stride,
                       {.when_degenerate = EpipolarChecker::Degenerate::kIgnore});
-      add<LkEpipolar>("lk_epipolar_homography", entry.path(), stride,
+      add<LkEpipolar>("lk_epipolar_homography", folder, stride,
                       {.when_degenerate = EpipolarChecker::Degenerate::kHomography});
-      add<LkEpipolar>("lk_epipolar_released", entry.path(), stride, released);
-      add<LkUsac>("lk_usac", entry.path(), stride);
-      add<LkMagsac>("lk_magsac", entry.path(), stride);
-      add<LkHomography>("lk_homography", entry.path(), stride);
-      add<RgbdChecker>("rgbd_reprojection", entry.path(), stride);
+      add<LkEpipolar>("lk_epipolar_released", folder, stride, released);
+      add<LkUsac>("lk_usac", folder, stride);
+      add<LkMagsac>("lk_magsac", folder, stride);
+      add<LkHomography>("lk_homography", folder, stride);
+      add<RgbdChecker>("rgbd_reprojection", folder, stride);
     }
   }
   return true;

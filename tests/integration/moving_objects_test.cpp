@@ -43,15 +43,20 @@ class MovingObjects : public ::testing::Test {
   TemporaryFolder folder_;
 };
 
-TEST_F(MovingObjects, EveryMethodIsAccurateInBothModes) {
-  for (const std::string pipeline : {"semantic_only", "ds_slam", "stillpoint", "geometry_only"}) {
-    for (const std::string mode : {"inline", "threaded"}) {
-      if (kSanitized && mode == "inline") continue;  // the same code with less to go wrong
-      const auto more = pipeline == "geometry_only" ? std::vector<std::string>() : kImitatedNetwork;
-      const Outcome outcome = run(pipeline + mode, pipeline, mode, more);
-      ASSERT_EQ(outcome.exit_code, 0) << pipeline << outcome.err;
-      expect_accurate(pipeline + mode);
-    }
+class Method : public MovingObjects, public ::testing::WithParamInterface<const char*> {};
+INSTANTIATE_TEST_SUITE_P(Pipelines, Method,
+                         ::testing::Values("semantic_only", "ds_slam", "stillpoint",
+                                           "geometry_only"),
+                         [](const auto& test) { return std::string(test.param); });
+
+TEST_P(Method, IsAccurateInBothModes) {
+  const std::string pipeline = GetParam();
+  for (const std::string mode : {"inline", "threaded"}) {
+    if (kSanitized && mode == "inline") continue;  // the same code with less to go wrong
+    const auto more = pipeline == "geometry_only" ? std::vector<std::string>() : kImitatedNetwork;
+    const Outcome outcome = run(mode, pipeline, mode, more);
+    ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+    expect_accurate(mode);
   }
 }
 

@@ -34,6 +34,20 @@ TEST(Matrix, ARecordingLiesWhereItIsOrBelowTheOutput) {
   EXPECT_EQ(recording_of("/out", sequence), "/out/recordings/walking");
 }
 
+TEST(Matrix, ScenesHaveNewNoiseInEveryRepeatWhenAskedFor) {
+  Study study = two_by_two(3);
+  Sequence sequence{.name = "room", .scene = "office", .set = {"source.frames=5"}};
+  EXPECT_EQ(at_repeat(study, sequence, 2).name, "room") << "one recording for all";
+  study.new_noise = true;
+  study.seed = 10;
+  const Sequence third = at_repeat(study, sequence, 2);
+  EXPECT_EQ(third.name, "room-12");
+  EXPECT_THAT(third.set, ElementsAre("source.frames=5", "source.seed=12"));
+  EXPECT_EQ(recording_of("/out", third), "/out/recordings/room-12");
+  EXPECT_EQ(at_repeat(study, study.sequences[0], 2).name, study.sequences[0].name)
+      << "a recording is what it is";
+}
+
 TEST(Matrix, ChangesOfAVariantComeLastAndWin) {
   Study study = two_by_two(1);
   study.mode = Study::Mode::kInline;

@@ -89,18 +89,23 @@ class Ablation {
 
   /// One after the other: the simulator uses all cores. False: stopped.
   bool record_scenes(const std::stop_token& stop) {
-    for (const Sequence& sequence : study().sequences) {
-      const fs::path recording = recording_of(output_, sequence);
-      if (!sequence.scene.empty()) {
-        const std::string description = describe_scene(sequence);
-        if (!is_recorded(recording, description)) {
-          console_.line("simulating " + sequence.name);
-          if (!record(this_program(), sequence, description, recording, stop)) return false;
-        }
+    for (int repeat = 0; repeat < (study().new_noise ? study().repeats : 1); ++repeat)
+      for (const Sequence& sequence : study().sequences)
+        if (!record_scene(at_repeat(study(), sequence, repeat), stop)) return false;
+    return true;
+  }
+
+  bool record_scene(const Sequence& sequence, const std::stop_token& stop) {
+    const fs::path recording = recording_of(output_, sequence);
+    if (!sequence.scene.empty()) {
+      const std::string description = describe_scene(sequence);
+      if (!is_recorded(recording, description)) {
+        console_.line("simulating " + sequence.name);
+        if (!record(this_program(), sequence, description, recording, stop)) return false;
       }
-      // Before any run, not after the first.
-      evaluation::read_trajectory(recording / "groundtruth.txt");
     }
+    // Before any run, not after the first.
+    evaluation::read_trajectory(recording / "groundtruth.txt");
     return true;
   }
 
@@ -108,13 +113,13 @@ class Ablation {
     std::vector<PlannedCell> plan;
     std::string recording_print, pipeline;
     for (const Cell& cell : cells) {
-      const Sequence& sequence = study().sequences[cell.sequence];
+      const Sequence sequence = at_repeat(study(), study().sequences[cell.sequence], cell.repeat);
       const fs::path recording = recording_of(output_, sequence);
       const PipelineRequest request =
           request_of(study(), sequence, study().variants[cell.variant], recording);
-      if (plan.empty() || plan.back().cell.sequence != cell.sequence)
-        recording_print = recording_fingerprint(recording);
-      if (cell.repeat == 0) pipeline = load_pipeline(request, registry_).effective_yaml;
+      const bool other = plan.empty() || plan.back().recording != recording;
+      if (other) recording_print = recording_fingerprint(recording);
+      if (other || cell.repeat == 0) pipeline = load_pipeline(request, registry_).effective_yaml;
       const int seed = study().seed + cell.repeat;
       const fs::path run = run_folder(output_, study(), cell);
       plan.push_back({.cell = cell,

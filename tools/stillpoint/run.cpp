@@ -4,10 +4,12 @@
 #include <iostream>
 #include <memory>
 #include <string>
+#include <utility>
 
 #include "commands.hpp"
 #include "console.hpp"
 #include "interrupt.hpp"
+#include "map_saver.hpp"
 #include "progress.hpp"
 #include "run_folder.hpp"
 #include "run_table.hpp"
@@ -22,6 +24,8 @@ namespace fs = std::filesystem;
 struct Arguments {
   PipelineRequest request;
   fs::path output;
+  fs::path save_map, load_map;
+  bool localise_only = false;
 };
 
 void print_files(const RunFolder& folder, const fs::path& ground_truth) {
@@ -59,6 +63,9 @@ void run_and_print(Stages stages, const PipelineConfig& config, const RunFolder&
 void run(const Arguments& arguments) {
   Registry registry;
   const PipelineConfig config = load_pipeline(arguments.request, registry);
+  SparseMap known_map = arguments.load_map.empty() ? SparseMap() : load_map(arguments.load_map);
+  std::shared_ptr<MapSaver> saver;
+  if (!arguments.save_map.empty()) saver = std::make_shared<MapSaver>(arguments.save_map);
   Console console;
   const RunFolder folder(
       arguments.output.empty() ? fs::path("out") / config.file.stem() : arguments.output,
@@ -69,6 +76,9 @@ void run(const Arguments& arguments) {
                   [&folder](LogLevel level, std::string_view text) { folder.log(level, text); });
   stages.outputs.push_back(
       {std::make_shared<Progress>(console, stages.source.object->size()), "progress"});
+  stages.known_map = std::move(known_map);
+  stages.localise_only = arguments.localise_only;
+  if (saver) stages.outputs.push_back({std::move(saver), "map saver"});
   int signal = 0;
   {
     const Interrupt interrupt;
@@ -90,6 +100,16 @@ void add_run(CLI::App& app) {
       ->add_option("-o,--output", arguments->output,
                    "Run folder; out/ and the pipeline's name when left out")
       ->type_name("DIR");
+  command->add_option("--save-map", arguments->save_map, "Keep the sparse map in this file")
+      ->type_name("FILE");
+  CLI::Option* load = command
+                          ->add_option("--load-map", arguments->load_map,
+                                       "Begin with the sparse map of an earlier run")
+                          ->type_name("FILE");
+  command
+      ->add_flag("--localise-only", arguments->localise_only,
+                 "Find the camera in the loaded map, which stays as it is")
+      ->needs(load);
   command->callback([arguments] { run(*arguments); });
 }
 

@@ -26,6 +26,7 @@ void RunTable::finish(const RunSummary& summary) {
   keyframes_ = summary.map.keyframe_count();
   landmarks_ = summary.map.landmark_count();
   dropped_ = summary.dropped_frames;
+  loops_ = summary.loops_closed;
   unlabelled_ = summary.unlabelled_frames;
   segmentation_failure_ = summary.segmentation_failure;
   wall_seconds_ = summary.wall_seconds;
@@ -54,7 +55,8 @@ void RunTable::print_run(std::ostream& stream) const {
   if (unlabelled_ > 0)
     stream << format("            %d without labels: ", unlabelled_) << segmentation_failure_
            << '\n';
-  stream << format("  map       %zu key frames, %zu landmarks\n", keyframes_, landmarks_);
+  stream << format("  map       %zu key frames, %zu landmarks, %d loop%s closed\n", keyframes_,
+                   landmarks_, loops_, loops_ == 1 ? "" : "s");
   stream << format("  speed     %.1f frames/s (%.1f s for a recording of %.1f s)\n",
                    static_cast<double>(tracking_.processed) / std::max(wall_seconds_, 1e-9),
                    wall_seconds_, recorded_seconds_);

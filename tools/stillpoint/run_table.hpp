@@ -27,6 +27,7 @@ class RunTable final : public Output {
   std::size_t keyframes_ = 0;
   std::size_t landmarks_ = 0;
   int dropped_ = 0;
+  int loops_ = 0;
   int unlabelled_ = 0;
   std::string segmentation_failure_;
   double wall_seconds_ = 0.0;

@@ -46,6 +46,8 @@ void Study::visit(OptionVisitor& v) {
   v("repeats", repeats, {.min = 1, .max = 1000, .help = "runs of each variant on each sequence"});
   v("seed", seed,
     {.min = 0, .max = 1e9, .help = "runtime.seed of the first repeat; the next has one more"});
+  v("new_noise", new_noise,
+    {.help = "simulate scenes anew for every repeat, with its seed as source.seed"});
   v.choice(
       "mode", mode,
       {{"pipeline", Mode::kPipeline}, {"inline", Mode::kInline}, {"threaded", Mode::kThreaded}},
@@ -53,6 +55,15 @@ void Study::visit(OptionVisitor& v) {
   v("set", set, {.help = "changes of every pipeline"});
   v("baseline", baseline, {.help = "variant that the others are compared with"});
   refuse_seed(v, set);
+}
+
+Sequence at_repeat(const Study& study, const Sequence& sequence, int repeat) {
+  Sequence result = sequence;
+  if (!study.new_noise || sequence.scene.empty()) return result;
+  const std::string seed = std::to_string(study.seed + repeat);
+  result.name += "-" + seed;
+  result.set.push_back("source.seed=" + seed);
+  return result;
 }
 
 std::vector<std::string> assignments_of(const Study& study, const Variant& variant) {

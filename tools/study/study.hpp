@@ -36,13 +36,17 @@ struct Study {
   std::vector<Sequence> sequences;
   std::vector<Variant> variants;
   int repeats = 1;
-  int seed = 1;  ///< repeat k runs with seed + k
+  int seed = 1;            ///< repeat k runs with seed + k
+  bool new_noise = false;  ///< scenes are simulated for each repeat
   Mode mode = Mode::kPipeline;
   std::vector<std::string> set;  ///< for all variants
   std::string baseline;          ///< name of a variant; empty: none
 
   void visit(OptionVisitor& visitor);
 };
+
+/// The sequence as a repeat runs on it: a scene with noise of its own has its own name and seed.
+Sequence at_repeat(const Study& study, const Sequence& sequence, int repeat);
 
 /// What a run of the variant is told, without the seed; later ones win.
 std::vector<std::string> assignments_of(const Study& study, const Variant& variant);

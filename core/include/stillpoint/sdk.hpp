@@ -19,3 +19,4 @@
 #include "stillpoint/options.hpp"
 #include "stillpoint/plugin.hpp"
 #include "stillpoint/pose_math.hpp"
+#include "stillpoint/rigid_motion.hpp"

@@ -12,6 +12,9 @@ Decision::~Decision() = default;
 Tracker::~Tracker() = default;
 LocalMapper::~LocalMapper() = default;
 LoopCloser::~LoopCloser() = default;
+std::optional<MapCorrection> LoopCloser::adjust(const SparseMap&, std::stop_token) {
+  return std::nullopt;
+}
 MapBackend::~MapBackend() = default;
 Output::~Output() = default;
 

@@ -1,7 +1,9 @@
 #include "stillpoint/contracts/map_correction.hpp"
 
+#include <set>
 #include <unordered_map>
 #include <unordered_set>
+#include <utility>
 
 namespace stillpoint {
 namespace {
@@ -26,12 +28,8 @@ Poses corrected_poses(const MapCorrection& correction, const SparseMap& map) {
   return moved;
 }
 
-}  // namespace
-
-SparseMap apply(const MapCorrection& correction, SparseMap map) {
-  MapEdit edit(std::move(map));
-  const Poses moved = corrected_poses(correction, edit.map());
-
+// To where they were optimised, or with their reference key frames.
+void move_landmarks(const MapCorrection& correction, const Poses& moved, MapEdit& edit) {
   std::unordered_set<LandmarkId> placed;
   for (const auto& [id, position] : correction.landmarks) {
     if (!edit.map().landmark(id)) continue;
@@ -43,16 +41,34 @@ SparseMap apply(const MapCorrection& correction, SparseMap map) {
     if (!landmark || placed.contains(id)) continue;
     const auto reference = moved.find(landmark->reference);
     if (reference == moved.end()) continue;
-    const Pose old = edit.map().keyframe(landmark->reference)->world_from_camera;
-    edit.landmark(id).position_in_world =
-        reference->second * (old.inverse() * landmark->position_in_world);
+    const Pose move =
+        reference->second * edit.map().keyframe(landmark->reference)->world_from_camera.inverse();
+    Landmark& own = edit.landmark(id);
+    own.position_in_world = move * own.position_in_world;
+    own.mean_view = move.linear() * own.mean_view;
   }
-  for (const auto& [id, pose] : moved) edit.keyframe(id).world_from_camera = pose;
+}
+
+void fuse_landmarks(const MapCorrection& correction, MapEdit& edit) {
+  std::set<KeyFrameId> touched;
   for (const auto& [kept, gone] : correction.fused) {
     const LandmarkId a = edit.map().current_id(kept);
     const LandmarkId b = edit.map().current_id(gone);
-    if (a != kNoId && b != kNoId && a != b) edit.fuse_landmarks(a, b);
+    if (a == kNoId || b == kNoId || a == b) continue;
+    edit.fuse_landmarks(a, b);
+    for (const Observation& o : edit.map().landmark(a)->observations) touched.insert(o.keyframe);
   }
+  for (const KeyFrameId id : touched) edit.update_covisibility(id);
+}
+
+}  // namespace
+
+SparseMap apply(const MapCorrection& correction, SparseMap map) {
+  MapEdit edit(std::move(map));
+  const Poses moved = corrected_poses(correction, edit.map());
+  move_landmarks(correction, moved, edit);
+  for (const auto& [id, pose] : moved) edit.keyframe(id).world_from_camera = pose;
+  fuse_landmarks(correction, edit);
   return std::move(edit).finish();
 }
 

@@ -23,36 +23,51 @@ std::vector<MovedKeyFrame> moved_keyframes(const SparseMap& before, const Sparse
 }  // namespace
 
 MappingSystem::MappingSystem(Stage<LocalMapper> local_mapper, Stage<LoopCloser> loop_closer,
-                             Stage<MapBackend> map_backend, Mode mode, StopSignal& stop,
-                             TimeLog& times)
+                             Stage<MapBackend> map_backend, SparseMap known_map, Mode mode,
+                             StopSignal& stop, TimeLog& times)
     : threaded_(mode == Mode::kThreaded),
       stop_(stop),
       local_mapper_(std::move(local_mapper), "local mapping", times),
       loop_closer_(std::move(loop_closer), "loop closing", times),
       map_backend_(std::move(map_backend), "dense mapping", times),
+      map_(std::move(known_map)),
       local_mapping_(mode, kKeyFramesWaiting, stop,
                      [this](MappingItem item) {
                        if (auto* keyframe = std::get_if<NewKeyFrame>(&item))
                          map(std::move(*keyframe));
                        else
-                         correct(std::get<MapCorrection>(item));
+                         correct(std::get<Correction>(item));
                      }),
       loop_closing_(loop_closer_.present() ? mode : Mode::kInline, kQueriesWaiting, stop,
-                    [this](const LoopQuery& query) { close_loop(query); }),
+                    [this](const LoopItem& item) {
+                      if (const auto* query = std::get_if<LoopQuery>(&item))
+                        close_loop(*query);
+                      else
+                        adjust(std::get<AdjustRequest>(item));
+                    }),
       dense_mapping_(map_backend_.present() ? mode : Mode::kInline, kDenseWaiting, stop,
                      [this](const DenseItem& item) { map_densely(item); }),
-      hurry_on_stop_(stop.token(), [this] { hurry(); }) {}
+      hurry_on_stop_(stop.token(), [this] {
+        if (!threaded_) return;
+        mapping_hurry_.request();
+        adjustment_hurry_.request();
+      }) {}
 
 void MappingSystem::push(NewKeyFrame keyframe) {
   const bool first = snapshot()->empty();
   local_mapping_.push(std::move(keyframe));
-  if (waiting()) hurry();
+  if (waiting()) mapping_hurry_.request();
   if (first) map_.wait_published(stop_.token());
 }
 
 void MappingSystem::end() {
-  local_mapping_.wait_idle();  // it asks for loops
-  loop_closing_.end();         // whose corrections come back to it
+  // Local mapping asks for loops, whose corrections come back to it; then it asks for an
+  // adjustment.
+  for (int round = 0; round < 2; ++round) {
+    local_mapping_.wait_idle();
+    loop_closing_.wait_idle();
+  }
+  loop_closing_.end();
   local_mapping_.end();
   dense_mapping_.end();
 }
@@ -71,28 +86,45 @@ void MappingSystem::map(NewKeyFrame item) {
   const MapStore::Snapshot before = map_.snapshot();
   map_.publish(local_mapper_.call("map_insert", mapped_frame_, &LocalMapper::insert, *before,
                                   std::move(item.keyframe)));
-  map_.publish(local_mapper_.call("map_refine", mapped_frame_, &LocalMapper::refine,
-                                  *map_.snapshot(), id, restart_hurry()));
+  map_.publish(
+      local_mapper_.call("map_refine", mapped_frame_, &LocalMapper::refine, *map_.snapshot(), id,
+                         mapping_hurry_.begin(threaded_ && (waiting() || stop_.requested()))));
   const MapStore::Snapshot after = map_.snapshot();
   send_moved(*before, *after);
   if (map_backend_.present() && id < after->keyframe_id_end()) {
     item.images.world_from_camera = after->world_from_keyframe(id);
     dense_mapping_.push(std::make_shared<const DenseKeyFrame>(std::move(item.images)));
   }
-  loop_closing_.push({id, mapped_frame_});  // last: inline, its correction is applied within
+  if (loop_closing_.size() >= kQueriesWaiting / 2) adjustment_hurry_.request();
+  // Last: inline, its correction is applied within.
+  loop_closing_.push(LoopQuery{id, mapped_frame_});
 }
 
-void MappingSystem::correct(const MapCorrection& correction) {
+void MappingSystem::correct(const Correction& item) {
   const MapStore::Snapshot before = map_.snapshot();
   map_.publish(local_mapper_.call("map_correct", mapped_frame_,
-                                  [&](LocalMapper&) { return apply(correction, *before); }));
+                                  [&](LocalMapper&) { return apply(item.correction, *before); }));
   send_moved(*before, *map_.snapshot());
+  if (!item.closes_loop) return;
+  ++loops_;
+  loop_closing_.push_past_limit(AdjustRequest{mapped_frame_});
 }
 
 void MappingSystem::close_loop(const LoopQuery& query) {
+  if (correction_pending_) return;
   auto correction = loop_closer_.call("loop", query.frame, &LoopCloser::close, *map_.snapshot(),
                                       query.keyframe, stop_.token());
-  if (correction) local_mapping_.push_past_limit(std::move(*correction));
+  if (!correction) return;
+  correction_pending_ = true;
+  local_mapping_.push_past_limit(Correction{std::move(*correction), true});
+}
+
+void MappingSystem::adjust(const AdjustRequest& request) {
+  correction_pending_ = false;
+  auto correction =
+      loop_closer_.call("loop_adjust", request.frame, &LoopCloser::adjust, *map_.snapshot(),
+                        adjustment_hurry_.begin(threaded_ && stop_.requested()));
+  if (correction) local_mapping_.push_past_limit(Correction{std::move(*correction)});
 }
 
 void MappingSystem::map_densely(const DenseItem& item) {
@@ -109,18 +141,6 @@ void MappingSystem::send_moved(const SparseMap& before, const SparseMap& after) 
   if (!map_backend_.present()) return;
   if (auto moved = moved_keyframes(before, after); !moved.empty())
     dense_mapping_.push(std::move(moved));
-}
-
-std::stop_token MappingSystem::restart_hurry() {
-  const std::lock_guard lock(hurry_mutex_);
-  hurry_ = std::stop_source();
-  if (threaded_ && (waiting() || stop_.requested())) hurry_.request_stop();
-  return hurry_.get_token();
-}
-
-void MappingSystem::hurry() {
-  const std::lock_guard lock(hurry_mutex_);
-  if (threaded_) hurry_.request_stop();
 }
 
 }  // namespace stillpoint

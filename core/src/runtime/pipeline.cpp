@@ -27,6 +27,7 @@ Pipeline::Pipeline(Stages stages, const RuntimeOptions& runtime,
                    const SegmentationOptions& segmentation, std::unique_ptr<PaceClock> clock)
     : options_(runtime),
       map_directory_(std::move(stages.map_directory)),
+      localise_only_(stages.localise_only),
       clock_(std::move(clock)),
       checker_(std::move(stages.moving_checker), "moving check", times_),
       decision_(std::move(stages.decision), "decision", times_),
@@ -35,7 +36,8 @@ Pipeline::Pipeline(Stages stages, const RuntimeOptions& runtime,
       segmentation_(std::move(stages.segmenter), std::move(stages.propagator), segmentation,
                     runtime.mode, stop_, times_),
       mapping_(std::move(stages.local_mapper), std::move(stages.loop_closer),
-               std::move(stages.map_backend), runtime.mode, stop_, times_) {
+               std::move(stages.map_backend), std::move(stages.known_map), runtime.mode, stop_,
+               times_) {
   for (Stage<Output>& output : stages.outputs)
     outputs_.emplace_back(std::move(output), "output", times_);
 }
@@ -66,8 +68,9 @@ void Pipeline::process(const FramePtr& frame) {
   if (!labels) return;                          // stopped meanwhile
   const auto weights = std::make_shared<const StaticWeights>(
       decision_.call("decision", index, &Decision::decide, *frame, *labels, moving));
-  const auto result = tracker_.call("track", index, &Tracker::track, frame, *weights,
-                                    *mapping_.snapshot(), TrackHints{mapping_.waiting()});
+  const auto result =
+      tracker_.call("track", index, &Tracker::track, frame, *weights, *mapping_.snapshot(),
+                    TrackHints{mapping_.waiting(), localise_only_});
   if (result.keyframe) mapping_.push(new_keyframe(*result.keyframe, frame, labels, weights));
   report({*frame, *labels, moving, *weights, result, times_.take()});
   previous_ = frame;
@@ -106,6 +109,7 @@ RunSummary Pipeline::summary(const SparseMap& map, const SourceReport& source,
           .source = source,
           .times = times,
           .dropped_frames = static_cast<int>(feed_.dropped()),
+          .loops_closed = mapping_.loops(),
           .wall_seconds = wall_seconds_,
           .cpu_seconds = cpu_seconds_,
           .recorded_seconds = poses_.empty() ? 0.0 : poses_.back().time - poses_.front().time,

@@ -203,6 +203,10 @@ class FakeCloser final : public LoopCloser {
           {id, Eigen::Translation3d(0.0, 1.0, 0.0) * map.world_from_keyframe(id)});
     return correction;
   }
+  std::optional<MapCorrection> adjust(const SparseMap& map, std::stop_token) override {
+    journal_.write("adjust", map.keyframe(0)->frame);
+    return std::nullopt;
+  }
 
  private:
   Journal& journal_;

@@ -59,13 +59,13 @@ INSTANTIATE_TEST_SUITE_P(Modes, PipelineInBothModes,
 TEST(Pipeline, InlineCallsTheBoxesInTheOrderOfThePaper) {
   Fixture f(2);
   Pipeline(f.stages(), runtime(Mode::kInline), {}).run();
-  EXPECT_EQ(
-      f.journal.entries(),
-      (Strings{"source 0", "segment 0", "prepare 0",   "propagate 0 0", "decide 0",      "track 0",
-               "insert 0", "refine 0",  "integrate 0", "close 0",       "output 0",  //
-               "source 1", "segment 1", "prepare 1",   "check 0 1",     "propagate 1 1", "decide 1",
-               "track 1",  "output 1",  //
-               "save 0",   "finish 0"}));
+  EXPECT_EQ(f.journal.entries(),
+            (Strings{"source 0",      "segment 0", "prepare 0", "propagate 0 0",
+                     "decide 0",      "track 0",   "insert 0",  "refine 0",
+                     "integrate 0",   "close 0",   "adjust 0",  "output 0",  //
+                     "source 1",      "segment 1", "prepare 1", "check 0 1",
+                     "propagate 1 1", "decide 1",  "track 1",   "output 1",  //
+                     "save 0",        "finish 0"}));
 }
 
 TEST_P(PipelineInBothModes, EveryFrameGoesThroughEveryBox) {
@@ -75,8 +75,11 @@ TEST_P(PipelineInBothModes, EveryFrameGoesThroughEveryBox) {
        {"source", "segment", "prepare", "propagate", "decide", "track", "output"})
     EXPECT_EQ(f.journal.entries(call).size(), 40u) << call;
   EXPECT_EQ(f.journal.entries("check").size(), 39u);
-  for (const char* call : {"insert", "refine", "close", "integrate"})
+  for (const char* call : {"insert", "refine", "integrate"})
     EXPECT_EQ(f.journal.entries(call).size(), 20u) << call;
+  // Threaded, no loop is looked for until the map shows the last one.
+  const std::size_t closed = f.journal.entries("close").size();
+  EXPECT_TRUE(GetParam() == Mode::kInline ? closed == 20 : closed >= 1 && closed <= 20) << closed;
   EXPECT_EQ(f.output->finished, 1);
   EXPECT_TRUE(f.output->complete);
   EXPECT_EQ(f.output->failure, "");
@@ -106,10 +109,11 @@ TEST_P(PipelineInBothModes, AllTimesAreReportedOnceAndNameTheirFrame) {
   std::set<std::pair<std::string, std::uint32_t>> seen;
   for (const StageTime& time : f.output->times) {
     EXPECT_GE(time.wall_ms, 0.0);
-    if (time.stage == "dense" || time.stage == "map_correct") continue;
+    if (time.stage == "dense" || time.stage == "map_correct" || time.stage.starts_with("loop"))
+      continue;
     EXPECT_TRUE(seen.emplace(time.stage, time.frame).second) << time.stage << ' ' << time.frame;
   }
-  std::size_t expected = 8 * 4 + 3 + 3 * 2;          // per frame, check, per key frame
+  std::size_t expected = 8 * 4 + 3 + 2 * 2;          // per frame, check, per key frame
   if (GetParam() == Mode::kThreaded) expected += 4;  // segmentation_wait
   EXPECT_EQ(seen.size(), expected);
 }
@@ -169,7 +173,9 @@ INSTANTIATE_TEST_SUITE_P(
                         "local mapping (orb) failed on frame 4: out of ideas"},
             FailureCase{"Refine", "refine 4",
                         "local mapping (orb) failed on frame 4: out of ideas"},
-            FailureCase{"Closer", "close 4", "loop closing (bits) failed on frame 4: out of ideas"},
+            FailureCase{"Closer", "close 0", "loop closing (bits) failed on frame 0: out of ideas"},
+            FailureCase{"Adjustment", "adjust 0",
+                        "loop closing (bits) failed on frame 0: out of ideas"},
             FailureCase{"Backend", "integrate 4",
                         "dense mapping (cloud) failed on frame 4: out of ideas"},
             FailureCase{"Save", "save 0", "dense mapping (cloud) failed: out of ideas"},

@@ -18,6 +18,10 @@ class STILLPOINT_EXPORT LoopCloser {
   /// Nothing when `latest` closes no loop or when `stop` is requested.
   virtual std::optional<MapCorrection> close(const SparseMap& map, KeyFrameId latest,
                                              std::stop_token stop) = 0;
+
+  /// After a correction has been applied: the whole map adjusted once more. `hurry` is requested
+  /// when many key frames wait for close(): end early with the best so far. Never requested inline.
+  virtual std::optional<MapCorrection> adjust(const SparseMap& map, std::stop_token hurry);
 };
 
 }  // namespace stillpoint

@@ -51,6 +51,7 @@ struct RunSummary {
   const SourceReport& source;
   const std::vector<StageTime>& times;  ///< what ended since the last report
   int dropped_frames = 0;               ///< by `pace: sensor`
+  int loops_closed = 0;
   double wall_seconds = 0.0;
   double cpu_seconds = 0.0;  ///< of the whole process during the run
   double recorded_seconds = 0.0;

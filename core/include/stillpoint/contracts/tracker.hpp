@@ -36,6 +36,7 @@ struct TrackResult {
 
 struct TrackHints {
   bool mapping_waiting = false;  ///< a key frame is already waiting for the local mapper
+  bool localise_only = false;    ///< the map stays as it is: no key frames
 };
 
 class STILLPOINT_EXPORT Tracker {

@@ -16,6 +16,9 @@ class MapStore {
  public:
   using Snapshot = std::shared_ptr<const SparseMap>;
 
+  explicit MapStore(SparseMap first = {})
+      : map_(std::make_shared<const SparseMap>(std::move(first))) {}
+
   Snapshot snapshot() const {
     const std::lock_guard lock(mutex_);
     return map_;
@@ -40,7 +43,7 @@ class MapStore {
  private:
   mutable std::mutex mutex_;
   mutable std::condition_variable_any changed_;
-  Snapshot map_ = std::make_shared<const SparseMap>();  // guarded by mutex_, like the next
+  Snapshot map_;  // guarded by mutex_, like the next
   bool published_ = false;
 };
 

@@ -5,11 +5,10 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
-#include <mutex>
-#include <stop_token>
 #include <variant>
 #include <vector>
 
+#include "stillpoint/runtime/hurry.hpp"
 #include "stillpoint/runtime/map_store.hpp"
 #include "stillpoint/runtime/stage.hpp"
 #include "stillpoint/runtime/worker.hpp"
@@ -27,7 +26,8 @@ struct NewKeyFrame {
 class MappingSystem {
  public:
   MappingSystem(Stage<LocalMapper> local_mapper, Stage<LoopCloser> loop_closer,
-                Stage<MapBackend> map_backend, Mode mode, StopSignal& stop, TimeLog& times);
+                Stage<MapBackend> map_backend, SparseMap known_map, Mode mode, StopSignal& stop,
+                TimeLog& times);
   ~MappingSystem() { end(); }
 
   MapStore::Snapshot snapshot() const { return map_.snapshot(); }
@@ -38,24 +38,33 @@ class MappingSystem {
   bool waiting() const { return local_mapping_.waiting(); }
   /// Finishes what is under way and ends the threads; after a stop, at once.
   void end();
+  /// Loops closed. Only after end().
+  int loops() const { return loops_; }
   /// Writes the dense map into `directory`, if there is one. Only after end().
   void save(const std::filesystem::path& directory);
 
  private:
-  using MappingItem = std::variant<NewKeyFrame, MapCorrection>;
+  struct Correction {
+    MapCorrection correction;
+    bool closes_loop = false;
+  };
+  using MappingItem = std::variant<NewKeyFrame, Correction>;
   using DenseItem = std::variant<std::shared_ptr<const DenseKeyFrame>, std::vector<MovedKeyFrame>>;
   struct LoopQuery {
     KeyFrameId keyframe = kNoId;
     std::uint32_t frame = 0;
   };
+  struct AdjustRequest {
+    std::uint32_t frame = 0;
+  };
+  using LoopItem = std::variant<LoopQuery, AdjustRequest>;
 
   void map(NewKeyFrame item);
-  void correct(const MapCorrection& correction);
+  void correct(const Correction& item);
   void close_loop(const LoopQuery& query);
+  void adjust(const AdjustRequest& request);
   void map_densely(const DenseItem& item);
   void send_moved(const SparseMap& before, const SparseMap& after);
-  std::stop_token restart_hurry();
-  void hurry();
 
   const bool threaded_;
   StopSignal& stop_;
@@ -65,13 +74,16 @@ class MappingSystem {
   MapStore map_;
   std::uint32_t mapped_frame_ = 0;  // given last to local mapping, for messages and times
   std::uint32_t dense_frame_ = 0;   // given last to the dense map
+  int loops_ = 0;
+  // Of the loop thread: the map does not show yet what it found last, so it looks for nothing more.
+  bool correction_pending_ = false;
 
-  std::mutex hurry_mutex_;
-  std::stop_source hurry_;  // guarded by hurry_mutex_; of the adjustment under way
+  Hurry mapping_hurry_;     // of the local adjustment under way
+  Hurry adjustment_hurry_;  // of that of the whole map
 
   // Last: their threads use all the others.
   Worker<MappingItem> local_mapping_;
-  Worker<LoopQuery> loop_closing_;
+  Worker<LoopItem> loop_closing_;
   Worker<DenseItem> dense_mapping_;
   std::stop_callback<std::function<void()>> hurry_on_stop_;
 };

@@ -36,6 +36,7 @@ class Pipeline {
 
   const RuntimeOptions options_;
   const std::filesystem::path map_directory_;
+  const bool localise_only_;
   std::unique_ptr<PaceClock> clock_;
   StopSignal stop_;
   TimeLog times_;

@@ -37,6 +37,8 @@ struct Stages {
   Stage<MapBackend> map_backend;
   std::vector<Stage<Output>> outputs;
   std::filesystem::path map_directory;  ///< made for the dense map at the end; empty: not saved
+  SparseMap known_map;                  ///< to begin with; empty: the first frame begins one
+  bool localise_only = false;           ///< the map stays as it is
 };
 
 /// Calls a stage: names it when it fails and measures it. Null stages are not measured.

@@ -56,8 +56,9 @@ class Worker {
   }
 
   bool threaded() const { return threaded_; }
-  /// Whether an item has to wait for others.
-  bool waiting() const { return queue_.size() > 0; }
+  /// Items that have to wait for others.
+  std::size_t size() const { return queue_.size(); }
+  bool waiting() const { return size() > 0; }
   /// Returns when everything pushed has been handled, or after a stop.
   void wait_idle() {
     if (threaded_) queue_.wait_idle(stop_.token());

@@ -1,10 +1,10 @@
-#include "moving_checks/rigid_motion.hpp"
+#include "stillpoint/rigid_motion.hpp"
 
 #include <gtest/gtest.h>
 
 #include <random>
 
-namespace stillpoint::moving {
+namespace stillpoint {
 namespace {
 
 class RigidMotionTest : public ::testing::Test {
@@ -47,39 +47,39 @@ TEST_F(RigidMotionTest, IsFoundAmongOutliers) {
   add(60, other_);
   const auto found = find();
   ASSERT_TRUE(found);
-  expect_near(found->current_from_previous, motion_);
+  expect_near(found->target_from_source, motion_);
   EXPECT_NEAR(found->inliers, 120, 12);
   EXPECT_NEAR(found->agreement, 0.67, 0.07);
 }
 
 TEST_F(RigidMotionTest, IsFoundFromOnePlaneAndForPureRotation) {
   add(100, motion_, 1.0, 3.0);
-  expect_near(find()->current_from_previous, motion_);
+  expect_near(find()->target_from_source, motion_);
   matches_.clear();
   Pose rotation = motion_;
   rotation.translation().setZero();
   add(100, rotation);
-  expect_near(find()->current_from_previous, rotation);
+  expect_near(find()->target_from_source, rotation);
 }
 
 TEST_F(RigidMotionTest, WeightsDecideBetweenTwoMotions) {
   add(80, motion_, 0.9);
   add(160, other_, 0.2);
-  expect_near(find()->current_from_previous, motion_);
+  expect_near(find()->target_from_source, motion_);
 }
 
 TEST_F(RigidMotionTest, LargeMotionsAreFoundToo) {
   const Pose large = exp_se3((Vector6d() << 0.4, 0.1, -0.3, 0.1, -0.25, 0.1).finished());
   add(150, large);
   add(50, other_);
-  expect_near(find()->current_from_previous, large);
+  expect_near(find()->target_from_source, large);
 }
 
 TEST_F(RigidMotionTest, SameSeedSameMotion) {
   add(90, motion_);
   add(60, other_);
-  EXPECT_EQ(find({}, 5)->current_from_previous.matrix(),
-            find({}, 5)->current_from_previous.matrix());
+  EXPECT_EQ(find({}, 5)->target_from_source.matrix(),
+            find({}, 5)->target_from_source.matrix());
 }
 
 TEST_F(RigidMotionTest, NothingIsDeterminedByTooFewOrCrowdedMatches) {
@@ -101,4 +101,4 @@ TEST_F(RigidMotionTest, UncertaintyGrowsWithFewerMatches) {
 }
 
 }  // namespace
-}  // namespace stillpoint::moving
+}  // namespace stillpoint

@@ -1,4 +1,4 @@
-#include "moving_checks/rigid_motion.hpp"
+#include "stillpoint/rigid_motion.hpp"
 
 #include <Eigen/Cholesky>
 #include <algorithm>
@@ -7,7 +7,7 @@
 #include <limits>
 #include <random>
 
-namespace stillpoint::moving {
+namespace stillpoint {
 namespace {
 
 constexpr double kBound = 7.815;   // of the squared error: 95 % of chi-square with 3 degrees
@@ -18,7 +18,7 @@ constexpr double kNearest = 0.05;  // m, in front of the camera
 
 using Matrix36 = Eigen::Matrix<double, 3, 6>;
 
-// d (pixel, inverse depth) / d tangent of the pose at a point in the current camera frame.
+// d (pixel, inverse depth) / d tangent of the pose at a point in the target camera.
 Matrix36 jacobian(const Eigen::Vector3d& p, const Camera& camera) {
   const Eigen::Matrix3d by_point = camera.measurement_jacobian(p);
   Matrix36 result;
@@ -43,13 +43,13 @@ class Estimator {
   }
 
   std::optional<Pose> from_sample(const std::array<std::size_t, 3>& sample) const {
-    Eigen::Matrix3Xd previous(3, 3);
-    Eigen::Matrix3Xd current(3, 3);
+    Eigen::Matrix3Xd source(3, 3);
+    Eigen::Matrix3Xd target(3, 3);
     for (int i = 0; i < 3; ++i) {
-      previous.col(i) = matches_[sample[i]].in_previous;
-      current.col(i) = matches_[sample[i]].in_current;
+      source.col(i) = matches_[sample[i]].in_source;
+      target.col(i) = matches_[sample[i]].in_target;
     }
-    Pose pose = align_points(previous, current, false).target_from_source;
+    Pose pose = align_points(source, target, false).target_from_source;
     for (int step = 0; step < kSampleSteps; ++step) {
       Equations equations;
       for (const std::size_t i : sample) add(matches_[i], pose, 1.0, equations);
@@ -60,17 +60,16 @@ class Estimator {
 
   // Tukey's biweight within a bound that shrinks: the start may be some pixels off.
   RigidMotion refine(const Pose& start) const {
-    RigidMotion motion{.current_from_previous = start};
+    RigidMotion motion{.target_from_source = start};
     double bound = 8 * kBound;
     for (int round = 0; round < kRounds; ++round, bound = std::max(kBound, bound / 2))
       for (int step = 0; step < kSteps; ++step) {
         Equations equations;
         for (const RigidMatch& match : matches_) {
-          const double fit = 1.0 - squared_error(match, motion.current_from_previous) / bound;
-          if (fit > 0)
-            add(match, motion.current_from_previous, match.weight * fit * fit, equations);
+          const double fit = 1.0 - squared_error(match, motion.target_from_source) / bound;
+          if (fit > 0) add(match, motion.target_from_source, match.weight * fit * fit, equations);
         }
-        if (!advance(equations, motion.current_from_previous)) return motion;
+        if (!advance(equations, motion.target_from_source)) return motion;
         motion.information = equations.hessian;
       }
     count_inliers(motion);
@@ -89,14 +88,14 @@ class Estimator {
     const double iz = 1.0 / p.z();
     return scale_.cwiseProduct(Eigen::Vector3d(
         camera_.fx * p.x() * iz + camera_.cx - match.pixel.x(),
-        camera_.fy * p.y() * iz + camera_.cy - match.pixel.y(), iz - 1.0 / match.in_current.z()));
+        camera_.fy * p.y() * iz + camera_.cy - match.pixel.y(), iz - 1.0 / match.in_target.z()));
   }
   double squared_error(const RigidMatch& match, const Pose& pose) const {
-    return error(match, pose * match.in_previous).squaredNorm();
+    return error(match, pose * match.in_source).squaredNorm();
   }
 
   void add(const RigidMatch& match, const Pose& pose, double weight, Equations& equations) const {
-    const Eigen::Vector3d p = pose * match.in_previous;
+    const Eigen::Vector3d p = pose * match.in_source;
     if (p.z() < kNearest) return;
     const Matrix36 j = scale_.asDiagonal() * jacobian(p, camera_);
     equations.hessian.noalias() += weight * (j.transpose() * j);
@@ -116,7 +115,7 @@ class Estimator {
     double all = 0;
     double agreeing = 0;
     for (const RigidMatch& match : matches_) {
-      const bool fits = squared_error(match, motion.current_from_previous) <= kBound;
+      const bool fits = squared_error(match, motion.target_from_source) <= kBound;
       motion.inlier.push_back(fits);
       motion.inliers += fits;
       all += match.weight;
@@ -185,11 +184,11 @@ std::optional<RigidMotion> find_rigid_motion(std::span<const RigidMatch> matches
 }
 
 double pixel_uncertainty(const RigidMotion& motion, const Camera& camera,
-                         const Eigen::Vector3d& point_in_current) {
+                         const Eigen::Vector3d& point_in_target) {
   const Eigen::LLT<Matrix6d> factors(motion.information);
   if (factors.info() != Eigen::Success) return std::numeric_limits<double>::infinity();
-  const Eigen::Matrix<double, 2, 6> j = jacobian(point_in_current, camera).topRows<2>();
+  const Eigen::Matrix<double, 2, 6> j = jacobian(point_in_target, camera).topRows<2>();
   return std::sqrt((j * factors.solve(j.transpose())).trace());
 }
 
-}  // namespace stillpoint::moving
+}  // namespace stillpoint

@@ -1,0 +1,22 @@
+// Sparse maps kept in a file: SQLite, one file, with a version.
+#pragma once
+
+#include <filesystem>
+
+#include "stillpoint/contracts/sparse_map.hpp"
+
+namespace stillpoint {
+
+/// Puts the map into `file`, in place of what is there, at once and as a whole: whenever the
+/// process dies, the file is the earlier or the new one. Throws Error(kUsage) when it cannot be
+/// written; the earlier file then stays.
+void save_map(const SparseMap& map, const std::filesystem::path& file);
+
+/// Throws what save_map would throw, before anything is computed.
+void require_writable(const std::filesystem::path& file);
+
+/// The map of a file; ids are counted anew, without gaps. Throws Error(kData) for a file that is
+/// not there, truncated, damaged, of another kind or of a newer version. Never changes the file.
+SparseMap load_map(const std::filesystem::path& file);
+
+}  // namespace stillpoint

@@ -1,0 +1,63 @@
+#include "orb_slam/loop_candidates.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace stillpoint::orb {
+namespace {
+
+constexpr int kInARow = 3;           // key frames that must agree on a place
+constexpr std::size_t kPlaces = 10;  // looked at per key frame
+constexpr double kMinScore = 0.3;    // of what the most similar neighbour gets
+
+// Key frames that tracking and local mapping have in view anyway: two steps of covisibility.
+std::vector<bool> neighbours(const SparseMap& map, KeyFrameId centre) {
+  std::vector<bool> near(map.keyframe_id_end());
+  near[centre] = true;
+  for (const Covisibility& c : map.keyframe(centre)->covisible) {
+    near[c.keyframe] = true;
+    for (const Covisibility& further : map.keyframe(c.keyframe)->covisible)
+      near[further.keyframe] = true;
+  }
+  return near;
+}
+
+bool meet(const std::vector<KeyFrameId>& a, const std::vector<KeyFrameId>& b) {
+  return std::ranges::any_of(a, [&](KeyFrameId id) { return std::ranges::binary_search(b, id); });
+}
+
+}  // namespace
+
+std::vector<KeyFrameId> LoopCandidates::find(const SparseMap& map, KeyFrameId newest) {
+  index_.update(map);
+  const KeyFrame* keyframe = map.keyframe(newest);
+  if (!keyframe) return {};
+  const std::vector<bool> near = neighbours(map, newest);
+  const std::vector<PlaceVote> votes = index_.query(place_descriptors(*keyframe));
+  double usual = 0;  // how much alike key frames of one place are here
+  for (const PlaceVote& vote : votes)
+    if (near[vote.keyframe] && vote.keyframe != newest) usual = std::max(usual, vote.score);
+
+  std::vector<Group> groups;
+  std::vector<KeyFrameId> candidates;
+  for (const PlaceVote& vote : votes) {
+    if (groups.size() == kPlaces || vote.score < kMinScore * usual) break;
+    if (near[vote.keyframe]) continue;
+    groups.push_back(follow(map, vote.keyframe));
+    if (groups.back().seen >= kInARow) candidates.push_back(vote.keyframe);
+  }
+  groups_ = std::move(groups);
+  return candidates;
+}
+
+LoopCandidates::Group LoopCandidates::follow(const SparseMap& map, KeyFrameId candidate) const {
+  Group group{{candidate}};
+  for (const Covisibility& c : map.keyframe(candidate)->covisible)
+    group.keyframes.push_back(c.keyframe);
+  std::ranges::sort(group.keyframes);
+  for (const Group& before : groups_)
+    if (meet(group.keyframes, before.keyframes)) group.seen = std::max(group.seen, before.seen + 1);
+  return group;
+}
+
+}  // namespace stillpoint::orb

@@ -1,0 +1,46 @@
+#include "orb_slam/loop_closer.hpp"
+
+#include <utility>
+
+namespace stillpoint::orb {
+
+void OrbLoopCloser::Options::visit(OptionVisitor& v) {
+  v("pause", pause,
+    {.min = 0, .unit = "key frames", .help = "after a loop, before the next one is looked for"});
+  v("adjust_iterations", adjust_iterations,
+    {.min = 0, .help = "of the bundle adjustment of the whole map after a loop; 0 = none"});
+}
+
+OrbLoopCloser::OrbLoopCloser(Options options, const StageContext& context)
+    : options_(options), threads_(context.threads) {}
+
+std::optional<MapCorrection> OrbLoopCloser::close(const SparseMap& map, KeyFrameId latest,
+                                                  std::stop_token stop) {
+  const std::vector<KeyFrameId> candidates = candidates_.find(map, latest);
+  if (last_loop_ && latest < *last_loop_ + static_cast<KeyFrameId>(options_.pause))
+    return std::nullopt;
+  for (const KeyFrameId place : candidates) {
+    if (stop.stop_requested()) return std::nullopt;
+    if (auto loop = match_loop(map, latest, place)) return correct(map, *loop, std::move(stop));
+  }
+  return std::nullopt;
+}
+
+std::optional<MapCorrection> OrbLoopCloser::correct(const SparseMap& map, const LoopMatch& loop,
+                                                    std::stop_token stop) {
+  loops_.push_back({loop.place, loop.keyframe,
+                    map.world_from_keyframe(loop.place).inverse() * loop.world_from_camera});
+  last_loop_ = loop.keyframe;
+  return MapCorrection{.base_version = map.version(),
+                       .keyframe_id_end = static_cast<KeyFrameId>(map.keyframe_id_end()),
+                       .moved = optimise_pose_graph(map, loops_, std::move(stop)),
+                       .fused = loop.same};
+}
+
+std::optional<MapCorrection> OrbLoopCloser::adjust(const SparseMap& map, std::stop_token hurry) {
+  if (options_.adjust_iterations == 0) return std::nullopt;
+  return adjust_all(map, {.max_iterations = options_.adjust_iterations, .threads = threads_},
+                    std::move(hurry));
+}
+
+}  // namespace stillpoint::orb

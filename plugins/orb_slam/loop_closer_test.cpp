@@ -1,0 +1,73 @@
+#include "orb_slam/loop_closer.hpp"
+
+#include <gtest/gtest.h>
+
+#include "orb_slam/test_round_trip.hpp"
+
+namespace stillpoint::orb {
+namespace {
+
+class LoopCloserTest : public testing::Test {
+ protected:
+  // Key frame after key frame, until a loop is closed or the trip is over.
+  std::optional<MapCorrection> go() {
+    for (last_ = 0; last_ < RoundTrip::kKeyFrames; ++last_) {
+      map_ = trip_.map(last_ + 1);
+      if (auto correction = closer_.close(map_, static_cast<KeyFrameId>(last_), {}))
+        return correction;
+    }
+    return std::nullopt;
+  }
+
+  RoundTrip trip_;
+  OrbLoopCloser closer_{{}, StageContext{}};
+  SparseMap map_;
+  int last_ = 0;
+};
+
+TEST_F(LoopCloserTest, ClosesTheLoopOnceThePlaceIsSeenAgain) {
+  const auto correction = go();
+  ASSERT_TRUE(correction);
+  EXPECT_GE(last_, RoundTrip::kPerTurn - 4);
+  const SparseMap closed = apply(*correction, map_);
+  EXPECT_EQ(closed.check(), std::nullopt);
+  EXPECT_LT(worst_metres(closed), 0.75 * worst_metres(map_));
+  EXPECT_LT(closed.landmark_count(), map_.landmark_count() - 100);
+  EXPECT_LT(metres_between(closed.world_from_keyframe(static_cast<KeyFrameId>(last_)),
+                           RoundTrip::truth(last_)),
+            0.02);
+}
+
+TEST_F(LoopCloserTest, AdjustmentMakesTheMapConsistent) {
+  const auto correction = go();
+  ASSERT_TRUE(correction);
+  const SparseMap closed = apply(*correction, map_);
+  const auto adjusted = closer_.adjust(closed, {});
+  ASSERT_TRUE(adjusted);
+  const SparseMap map = apply(*adjusted, closed);
+  EXPECT_EQ(map.check(), std::nullopt);
+  EXPECT_LT(worst_metres(map), 0.5 * worst_metres(closed));
+}
+
+TEST_F(LoopCloserTest, WithoutReturnThereIsNoLoop) {
+  for (int i = 0; i < RoundTrip::kPerTurn - 6; ++i) {
+    const SparseMap map = trip_.map(i + 1);
+    EXPECT_FALSE(closer_.close(map, static_cast<KeyFrameId>(i), {})) << i;
+  }
+}
+
+TEST_F(LoopCloserTest, AStopEndsTheSearch) {
+  std::stop_source stop;
+  stop.request_stop();
+  for (int i = 0; i < RoundTrip::kKeyFrames; ++i)
+    EXPECT_FALSE(closer_.close(trip_.map(i + 1), static_cast<KeyFrameId>(i), stop.get_token()));
+}
+
+TEST_F(LoopCloserTest, AKeyFrameThatIsGoneClosesNothing) {
+  MapEdit edit(trip_.map());
+  edit.remove_keyframe(40);
+  EXPECT_FALSE(closer_.close(std::move(edit).finish(), 40, {}));
+}
+
+}  // namespace
+}  // namespace stillpoint::orb

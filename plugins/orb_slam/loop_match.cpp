@@ -1,0 +1,131 @@
+#include "orb_slam/loop_match.hpp"
+
+#include <algorithm>
+#include <set>
+
+#include "orb_slam/landmark_geometry.hpp"
+#include "orb_slam/targets.hpp"
+#include "stillpoint/rigid_motion.hpp"
+
+namespace stillpoint::orb {
+namespace {
+
+constexpr int kNeighbours = 10;          // around either end, most covisible ones
+constexpr int kMinMatches = 20;          // to try a pose
+constexpr int kMinInliers = 40;          // landmarks that fit it
+constexpr double kMinSupport = 0.25;     // of the landmarks that should be seen
+constexpr int kSamples = 300;            // of RANSAC
+constexpr RigidNoise kNoise{2.0, 0.02};  // px, 1/m: wide enough for a map that has drifted
+constexpr double kWideWindow = 10;       // px
+constexpr double kNarrowWindow = 4;      // px
+
+std::vector<KeyFrameId> neighbourhood(const SparseMap& map, KeyFrameId centre) {
+  std::vector<KeyFrameId> ids{centre};
+  for (const Covisibility& c : map.keyframe(centre)->covisible)
+    if (std::ssize(ids) <= kNeighbours) ids.push_back(c.keyframe);
+  return ids;
+}
+
+// Landmarks of a place that the newer end of the loop does not see.
+std::vector<Target> targets_around(const SparseMap& map, KeyFrameId place,
+                                   const std::vector<KeyFrameId>& newer) {
+  std::vector<bool> taken(map.landmark_id_end());
+  for (const KeyFrameId id : newer)
+    for (const LandmarkId landmark : map.keyframe(id)->landmarks)
+      if (landmark != kNoId) taken[landmark] = true;
+  std::vector<Target> targets;
+  for (const KeyFrameId id : neighbourhood(map, place))
+    for (const Target& target : targets_of(*map.keyframe(id), map)) {
+      if (taken[target.landmark]) continue;
+      taken[target.landmark] = true;
+      targets.push_back(target);
+    }
+  return targets;
+}
+
+std::optional<Pose> camera_from_world(const ObservedFrame& view, std::span<const Target> targets,
+                                      const Pose& camera_near_place) {
+  std::vector<Query> queries;
+  for (std::uint32_t i = 0; i < targets.size(); ++i)
+    queries.push_back({.id = i, .descriptor = targets[i].descriptor, .angle = targets[i].angle});
+  const Features& features = *view.features;
+  const auto measured = [&](std::uint32_t i) { return view.usable(i) && features.depth[i] > 0; };
+  const std::vector<Match> matches =
+      match_anywhere(queries, features, measured,
+                     {.max_distance = kNear, .ratio = 0.8, .consistent_angles = true});
+  if (std::ssize(matches) < kMinMatches) return std::nullopt;
+  const Camera& camera = *view.frame->camera;
+  const Pose near_from_world = camera_near_place.inverse();
+  std::vector<RigidMatch> points;
+  for (const Match& m : matches) {
+    const cv::Point2f pixel = features.keypoints[m.feature].pt;
+    points.push_back({near_from_world * targets[m.id].point_in_world,
+                      camera.unproject(pixel.x, pixel.y, features.depth[m.feature]),
+                      {pixel.x, pixel.y}});
+  }
+  const auto motion = find_rigid_motion(points, camera, kNoise, {}, kSamples, 1);
+  if (!motion || motion->inliers < kMinMatches) return std::nullopt;
+  return motion->target_from_source * near_from_world;
+}
+
+// Searches around the predicted places and solves the pose from what is found.
+int refine(ObservedFrame& view, std::span<const Target> targets, double window,
+           const SparseMap& map) {
+  match_projected(view, targets, view.world_from_camera.inverse(), window, 1);
+  const int inliers = solve_pose(view, map);
+  view.drop_outliers();
+  return inliers;
+}
+
+int should_be_seen(const ObservedFrame& view, std::span<const Target> targets,
+                   const SparseMap& map) {
+  const Pose camera_from_world = view.world_from_camera.inverse();
+  const ScalePyramid pyramid(*view.features);
+  return static_cast<int>(std::ranges::count_if(targets, [&](const Target& target) {
+    return predict(*map.landmark(target.landmark), camera_from_world, *view.frame->camera, pyramid,
+                   kNarrowWindow)
+        .has_value();
+  }));
+}
+
+// Older and newer landmarks of the same features, in all key frames of the newer end.
+std::vector<std::pair<LandmarkId, LandmarkId>> same_landmarks(const SparseMap& map,
+                                                              const LoopMatch& loop,
+                                                              const std::vector<KeyFrameId>& newer,
+                                                              std::span<const Target> targets) {
+  const Pose correction =
+      loop.world_from_camera * map.keyframe(loop.keyframe)->world_from_camera.inverse();
+  std::set<std::pair<LandmarkId, LandmarkId>> same;
+  for (const KeyFrameId id : newer) {
+    const KeyFrame& keyframe = *map.keyframe(id);
+    ObservedFrame view = observe_again(keyframe);
+    view.world_from_camera = correction * keyframe.world_from_camera;
+    refine(view, targets, kNarrowWindow, map);
+    for (std::size_t i = 0; i < view.landmarks.size(); ++i)
+      if (view.landmarks[i] != kNoId && keyframe.landmarks[i] != kNoId)
+        same.emplace(view.landmarks[i], keyframe.landmarks[i]);
+  }
+  return {same.begin(), same.end()};
+}
+
+}  // namespace
+
+std::optional<LoopMatch> match_loop(const SparseMap& map, KeyFrameId keyframe, KeyFrameId place) {
+  const std::vector<KeyFrameId> newer = neighbourhood(map, keyframe);
+  const std::vector<Target> targets = targets_around(map, place, newer);
+  ObservedFrame view = observe_again(*map.keyframe(keyframe));
+  const auto guess = camera_from_world(view, targets, map.keyframe(place)->world_from_camera);
+  if (!guess) return std::nullopt;
+  view.world_from_camera = guess->inverse();
+  if (refine(view, targets, kWideWindow, map) < kMinMatches) return std::nullopt;
+  LoopMatch loop{.keyframe = keyframe, .place = place};
+  loop.inliers = refine(view, targets, kNarrowWindow, map);
+  loop.support =
+      static_cast<double>(loop.inliers) / std::max(1, should_be_seen(view, targets, map));
+  if (loop.inliers < kMinInliers || loop.support < kMinSupport) return std::nullopt;
+  loop.world_from_camera = view.world_from_camera;
+  loop.same = same_landmarks(map, loop, newer, targets);
+  return loop;
+}
+
+}  // namespace stillpoint::orb

@@ -1,0 +1,98 @@
+#include "orb_slam/loop_match.hpp"
+
+#include <gtest/gtest.h>
+
+#include <utility>
+
+#include "orb_slam/test_round_trip.hpp"
+
+namespace stillpoint::orb {
+namespace {
+
+constexpr KeyFrameId kAhead = RoundTrip::kPerTurn;  // looks where key frame 0 looked
+
+class LoopMatchTest : public testing::Test {
+ protected:
+  RoundTrip trip_;
+  SparseMap map_ = trip_.map();
+};
+
+TEST_F(LoopMatchTest, FindsThePoseInTheOlderPart) {
+  const auto loop = match_loop(map_, kAhead, 0);
+  ASSERT_TRUE(loop);
+  EXPECT_GT(metres_between(map_.world_from_keyframe(kAhead), RoundTrip::truth(kAhead)), 0.1);
+  EXPECT_LT(metres_between(loop->world_from_camera, RoundTrip::truth(kAhead)), 0.02);
+  EXPECT_LT(radians_between(loop->world_from_camera, RoundTrip::truth(kAhead)), 0.005);
+  EXPECT_GT(loop->support, 0.5);
+}
+
+TEST_F(LoopMatchTest, PairsLandmarksOfOnePoint) {
+  const auto loop = match_loop(map_, kAhead, 0);
+  ASSERT_TRUE(loop);
+  EXPECT_GT(loop->same.size(), 200U);
+  int wrong = 0;
+  for (const auto& [older, newer] : loop->same) {
+    EXPECT_LT(map_.landmark(older)->created_by, map_.landmark(newer)->created_by);
+    wrong += trip_.point_of(map_, older) != trip_.point_of(map_, newer);
+  }
+  EXPECT_LE(wrong, static_cast<int>(loop->same.size() / 50));
+}
+
+TEST_F(LoopMatchTest, OtherPlacesAreNone) {
+  for (const KeyFrameId place : {9U, 18U, 27U}) EXPECT_FALSE(match_loop(map_, kAhead, place));
+}
+
+// What moves is not mapped and takes no part.
+TEST_F(LoopMatchTest, WithoutWeightNothingMatches) {
+  MapEdit edit(map_);
+  std::fill(edit.keyframe(kAhead).map_weights.begin(), edit.keyframe(kAhead).map_weights.end(),
+            std::uint8_t{0});
+  EXPECT_FALSE(match_loop(std::move(edit).finish(), kAhead, 0));
+}
+
+TEST_F(LoopMatchTest, SameMapSameBits) {
+  const auto a = match_loop(map_, kAhead, 0), b = match_loop(map_, kAhead, 0);
+  ASSERT_TRUE(a && b);
+  EXPECT_EQ(a->world_from_camera.matrix(), b->world_from_camera.matrix());
+  EXPECT_EQ(a->same, b->same);
+}
+
+// The same poster hangs in two places: its points fit, nothing around them does.
+TEST(LoopMatch, OnePosterIsNoPlace) {
+  TestWorld world(3000, 5, {{-4, -2, 2}, {4, 2, 6}});
+  const View here = world.see(pose_at({0, 0, 0}));
+  TestWorld other(3000, 6, {{-4, -2, 2}, {4, 2, 6}});
+  View there = other.see(pose_at({0, 0, 0}));
+  auto features = std::make_shared<Features>(*there.features);
+  for (std::size_t i = 0; i < here.features->size(); ++i) {
+    const cv::KeyPoint& k = here.features->keypoints[i];
+    if (!cv::Rect(240, 160, 160, 160).contains(k.pt)) continue;
+    features->keypoints.push_back(k);
+    features->descriptors.push_back(here.features->descriptors[i]);
+    features->depth.push_back(here.features->depth[i]);
+    there.point.push_back(0);
+  }
+  there.features = features;
+  there.world_from_camera = pose_at({20, 0, 0});
+
+  MapEdit edit{SparseMap{}};
+  KeyFrameId id = 0;
+  for (const View* view : {&std::as_const(here), &std::as_const(there)}) {
+    edit.add_keyframe(keyframe_of(*view, id));
+    for (std::uint32_t f = 0; f < view->features->size(); ++f) {
+      const cv::Point2f p = view->features->keypoints[f].pt;
+      const LandmarkId landmark = edit.add_landmark(
+          {.position_in_world = view->world_from_camera *
+                                view->camera->unproject(p.x, p.y, view->features->depth[f]),
+           .reference = id,
+           .created_by = id});
+      edit.add_observation(landmark, {id, f});
+      refresh_landmark(edit, landmark);
+    }
+    ++id;
+  }
+  EXPECT_FALSE(match_loop(std::move(edit).finish(), 1, 0));
+}
+
+}  // namespace
+}  // namespace stillpoint::orb

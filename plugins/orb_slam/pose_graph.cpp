@@ -1,0 +1,136 @@
+#include "orb_slam/pose_graph.hpp"
+
+#include <ceres/ceres.h>
+
+#include <deque>
+#include <utility>
+
+#include "orb_slam/ceres_stop.hpp"
+
+namespace stillpoint::orb {
+namespace {
+
+constexpr int kMinShared = 100;     // landmarks, of an edge of the essential graph
+constexpr double kMetres = 0.01;    // standard deviation of an edge
+constexpr double kRadians = 0.005;  // standard deviation of an edge
+constexpr int kIterations = 30;
+
+// world_from_keyframe; Ceres changes the quaternion on its manifold.
+struct PoseState {
+  KeyFrameId id = kNoId;
+  Eigen::Quaterniond rotation;
+  Eigen::Vector3d translation;
+};
+
+// The pose of b in a, as it is and as it was measured.
+class EdgeError {
+ public:
+  explicit EdgeError(const Pose& a_from_b)
+      : rotation_(a_from_b.linear()), translation_(a_from_b.translation()) {}
+
+  template <class T>
+  bool operator()(const T* qa, const T* ta, const T* qb, const T* tb, T* residuals) const {
+    using Vector = Eigen::Matrix<T, 3, 1>;
+    const Eigen::Map<const Eigen::Quaternion<T>> a(qa), b(qb);
+    const Eigen::Quaternion<T> world_in_a = a.conjugate();
+    const Vector translation =
+        world_in_a * (Eigen::Map<const Vector>(tb) - Eigen::Map<const Vector>(ta));
+    const Eigen::Quaternion<T> turn =
+        rotation_.cast<T>() * (world_in_a * b).conjugate();  // identity when they agree
+    Eigen::Map<Vector>{residuals} = (translation - translation_.cast<T>()) / T(kMetres);
+    Eigen::Map<Vector>{residuals + 3} = T(2.0) * turn.vec() / T(kRadians);
+    return true;
+  }
+
+ private:
+  Eigen::Quaterniond rotation_;
+  Eigen::Vector3d translation_;
+};
+
+class PoseGraph {
+ public:
+  explicit PoseGraph(const SparseMap& map) : state_of_(map.keyframe_id_end(), nullptr) {
+    for (KeyFrameId id = 0; id < map.keyframe_id_end(); ++id) {
+      if (!map.keyframe(id)) continue;
+      const Pose& pose = map.keyframe(id)->world_from_camera;
+      states_.push_back({id, Eigen::Quaterniond(pose.linear()), pose.translation()});
+      state_of_[id] = &states_.back();
+    }
+    for (PoseState& state : states_) {
+      problem_.AddParameterBlock(state.rotation.coeffs().data(), 4, &manifold_);
+      problem_.AddParameterBlock(state.translation.data(), 3);
+    }
+    problem_.SetParameterBlockConstant(states_.front().rotation.coeffs().data());
+    problem_.SetParameterBlockConstant(states_.front().translation.data());
+  }
+
+  void add(const PoseEdge& edge) {
+    PoseState* a = state_of_[edge.a];
+    PoseState* b = state_of_[edge.b];
+    if (!a || !b) return;
+    auto* cost = new ceres::AutoDiffCostFunction<EdgeError, 6, 4, 3, 4, 3>(  // owned by problem_
+        new EdgeError(edge.a_from_b));
+    problem_.AddResidualBlock(cost, nullptr, a->rotation.coeffs().data(), a->translation.data(),
+                              b->rotation.coeffs().data(), b->translation.data());
+  }
+
+  bool solve(std::stop_token stop) {
+    StopCallback callback(std::move(stop));
+    ceres::Solver::Options solver;
+    solver.linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;
+    solver.max_num_iterations = kIterations;
+    solver.logging_type = ceres::SILENT;
+    solver.callbacks = {&callback};
+    ceres::Solver::Summary summary;
+    ceres::Solve(solver, &problem_, &summary);
+    return summary.IsSolutionUsable();
+  }
+
+  std::vector<MovedKeyFrame> result() const {
+    std::vector<MovedKeyFrame> moved;
+    for (const PoseState& state : states_) {
+      Pose pose = Pose::Identity();
+      pose.linear() = state.rotation.normalized().toRotationMatrix();
+      pose.translation() = state.translation;
+      moved.push_back({state.id, pose});
+    }
+    return moved;
+  }
+
+ private:
+  static ceres::Problem::Options problem_options() {
+    ceres::Problem::Options options;
+    options.manifold_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
+    return options;
+  }
+
+  ceres::EigenQuaternionManifold manifold_;
+  std::deque<PoseState> states_;      // stay where they are
+  std::vector<PoseState*> state_of_;  // by key frame id
+  ceres::Problem problem_{problem_options()};
+};
+
+PoseEdge edge_between(const SparseMap& map, KeyFrameId a, KeyFrameId b) {
+  return {a, b, map.world_from_keyframe(a).inverse() * map.world_from_keyframe(b)};
+}
+
+}  // namespace
+
+std::vector<MovedKeyFrame> optimise_pose_graph(const SparseMap& map,
+                                               std::span<const PoseEdge> loops,
+                                               std::stop_token stop) {
+  PoseGraph graph(map);
+  for (KeyFrameId id = 0; id < map.keyframe_id_end(); ++id) {
+    const KeyFrame* keyframe = map.keyframe(id);
+    if (!keyframe) continue;
+    if (keyframe->parent != kNoId) graph.add(edge_between(map, keyframe->parent, id));
+    for (const Covisibility& c : keyframe->covisible)
+      if (c.shared >= kMinShared && c.keyframe < id && c.keyframe != keyframe->parent)
+        graph.add(edge_between(map, c.keyframe, id));
+  }
+  for (const PoseEdge& loop : loops) graph.add(loop);
+  if (!graph.solve(std::move(stop))) return {};
+  return graph.result();
+}
+
+}  // namespace stillpoint::orb

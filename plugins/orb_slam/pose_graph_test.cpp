@@ -1,0 +1,56 @@
+#include "orb_slam/pose_graph.hpp"
+
+#include <gtest/gtest.h>
+
+#include "orb_slam/test_round_trip.hpp"
+
+namespace stillpoint::orb {
+namespace {
+
+constexpr KeyFrameId kAhead = RoundTrip::kPerTurn;
+
+class PoseGraphTest : public testing::Test {
+ protected:
+  static double worst_metres(const std::vector<MovedKeyFrame>& moved) {
+    double worst = 0;
+    for (const MovedKeyFrame& m : moved)
+      worst = std::max(worst, metres_between(m.world_from_camera,
+                                             RoundTrip::truth(static_cast<int>(m.keyframe))));
+    return worst;
+  }
+  const SparseMap map_ = RoundTrip().map();
+  const PoseEdge loop_{0, kAhead, RoundTrip::truth(0).inverse() * RoundTrip::truth(kAhead)};
+};
+
+TEST_F(PoseGraphTest, SpreadsTheErrorOfALoop) {
+  const auto moved = optimise_pose_graph(map_, {&loop_, 1}, {});
+  ASSERT_EQ(moved.size(), map_.keyframe_count());
+  EXPECT_EQ(moved.front().keyframe, 0U);
+  EXPECT_EQ(moved.front().world_from_camera.matrix(), map_.world_from_keyframe(0).matrix());
+  EXPECT_LT(metres_between(moved[kAhead].world_from_camera, RoundTrip::truth(kAhead)), 0.02);
+  EXPECT_LT(worst_metres(moved), 0.75 * orb::worst_metres(map_));
+}
+
+TEST_F(PoseGraphTest, WithoutLoopsEverythingStays) {
+  for (const MovedKeyFrame& m : optimise_pose_graph(map_, {}, {}))
+    EXPECT_LT(metres_between(m.world_from_camera, map_.world_from_keyframe(m.keyframe)), 1e-6);
+}
+
+TEST_F(PoseGraphTest, EdgesOfRemovedKeyFramesArePassedOver) {
+  MapEdit edit(map_);
+  edit.remove_keyframe(5);
+  const PoseEdge loops[] = {loop_, {5, kAhead, Pose::Identity()}};
+  const auto moved = optimise_pose_graph(std::move(edit).finish(), loops, {});
+  EXPECT_EQ(moved.size(), map_.keyframe_count() - 1);
+  EXPECT_LT(worst_metres(moved), 0.75 * orb::worst_metres(map_));
+}
+
+TEST_F(PoseGraphTest, EndsWhenAsked) {
+  std::stop_source stop;
+  stop.request_stop();
+  const auto moved = optimise_pose_graph(map_, {&loop_, 1}, stop.get_token());
+  EXPECT_LE(worst_metres(moved), orb::worst_metres(map_) + 1e-9);
+}
+
+}  // namespace
+}  // namespace stillpoint::orb

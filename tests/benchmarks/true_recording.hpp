@@ -1,0 +1,68 @@
+// Simulated recordings with their true poses, for programs that measure.
+#pragma once
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "evaluation/trajectory.hpp"
+#include "stillpoint/contracts/frame.hpp"
+
+namespace stillpoint {
+
+struct TrueFrame {
+  std::shared_ptr<Frame> frame;  // gray and depth
+  std::string name;              // of its files in labels/ and instances/
+  Pose world_from_camera;
+};
+
+inline Pose pose_at(const evaluation::Trajectory& truth, double time) {
+  std::size_t i = 1;
+  while (i + 1 < truth.poses.size() && truth.poses[i].time < time) ++i;
+  const auto& [before, a] = truth.poses[i - 1];
+  const auto& [after, b] = truth.poses[i];
+  return interpolate(a, b, (time - before) / (after - before));
+}
+
+/// Every n-th frame of a recording, numbered from 0.
+inline std::vector<TrueFrame> read_true_frames(const std::filesystem::path& folder, int every = 1) {
+  constexpr double kDepthFactor = 5000;
+  const auto truth = evaluation::read_trajectory(folder / "groundtruth.txt");
+  const auto camera = std::make_shared<const Camera>(
+      Camera{.fx = 535.4, .fy = 539.2, .cx = 320.1, .cy = 247.6, .depth_noise = 0.0016});
+  std::vector<TrueFrame> frames;
+  std::ifstream list(folder / "associations.txt");
+  int line_number = 0;
+  for (std::string line; std::getline(list, line);) {
+    std::istringstream columns(line);
+    double time = 0, depth_time = 0;
+    std::string color, depth;
+    if (!(columns >> time >> color >> depth_time >> depth) || line_number++ % every != 0) continue;
+    auto frame = std::make_shared<Frame>();
+    frame->index = static_cast<std::uint32_t>(frames.size());
+    frame->time = time;
+    frame->camera = camera;
+    cv::cvtColor(cv::imread(folder / color), frame->gray, cv::COLOR_BGR2GRAY);
+    cv::imread(folder / depth, cv::IMREAD_UNCHANGED)
+        .convertTo(frame->depth, CV_32F, 1 / kDepthFactor);
+    frames.push_back({frame, std::filesystem::path(color).filename(), pose_at(truth, time)});
+  }
+  return frames;
+}
+
+/// The recordings in the folder that STILLPOINT_RECORDINGS names.
+inline std::vector<std::filesystem::path> recordings_to_measure() {
+  std::vector<std::filesystem::path> folders;
+  if (const char* folder = std::getenv("STILLPOINT_RECORDINGS"))
+    for (const auto& entry : std::filesystem::directory_iterator(folder))
+      if (exists(entry.path() / "associations.txt")) folders.push_back(entry.path());
+  return folders;
+}
+
+}  // namespace stillpoint
