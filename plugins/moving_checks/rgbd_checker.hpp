@@ -57,7 +57,7 @@ class RgbdChecker final : public MovingChecker {
   void inherit_trust(std::vector<Observation>& observations) const;
   double inherited_trust(const Observation& observation) const;
   std::optional<RigidMotion> camera_motion(const std::vector<Observation>& observations,
-                                                   const Frame& current) const;
+                                           const Frame& current) const;
   bool determined(const RigidMotion& motion, const Camera& camera) const;
   void judge(const std::vector<Observation>& observations, const Pose& motion, const Camera& camera,
              MovingPoints& result) const;

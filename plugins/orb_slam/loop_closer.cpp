@@ -30,10 +30,15 @@ std::optional<MapCorrection> OrbLoopCloser::correct(const SparseMap& map, const 
                                                     std::stop_token stop) {
   loops_.push_back({loop.place, loop.keyframe,
                     map.world_from_keyframe(loop.place).inverse() * loop.world_from_camera});
+  std::vector<MovedKeyFrame> moved = optimise_pose_graph(map, loops_, std::move(stop));
+  if (moved.empty()) {
+    loops_.pop_back();
+    return std::nullopt;
+  }
   last_loop_ = loop.keyframe;
   return MapCorrection{.base_version = map.version(),
                        .keyframe_id_end = static_cast<KeyFrameId>(map.keyframe_id_end()),
-                       .moved = optimise_pose_graph(map, loops_, std::move(stop)),
+                       .moved = std::move(moved),
                        .fused = loop.same};
 }
 
