@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 #include <sqlite3.h>
+#include <sys/time.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -245,14 +246,16 @@ TEST_F(MapFile, ADyingProcessLeavesAWholeFile) {
   std::mt19937_64 random(2);
   int new_ones = 0;
   for (int i = 0; i < 100; ++i) {
+    const itimerval death{.it_value = {.tv_usec = static_cast<int>(1 + random() % 20000)}};
     const pid_t child = ::fork();
     ASSERT_GE(child, 0);
     if (child == 0) {
+      ::setitimer(ITIMER_REAL, &death, nullptr);
       for (int k = 0;; ++k) save_map(k % 2 ? small : large, file_);
     }
-    ::usleep(static_cast<unsigned>(random() % 20000));
-    ::kill(child, SIGKILL);
-    ::waitpid(child, nullptr, 0);
+    int status = 0;
+    ::waitpid(child, &status, 0);
+    ASSERT_TRUE(WIFSIGNALED(status) && WTERMSIG(status) == SIGALRM);
     const std::size_t keyframes = load_map(file_).keyframe_count();
     ASSERT_TRUE(keyframes == small.keyframe_count() || keyframes == large.keyframe_count()) << i;
     new_ones += keyframes == large.keyframe_count();
