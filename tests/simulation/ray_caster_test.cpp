@@ -8,13 +8,13 @@ namespace {
 using Eigen::Vector3f;
 
 Hit cast_one(const RayCaster& caster, const Vector3f& origin, const Vector3f& direction,
-             float moment = 0.5F) {
+             float moment = 0.5F, RayCaster::Targets targets = RayCaster::Targets::kAll) {
   RayPacket packet;
   packet.x.fill(direction.x());
   packet.y.fill(direction.y());
   packet.z.fill(direction.z());
   std::array<Hit, kPacket> hits;
-  caster.cast(origin, packet, moment, hits);
+  caster.cast(origin, packet, moment, targets, hits);
   return hits[3];
 }
 
@@ -53,6 +53,9 @@ TEST(RayCaster, BodiesAreWhereTheyAreAtTheMoment) {
   EXPECT_NEAR(cast_one(caster, Vector3f::Zero(), {0, 1, 0}, 0.5F).distance, 5.5F, 1e-5F);
   EXPECT_NEAR(cast_one(caster, Vector3f::Zero(), {0, 1, 0}, 0.75F).distance, 6.0F, 1e-5F);
   EXPECT_EQ(cast_one(caster, Vector3f::Zero(), {0, 1, 0}).body, 0);
+  const Hit behind = cast_one(caster, Vector3f::Zero(), {0, 1, 0}, 0.5F, RayCaster::Targets::kRoom);
+  EXPECT_EQ(behind.body, -1);
+  EXPECT_NEAR(behind.distance, 19.5F, 1e-5F);
 }
 
 }  // namespace

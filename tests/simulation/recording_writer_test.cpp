@@ -56,6 +56,28 @@ TEST_F(RecordingWriterTest, WritesAFolderOfTheBenchmark) {
   EXPECT_TRUE(std::filesystem::exists(folder_ / "instances" / "1000.033333.png"));
 }
 
+TEST_F(RecordingWriterTest, ListsFramesInTheirOrderWhenAllBeforeAreThere) {
+  SimulatedFrame frame{.bgr = cv::Mat::zeros(2, 2, CV_8UC3),
+                       .depth = cv::Mat::zeros(2, 2, CV_16UC1),
+                       .labels = cv::Mat::zeros(2, 2, CV_8UC1),
+                       .instances = cv::Mat::zeros(2, 2, CV_8UC1)};
+  RecordingWriter writer(folder_);
+  const auto write = [&](int index) {
+    frame.index = index;
+    frame.time = frame.depth_time = index;
+    writer.write(frame);
+  };
+  const std::string header = text("rgb.txt");
+  write(2);
+  write(1);
+  EXPECT_EQ(text("rgb.txt"), header);
+  write(0);
+  EXPECT_EQ(text("rgb.txt"), header +
+                                 "0.000000 rgb/0.000000.png\n"
+                                 "1.000000 rgb/1.000000.png\n"
+                                 "2.000000 rgb/2.000000.png\n");
+}
+
 TEST_F(RecordingWriterTest, GroundTruthIsTheMotionAt100Hz) {
   SceneOptions scene;
   scene.room.furnished = false;

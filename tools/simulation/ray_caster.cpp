@@ -42,7 +42,8 @@ Scene mesh_scene(RTCDevice device, const Mesh& mesh) {
   std::memcpy(triangles, mesh.triangles.data(), mesh.triangles.size() * 3 * sizeof(std::uint32_t));
   rtcCommitGeometry(geometry.get());
   Scene scene = new_scene(device);
-  rtcSetSceneBuildQuality(scene.get(), RTC_BUILD_QUALITY_HIGH);  // built once, searched all the time
+  rtcSetSceneBuildQuality(scene.get(),
+                          RTC_BUILD_QUALITY_HIGH);  // built once, searched all the time
   rtcAttachGeometry(scene.get(), geometry.get());
   rtcCommitScene(scene.get());
   return scene;
@@ -108,7 +109,7 @@ RayCaster::~RayCaster() = default;
 void RayCaster::pose_bodies(double begin, double end) { impl_->pose_bodies(begin, end); }
 
 void RayCaster::cast(const Eigen::Vector3f& origin, const RayPacket& directions, float moment,
-                     std::span<Hit, kPacket> hits) const {
+                     Targets targets, std::span<Hit, kPacket> hits) const {
   RTCRayHit8 packet;
   for (int i = 0; i < kPacket; ++i) {
     packet.ray.org_x[i] = origin.x();
@@ -130,7 +131,8 @@ void RayCaster::cast(const Eigen::Vector3f& origin, const RayPacket& directions,
   rtcInitIntersectContext(&context);
   context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
   rtcIntersect8(kAll.data(), impl_->room(), &context, &packet);
-  if (impl_->moving()) rtcIntersect8(kAll.data(), impl_->moving(), &context, &packet);
+  if (targets == Targets::kAll && impl_->moving())
+    rtcIntersect8(kAll.data(), impl_->moving(), &context, &packet);
   for (std::size_t i = 0; i < kPacket; ++i) {
     const bool nothing = packet.hit.geomID[i] == RTC_INVALID_GEOMETRY_ID;
     hits[i] = nothing ? Hit{}

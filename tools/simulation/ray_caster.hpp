@@ -38,9 +38,10 @@ class RayCaster {
   /// choose a moment in between.
   void pose_bodies(double begin, double end);
 
+  enum class Targets { kRoom, kAll };
   /// `moment` in [0, 1], from begin to end.
   void cast(const Eigen::Vector3f& origin, const RayPacket& directions, float moment,
-            std::span<Hit, kPacket> hits) const;
+            Targets targets, std::span<Hit, kPacket> hits) const;
 
   /// Whether the room is nearer than `reach` along a unit vector.
   bool occluded(const Eigen::Vector3f& origin, const Eigen::Vector3f& direction, float reach) const;

@@ -46,18 +46,28 @@ std::ofstream RecordingWriter::open(const char* name, const char* header) const 
   return file;
 }
 
-void RecordingWriter::write(const SimulatedFrame& frame) {
+void RecordingWriter::write(const SimulatedFrame& frame) { list(frame.index, write_images(frame)); }
+
+RecordingWriter::Names RecordingWriter::write_images(const SimulatedFrame& frame) const {
   const std::string color_name = seconds(frame.time) + ".png";
   const std::string depth_name = seconds(frame.depth_time) + ".png";
   write_png(folder_ / "rgb" / color_name, frame.bgr);
   write_png(folder_ / "depth" / depth_name, frame.depth);
   write_png(folder_ / "labels" / color_name, frame.labels);
   write_png(folder_ / "instances" / color_name, frame.instances);
-  const std::string color = seconds(frame.time) + " rgb/" + color_name;
-  const std::string depth = seconds(frame.depth_time) + " depth/" + depth_name;
-  colors_ << color << '\n';
-  depths_ << depth << '\n';
-  associations_ << color << ' ' << depth << '\n';
+  return {seconds(frame.time) + " rgb/" + color_name,
+          seconds(frame.depth_time) + " depth/" + depth_name};
+}
+
+void RecordingWriter::list(int index, const Names& names) {
+  const std::scoped_lock lock(mutex_);
+  waiting_[index] = names;
+  for (; waiting_.contains(listed_); ++listed_) {
+    const auto [color, depth] = waiting_.extract(listed_).mapped();
+    colors_ << color << '\n';
+    depths_ << depth << '\n';
+    associations_ << color << ' ' << depth << '\n';
+  }
   // Flushed, so that what an interrupted run has written is a recording.
   if (!colors_.flush() || !depths_.flush() || !associations_.flush())
     throw Error(Fault::kUsage, "cannot write the lists of images", folder_.string(),

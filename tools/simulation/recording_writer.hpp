@@ -3,6 +3,9 @@
 
 #include <filesystem>
 #include <fstream>
+#include <map>
+#include <mutex>
+#include <string>
 
 #include "simulation/simulator.hpp"
 
@@ -15,14 +18,26 @@ class RecordingWriter {
   /// Makes the folder. Throws Error(kUsage) when it holds a recording or cannot be written to.
   explicit RecordingWriter(const std::filesystem::path& folder);
 
+  /// May be called by several threads, which share out the frames from the first on. The lists of
+  /// images name a frame when all before it are there.
   void write(const SimulatedFrame& frame);
   /// True poses at 100 Hz, from before the first to after the last frame.
   void write_ground_truth(const Simulator& simulator, int frames);
 
  private:
+  struct Names {
+    std::string color;  // time stamp and file
+    std::string depth;
+  };
+
   std::ofstream open(const char* name, const char* header) const;
+  Names write_images(const SimulatedFrame& frame) const;
+  void list(int index, const Names& names);
 
   std::filesystem::path folder_;
+  std::mutex mutex_;              // of what follows
+  std::map<int, Names> waiting_;  // for frames before
+  int listed_ = 0;                // frames
   std::ofstream colors_;
   std::ofstream depths_;
   std::ofstream associations_;

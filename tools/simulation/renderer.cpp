@@ -5,6 +5,8 @@
 #include <cmath>
 #include <vector>
 
+#include "simulation/body_tiles.hpp"
+#include "simulation/eye.hpp"
 #include "simulation/motion_blur.hpp"
 #include "simulation/parallel.hpp"
 #include "simulation/shading.hpp"
@@ -31,19 +33,6 @@ constexpr std::array<std::array<int, kMany>, 2> kManyCells = {
 float cell_offset(std::size_t axis, std::size_t sample, std::size_t count) {
   const int cell = count == kFew ? kFewCells[axis][sample] : kManyCells[axis][sample];
   return (static_cast<float>(cell) + 0.5F) / static_cast<float>(count) - 0.5F;
-}
-
-/// The camera at one moment of the exposure.
-struct Eye {
-  Eigen::Vector3f position;
-  Eigen::Matrix3f world_from_camera;
-  float moment;  // of the exposure, [0, 1]
-};
-
-Eye eye_at(const CameraMotion& motion, double time, double exposure, double moment) {
-  const Pose pose = motion.world_from_camera(time + (moment - 0.5) * exposure);
-  return {pose.translation().cast<float>(), pose.linear().cast<float>(),
-          static_cast<float>(moment)};
 }
 
 /// Pixels whose rays are cast together; those near each other are faster.
@@ -103,6 +92,7 @@ struct Renderer::Job {
   cv::Mat surfaces;  // CV_32SC1, Shader::surface_key per pixel
   MotionMap motion;
   MotionMap motion_around;
+  BodyTiles bodies;  // by packet
   Eye middle;
   Eye begin;
   Eye end;
@@ -116,6 +106,7 @@ struct Renderer::Job {
         shader(r.world_, t, static_cast<float>(1 / r.camera_.fx)),
         motion(packet_columns(), packet_rows()),
         motion_around(motion),
+        bodies(r.camera_, kPacketWidth, kPacketHeight),
         middle(eye_at(r.motion_, t, e, 0.5)),
         begin(eye_at(r.motion_, t, e, 0)),
         end(eye_at(r.motion_, t, e, 1)) {
@@ -129,17 +120,33 @@ struct Renderer::Job {
       for (std::size_t i = 0; i < n; ++i)
         eyes[n].push_back(
             eye_at(r.motion_, t, e, (static_cast<double>(i) + 0.5) / static_cast<double>(n)));
-    for (const Body& body : r.world_.bodies) {
-      const Eigen::Affine3d body_from_world = body.world_from_body(t).inverse(Eigen::Isometry);
-      begin_from_middle.emplace_back(
-          (body.world_from_body(t - e / 2) * body_from_world).cast<float>());
-      end_from_middle.emplace_back(
-          (body.world_from_body(t + e / 2) * body_from_world).cast<float>());
+    const std::array<Eye, 3> views = {begin, middle, end};
+    for (std::size_t i = 0; i < r.world_.bodies.size(); ++i) {
+      std::array<Eigen::Affine3d, 3> world_from_body;
+      std::array<Eigen::Affine3f, 3> rounded;
+      for (std::size_t k = 0; k < 3; ++k) {
+        world_from_body[k] = r.world_.bodies[i].world_from_body(t + (views[k].moment - 0.5) * e);
+        rounded[k] = world_from_body[k].cast<float>();
+      }
+      const Eigen::Affine3d body_from_world = world_from_body[1].inverse(Eigen::Isometry);
+      begin_from_middle.emplace_back((world_from_body[0] * body_from_world).cast<float>());
+      end_from_middle.emplace_back((world_from_body[2] * body_from_world).cast<float>());
+      bodies.add(r.boxes_[i], rounded, views);
     }
   }
 
   int packet_columns() const { return (renderer.camera_.width + kPacketWidth - 1) / kPacketWidth; }
   int packet_rows() const { return (renderer.camera_.height + kPacketHeight - 1) / kPacketHeight; }
+
+  RayCaster::Targets targets(int column, int row) const {
+    return bodies.at(column, row) ? RayCaster::Targets::kAll : RayCaster::Targets::kRoom;
+  }
+  RayCaster::Targets targets(const std::array<cv::Point, kEdgePixels>& pixels) const {
+    const bool any = std::any_of(pixels.begin(), pixels.end(), [&](const cv::Point& p) {
+      return bodies.at(p.x / kPacketWidth, p.y / kPacketHeight);
+    });
+    return any ? RayCaster::Targets::kAll : RayCaster::Targets::kRoom;
+  }
 
   /// Pixels beyond the image are replaced by those at its border.
   Pixels packet(int column, int row) const {
@@ -153,7 +160,8 @@ struct Renderer::Job {
   }
 
   /// Casts rays through points of the image, px.
-  void cast(const Points& points, const Eye& eye, Bundle& bundle) const {
+  void cast(const Points& points, const Eye& eye, RayCaster::Targets targets,
+            Bundle& bundle) const {
     const Camera& c = renderer.camera_;
     RayPacket rays;
     for (std::size_t i = 0; i < kPacket; ++i) {
@@ -165,7 +173,7 @@ struct Renderer::Job {
       rays.y[i] = d.y();
       rays.z[i] = d.z();
     }
-    renderer.caster_.cast(eye.position, rays, eye.moment, bundle.hits);
+    renderer.caster_.cast(eye.position, rays, eye.moment, targets, bundle.hits);
   }
 
   /// How the surface at a hit moves in the image during the exposure.
@@ -189,7 +197,7 @@ struct Renderer::Job {
     AspectMemory aspects(shader);
     for (int column = 0; column < packet_columns(); ++column) {
       const Pixels pixels = packet(column, row);
-      cast(points_in(pixels, 0, 0), middle, bundle);
+      cast(points_in(pixels, 0, 0), middle, targets(column, row), bundle);
       MotionRange& moved = motion.at(column, row);
       moved = image_motion(bundle.hits[0], bundle.directions[0]);
       moved.include(image_motion(bundle.hits[7], bundle.directions[7]));
@@ -242,7 +250,7 @@ struct Renderer::Job {
       const MotionRange range = motion.around(column, row);
       motion_around.at(column, row) = range;
       if (is_torn(range)) {
-        expose(pixels, range.fastest() <= kFew ? kFew : kMany);
+        expose(pixels, targets(column, row), range.fastest() <= kFew ? kFew : kMany);
         continue;
       }
       for (std::size_t i = 0; i < kPacket; ++i) {
@@ -266,7 +274,7 @@ struct Renderer::Job {
       points.y[i] = static_cast<float>(pixels[i / kFew].y) + cell_offset(1, i % kFew, kFew);
     }
     Bundle bundle;
-    cast(points, middle, bundle);
+    cast(points, middle, targets(pixels), bundle);
     std::array<Vector3f, kEdgePixels> sums;
     sums.fill(Vector3f::Zero());
     AspectMemory aspects(shader);
@@ -284,13 +292,13 @@ struct Renderer::Job {
   }
 
   /// Views spread over each pixel and the exposure.
-  void expose(const Pixels& pixels, std::size_t count) {
+  void expose(const Pixels& pixels, RayCaster::Targets targets, std::size_t count) {
     Bundle bundle;
     std::array<Vector3f, kPacket> sums;
     sums.fill(Vector3f::Zero());
     for (std::size_t s = 0; s < count; ++s) {
       cast(points_in(pixels, cell_offset(0, s, count), cell_offset(1, s, count)), eyes[count][s],
-           bundle);
+           targets, bundle);
       AspectMemory aspects(shader);
       for (std::size_t i = 0; i < kPacket; ++i) {
         const Hit& hit = bundle.hits[i];
@@ -318,7 +326,12 @@ struct Renderer::Job {
 
 Renderer::Renderer(const World& world, const CameraMotion& motion, const Camera& camera,
                    int threads)
-    : world_(world), motion_(motion), camera_(camera), threads_(threads), caster_(world) {}
+    : world_(world), motion_(motion), camera_(camera), threads_(threads), caster_(world) {
+  for (const Body& body : world.bodies) {
+    Eigen::AlignedBox3f& box = boxes_.emplace_back();
+    for (const Vector3f& vertex : body.mesh.vertices) box.extend(vertex);
+  }
+}
 
 View Renderer::render(double time, double exposure) {
   caster_.pose_bodies(time - exposure / 2, time + exposure / 2);

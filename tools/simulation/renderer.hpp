@@ -1,7 +1,9 @@
 // What a perfect camera sees: colours with motion blur and smooth edges, exact depth and labels.
 #pragma once
 
+#include <Eigen/Geometry>
 #include <opencv2/core/mat.hpp>
+#include <vector>
 
 #include "simulation/camera_motion.hpp"
 #include "simulation/ray_caster.hpp"
@@ -28,6 +30,8 @@ class Renderer {
   /// Without colours.
   View render_geometry(double time);
 
+  int threads() const { return threads_; }
+
  private:
   struct Job;
 
@@ -36,6 +40,7 @@ class Renderer {
   Camera camera_;
   int threads_;
   RayCaster caster_;
+  std::vector<Eigen::AlignedBox3f> boxes_;  // of the bodies, each in its own frame
 };
 
 }  // namespace stillpoint::simulation

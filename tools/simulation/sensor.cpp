@@ -17,15 +17,18 @@ std::uint16_t encode(double metres, double depth_factor) {
   return value < 65536 ? static_cast<std::uint16_t>(value) : 0;
 }
 
+/// Distance of what is not measured, metres.
+constexpr float kNothing = std::numeric_limits<float>::infinity();
+
 /// Of numbers above -1000; std::lround is a slow function call.
 int round_to_int(float x) { return static_cast<int>(x + 1000.5F) - 1000; }
 
 /// Pixels which the projector, right of the camera, cannot reach: another surface is in the way.
 /// The light on a pixel left the projector in column x - bf / z; what is nearer covers the columns
 /// of what is farther and seen left of it.
-std::vector<bool> shadow_row(const float* depth, int width, float baseline_focal) {
+std::vector<std::uint8_t> shadow_row(const float* depth, int width, float baseline_focal) {
   constexpr float kTolerance = 1.0F;  // px; a slanted surface does not shade itself
-  std::vector<bool> shadow(static_cast<std::size_t>(width));
+  std::vector<std::uint8_t> shadow(static_cast<std::size_t>(width));
   float covered = std::numeric_limits<float>::infinity();
   for (int x = width - 1; x >= 0; --x) {
     if (depth[x] <= 0) continue;
@@ -128,6 +131,32 @@ cv::Mat Sensor::depth_image(const View& view, int frame) const {
 }
 
 void Sensor::measure_row(const View& view, int frame, int y, std::uint16_t* out) const {
+  const auto id = static_cast<std::uint32_t>(frame);
+  const RowNoise white(seed_, id, Stream::kDepthWhite, y);
+  LatticeNoise shared(seed_, id, y);
+  // Shares of the variance; the lattice keeps 4/9 of its own between its points, on average.
+  const auto sigma_white = static_cast<float>(options_.disparity_noise * std::sqrt(0.3));
+  const auto sigma_shared = static_cast<float>(options_.disparity_noise * std::sqrt(0.7 * 9 / 4));
+  const std::vector<float> seen = seen_row(view, frame, y);
+  const auto count = seen.size();
+  std::vector<float> noise(count);
+  for (std::size_t x = 0; x < count; ++x) {
+    const int column = static_cast<int>(x);
+    noise[x] = sigma_white * white.normal(column) + sigma_shared * shared.at(column);
+  }
+  // Apart from what decides and looks up, so that compilers make vector instructions of it.
+  const auto focal = static_cast<float>(options_.baseline_focal);
+  const auto step = static_cast<float>(options_.disparity_step);
+  for (std::size_t x = 0; x < count; ++x) {
+    const float disparity = focal / seen[x] + noise[x];
+    const float measured =
+        step > 0 ? step * static_cast<float>(round_to_int(disparity / step)) : disparity;
+    const float z = focal / measured;
+    out[x] = seen[x] < kNothing && measured > 0 ? encode(z, depth_factor_) : 0;
+  }
+}
+
+std::vector<float> Sensor::seen_row(const View& view, int frame, int y) const {
   constexpr float kEdge = 0.06F;     // relative step of depth that is an edge
   constexpr float kEdgeLoss = 0.3F;  // share of pixels lost at edges
   constexpr float kWander = 0.4F;    // px, standard deviation of where an edge is seen
@@ -136,17 +165,13 @@ void Sensor::measure_row(const View& view, int frame, int y, std::uint16_t* out)
   const auto id = static_cast<std::uint32_t>(frame);
   const RowNoise white(seed_, id, Stream::kDepthWhite, y);
   const RowNoise jitter(seed_, id, Stream::kDepthJitter, y);
-  LatticeNoise shared(seed_, id, y);
   const cv::Mat& depth = view.depth;
-  const auto focal = static_cast<float>(options_.baseline_focal);
-  const std::vector<bool> shadow = shadow_row(depth.ptr<float>(y), depth.cols, focal);
-  // Shares of the variance; the lattice keeps 4/9 of its own between its points, on average.
-  const auto sigma_white = static_cast<float>(options_.disparity_noise * std::sqrt(0.3));
-  const auto sigma_shared = static_cast<float>(options_.disparity_noise * std::sqrt(0.7 * 9 / 4));
-  const auto step = static_cast<float>(options_.disparity_step);
+  std::vector<float> seen(static_cast<std::size_t>(depth.cols), kNothing);
+  const std::vector<std::uint8_t> shadow =
+      shadow_row(depth.ptr<float>(y), depth.cols, static_cast<float>(options_.baseline_focal));
+  const auto min_range = static_cast<float>(options_.min_range);
+  const auto max_range = static_cast<float>(options_.max_range);
   for (int x = 0; x < depth.cols; ++x) {
-    out[x] = 0;
-    const float lattice = shared.at(x);
     if (shadow[static_cast<std::size_t>(x)]) continue;
     const std::uint32_t bits = jitter.bits(x);
     const int from_x =
@@ -157,19 +182,17 @@ void Sensor::measure_row(const View& view, int frame, int y, std::uint16_t* out)
     float z = depth.at<float>(from_y, from_x);
     // Sub-pixel wander matters at edges only; on a surface it would add noise of its own.
     if (std::abs(z - here) < kEdge * here) z = here;
-    if (z < options_.min_range || z > options_.max_range) continue;
-    const std::uint32_t chance = white.bits(x);
-    const float random = static_cast<float>(chance & 0xffff) / 0x1p16F;
+    if (z < min_range || z > max_range) continue;
+    const float random = static_cast<float>(white.bits(x) & 0xffff) / 0x1p16F;
     const float light = view.infrared.at<float>(from_y, from_x);
     if (light < kDark + (kBright - kDark) * random) continue;
     const float left = depth.at<float>(y, std::max(x - 1, 0));
     const float right = depth.at<float>(y, std::min(x + 1, depth.cols - 1));
     const bool edge = std::abs(left - right) > kEdge * here;
     if (edge && random < kEdgeLoss) continue;
-    float disparity = focal / z + sigma_white * normal_from_bits(chance) + sigma_shared * lattice;
-    if (step > 0) disparity = step * static_cast<float>(round_to_int(disparity / step));
-    if (disparity > 0) out[x] = encode(focal / disparity, depth_factor_);
+    seen[static_cast<std::size_t>(x)] = z;
   }
+  return seen;
 }
 
 }  // namespace stillpoint::simulation

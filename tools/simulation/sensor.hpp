@@ -21,6 +21,8 @@ class Sensor {
 
  private:
   float gain(double time) const;
+  /// Distances of what the projector's light comes back from, metres.
+  std::vector<float> seen_row(const View& view, int frame, int y) const;
   void measure_row(const View& view, int frame, int y, std::uint16_t* depth) const;
 
   SensorOptions options_;

@@ -34,10 +34,18 @@ CameraModel default_camera() {
 Simulator::Simulator(const SceneOptions& scene, const CameraModel& camera, int threads)
     : scene_(scene),
       camera_(checked(camera)),
-      world_(std::make_unique<const World>(build_world(scene))),
+      world_(std::make_shared<const World>(build_world(scene))),
       motion_(scene.motion, scene.seed),
       renderer_(*world_, motion_, camera_.undistorted(), threads),
       sensor_(scene.sensor, scene.seed, camera.depth_factor, threads) {}
+
+Simulator::Simulator(const Simulator& other)
+    : scene_(other.scene_),
+      camera_(other.camera_),
+      world_(other.world_),
+      motion_(other.motion_),
+      renderer_(*world_, motion_, camera_.undistorted(), other.renderer_.threads()),
+      sensor_(other.sensor_) {}
 
 double Simulator::stamp(int index) const {
   return whole_microseconds(scene_.start_time + index / scene_.rate);
@@ -56,7 +64,7 @@ Pose Simulator::world_from_camera(double stamp) const {
 }
 
 SimulatedFrame Simulator::frame(int index) {
-  SimulatedFrame frame{.time = stamp(index), .depth_time = depth_stamp(index)};
+  SimulatedFrame frame{.index = index, .time = stamp(index), .depth_time = depth_stamp(index)};
   const double time = frame.time - scene_.start_time;
   frame.world_from_camera = world_from_camera(frame.time);
   const View view = renderer_.render(time, scene_.sensor.ideal ? 0 : scene_.sensor.exposure);

@@ -10,6 +10,7 @@
 namespace stillpoint::simulation {
 
 struct SimulatedFrame {
+  int index = 0;          ///< from 0
   double time = 0;        ///< s, of the colour image: middle of its exposure, whole microseconds
   double depth_time = 0;  ///< s, of the depth image
   Pose world_from_camera = Pose::Identity();  ///< at `time`
@@ -25,6 +26,8 @@ class Simulator {
  public:
   /// Throws Error(kUsage) when the camera is not a plain pinhole camera.
   Simulator(const SceneOptions& scene, const CameraModel& camera, int threads);
+  /// Shares the world, so that several threads can render frames of their own of one recording.
+  Simulator(const Simulator& other);
 
   SimulatedFrame frame(int index);
 
@@ -38,7 +41,7 @@ class Simulator {
  private:
   SceneOptions scene_;
   CameraModel camera_;
-  std::unique_ptr<const World> world_;
+  std::shared_ptr<const World> world_;
   CameraMotion motion_;
   Renderer renderer_;
   Sensor sensor_;

@@ -1,16 +1,19 @@
 // stillpoint simulate: writes a recording of a simulated scene, with true poses and labels.
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
-#include <future>
 #include <iostream>
 #include <memory>
+#include <mutex>
 #include <thread>
+#include <vector>
 
 #include "commands.hpp"
 #include "scene_file.hpp"
+#include "simulation/parallel.hpp"
 #include "simulation/recording_writer.hpp"
 
 namespace stillpoint {
@@ -24,31 +27,57 @@ struct Arguments {
   int threads = 0;
 };
 
+/// Says on standard output how far it is; may be told by several threads.
+class Count {
+ public:
+  explicit Count(int frames) : frames_(frames) {}
+
+  void one_more() {
+    const std::scoped_lock lock(mutex_);
+    if (++done_ % 100 != 0 && done_ != frames_) return;
+    const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - begin_;
+    std::cout << done_ << " of " << frames_ << " frames, " << std::lround(done_ / seconds.count())
+              << " per second\n"
+              << std::flush;
+  }
+
+ private:
+  int frames_;
+  std::mutex mutex_;
+  int done_ = 0;
+  std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
+};
+
+/// Each thread renders whole frames: none waits for another before the last.
+void write_frames(const simulation::Simulator& simulator, simulation::RecordingWriter& writer,
+                  int threads) {
+  std::vector<simulation::Simulator> simulators(static_cast<std::size_t>(threads), simulator);
+  Count count(simulator.size());
+  std::atomic<int> next = 0;
+  simulation::parallel_for(threads, threads, [&](int thread) {
+    try {
+      for (int i = next++; i < simulator.size(); i = next++) {
+        writer.write(simulators[static_cast<std::size_t>(thread)].frame(i));
+        count.one_more();
+      }
+    } catch (...) {
+      next = simulator.size();  // for all
+      throw;
+    }
+  });
+}
+
 void simulate(const Arguments& arguments) {
   SceneFile file = load_scene(arguments.scene, arguments.assignments);
   if (arguments.frames > 0) file.scene.frames = arguments.frames;
   const int threads = arguments.threads > 0
                           ? arguments.threads
                           : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
-  simulation::Simulator simulator(file.scene, file.camera, threads);
+  const simulation::Simulator simulator(file.scene, file.camera, 1);
   simulation::RecordingWriter writer(arguments.output);
   std::ofstream(arguments.output / "camera.yaml") << "version: 1\n" << camera_yaml(file.camera);
   writer.write_ground_truth(simulator, simulator.size());
-  const auto begin = std::chrono::steady_clock::now();
-  const auto rate = [&](int frames) {
-    return frames / std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  };
-  std::future<void> written;  // of the frame before: files are written while the next is rendered
-  for (int i = 0; i < simulator.size(); ++i) {
-    simulation::SimulatedFrame frame = simulator.frame(i);
-    if (written.valid()) written.get();
-    written = std::async(std::launch::async, [&writer, frame] { writer.write(frame); });
-    if ((i + 1) % 100 == 0 || i + 1 == simulator.size())
-      std::cout << i + 1 << " of " << simulator.size() << " frames, " << std::lround(rate(i + 1))
-                << " per second\n"
-                << std::flush;
-  }
-  if (written.valid()) written.get();
+  write_frames(simulator, writer, threads);
   std::cout << "recording in " << arguments.output.string() << '\n';
 }
 
