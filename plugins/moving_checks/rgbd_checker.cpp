@@ -20,6 +20,10 @@ constexpr double kTrustRate = 0.3;     // of the way to 0 or 1 per frame
 constexpr double kLeastWeight = 0.05;  // nothing is ruled out for good: the world may be what moved
 constexpr double kInheritRadius = 80.0;  // px, within which points on one surface share their trust
 constexpr double kInheritDepth = 0.03;   // 1/m, likewise
+constexpr double kUsualDepth = 2.0;      // metres, of what has no depth
+// Far from the points that told the camera's motion, it puts points where it may.
+constexpr double kMostUncertainty = 1.5;  // of epsilon; beyond, a point is not judged
+constexpr double kSigmas = 3.0;           // of what is left to it
 
 Eigen::Vector2d vector_of(const cv::Point2f& p) { return {p.x, p.y}; }
 
@@ -94,7 +98,7 @@ MovingPoints RgbdChecker::check(const Frame& previous, const Frame& current) {
     result.points.push_back({.previous = o.match.previous, .current = o.match.current});
   const auto motion = camera_motion(observations, current);
   if (motion) {
-    judge(observations, motion->target_from_source, *current.camera, result);
+    judge(observations, *motion, *current.camera, result);
     recheck(observations, motion->target_from_source, *current.camera, result);
   }
   remember(observations, result, motion ? motion->target_from_source : memory_.motion,
@@ -154,55 +158,50 @@ std::optional<RigidMotion> RgbdChecker::camera_motion(const std::vector<Observat
   auto motion = find_rigid_motion(matches, *current.camera, options_.noise, guesses,
                                   options_.samples, seed_ + current.index);
   if (!motion || motion->agreement < options_.min_agreement ||
-      !determined(*motion, *current.camera))
+      motion->inliers < options_.min_matches / 2)
     return std::nullopt;
   return motion;
 }
 
-// Whether the motion is known well enough, all over the image, to tell what differs from it.
-bool RgbdChecker::determined(const RigidMotion& motion, const Camera& camera) const {
-  constexpr double kUsualDepth = 2.0;  // metres
-  for (const double u : {0.0, camera.width - 1.0})
-    for (const double v : {0.0, camera.height - 1.0})
-      if (pixel_uncertainty(motion, camera, camera.unproject(u, v, kUsualDepth)) >
-          options_.epsilon / 2)
-        return false;
-  return motion.inliers >= options_.min_matches / 2;
-}
-
-void RgbdChecker::judge(const std::vector<Observation>& observations, const Pose& motion,
+void RgbdChecker::judge(std::vector<Observation>& observations, const RigidMotion& motion,
                         const Camera& camera, MovingPoints& result) const {
+  const Pose& pose = motion.target_from_source;
   const double pixels_per_depth =
       options_.noise.pixel / (options_.noise.inverse_depth * std::sqrt(2.0));
-  std::vector<bool> judged;
+  std::vector<double> uncertainty;  // px, of where the camera's motion puts a point
   std::vector<double> static_residuals;
   for (std::size_t i = 0; i < observations.size(); ++i) {
-    const Observation& o = observations[i];
+    Observation& o = observations[i];
     const double slack = 2 * options_.noise.inverse_depth;
     const bool known = o.from.kind != Surface::Kind::kNone;
     const double far = known ? std::max(0.0, o.from.inverse_depth - slack) : 0.0;
     const double near = known ? o.from.inverse_depth + slack : 1.0 / options_.min_depth;
-    const Moved at_far = moved(o.match.previous, far, motion, camera);
-    const Moved at_near = moved(o.match.previous, near, motion, camera);
+    const Moved at_far = moved(o.match.previous, far, pose, camera);
+    const Moved at_near = moved(o.match.previous, near, pose, camera);
     const bool placed = at_far.in_front && at_near.in_front &&
                         (known || (at_far.pixel - at_near.pixel).norm() <= options_.max_ambiguity);
-    judged.push_back(placed && o.from.kind != Surface::Kind::kEdge &&
-                     o.to.kind != Surface::Kind::kEdge);
+    const double z = known ? 1.0 / o.from.inverse_depth : kUsualDepth;
+    uncertainty.push_back(pixel_uncertainty(
+        motion, camera, camera.unproject(o.match.current.x, o.match.current.y, z)));
+    o.judged = placed && o.from.kind != Surface::Kind::kEdge && o.to.kind != Surface::Kind::kEdge &&
+               uncertainty.back() <= kMostUncertainty * options_.epsilon;
     if (!placed) continue;
     double residual = distance_to_segment(vector_of(o.match.current), at_far.pixel, at_near.pixel);
     if (measured(o.from) && measured(o.to)) {
       const double expected =
-          moved(o.match.previous, o.from.inverse_depth, motion, camera).inverse_depth;
+          moved(o.match.previous, o.from.inverse_depth, pose, camera).inverse_depth;
       residual = std::hypot(residual, pixels_per_depth * (expected - o.to.inverse_depth));
     }
     result.points[i].residual = static_cast<float>(residual);
-    if (judged.back() && residual < options_.epsilon) static_residuals.push_back(residual);
+    if (o.judged && residual < options_.epsilon) static_residuals.push_back(residual);
   }
-  if (static_residuals.empty()) return;
+  if (static_cast<int>(static_residuals.size()) < options_.min_matches / 2) return;
   const double limit =
       std::max(options_.epsilon, options_.noise_multiple * median(static_residuals));
   for (std::size_t i = 0; i < observations.size(); ++i)
-    result.points[i].moving = judged[i] && result.points[i].residual > limit;
+    result.points[i].moving =
+        observations[i].judged &&
+        result.points[i].residual > std::hypot(limit, kSigmas * uncertainty[i]);
   result.reliable = true;
 }
 
@@ -242,7 +241,8 @@ void RgbdChecker::remember(const std::vector<Observation>& observations, const M
   for (std::size_t i = 0; i < observations.size(); ++i) {
     const Observation& o = observations[i];
     if (o.from.kind == Surface::Kind::kEdge || o.to.kind == Surface::Kind::kEdge) continue;
-    const double goal = !result.reliable ? o.trust : result.points[i].moving ? 0.0 : 1.0;
+    const bool told = result.reliable && o.judged;
+    const double goal = !told ? o.trust : result.points[i].moving ? 0.0 : 1.0;
     memory.points.push_back(o.match.current);
     memory.inverse_depth.push_back(o.to.inverse_depth);
     memory.trust.push_back(o.trust + kTrustRate * (goal - o.trust));

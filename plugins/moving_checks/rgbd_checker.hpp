@@ -42,7 +42,8 @@ class RgbdChecker final : public MovingChecker {
   struct Observation {
     moving::Match match;
     moving::Surface from, to;
-    double trust = 0.5;  // 0 moved … 1 stood still
+    double trust = 0.5;   // 0 moved … 1 stood still
+    bool judged = false;  // it is known well enough where the camera's motion puts it
   };
   // What the last call knows about its current frame.
   struct Memory {
@@ -58,9 +59,8 @@ class RgbdChecker final : public MovingChecker {
   double inherited_trust(const Observation& observation) const;
   std::optional<RigidMotion> camera_motion(const std::vector<Observation>& observations,
                                            const Frame& current) const;
-  bool determined(const RigidMotion& motion, const Camera& camera) const;
-  void judge(const std::vector<Observation>& observations, const Pose& motion, const Camera& camera,
-             MovingPoints& result) const;
+  void judge(std::vector<Observation>& observations, const RigidMotion& motion,
+             const Camera& camera, MovingPoints& result) const;
   void recheck(std::vector<Observation>& observations, const Pose& motion, const Camera& camera,
                MovingPoints& result) const;
   void remember(const std::vector<Observation>& observations, const MovingPoints& result,

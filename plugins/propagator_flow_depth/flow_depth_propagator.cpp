@@ -14,6 +14,7 @@ constexpr std::size_t kHistory = 16;  // views
 constexpr int kMostPoints = 120;      // of all objects together
 constexpr int kFewestPoints = 10;     // of each
 constexpr double kSupport = 0.25;     // share of measurements in the layer
+constexpr double kMissedShare = 0.2;  // of an object, to be followed by itself
 
 cv::Rect grown(cv::Rect box, int by, cv::Size image) {
   return cv::Rect(box.x - by, box.y - by, box.width + 2 * by, box.height + 2 * by) &
@@ -156,8 +157,11 @@ void FlowDepthPropagator::learn(const Segmentation& segmentation, const View& vi
     const int known = matches.followed_of[i];
     FollowedObject object;
     if (known >= 0) {
-      object = std::move(objects_[static_cast<std::size_t>(known)]);
-      seen[static_cast<std::size_t>(known)] = true;
+      const auto f = static_cast<std::size_t>(known);
+      if (auto rest = missed_part(objects_[f], before, instances, view))
+        next.push_back(std::move(*rest));
+      object = std::move(objects_[f]);
+      seen[f] = true;
     } else {
       object.id = next_id_++;
       object.label = found.objects[i].label;
@@ -185,6 +189,29 @@ void FlowDepthPropagator::learn(const Segmentation& segmentation, const View& vi
 /// What was out of view could not be found.
 void FlowDepthPropagator::miss(FollowedObject& object, const View& view) const {
   if (std::ranges::find(view.ids, object.id) != view.ids.end()) ++object.misses;
+}
+
+/// What the network had found of the object before and now leaves out, if it is more than a rim: a
+/// body seen from near by, of which it recognises the arm.
+std::optional<FollowedObject> FlowDepthPropagator::missed_part(const FollowedObject& object,
+                                                               const View& before,
+                                                               const cv::Mat& found,
+                                                               const View& view) {
+  const auto place = std::ranges::find(before.ids, object.id);
+  if (place == before.ids.end()) return std::nullopt;
+  const cv::Mat carried = before.instances == static_cast<int>(place - before.ids.begin()) + 1;
+  cv::Mat rest = carried & (found == 0);
+  const int rim = std::max(1, options_.margin / kViewScale);
+  cv::morphologyEx(
+      rest, rest, cv::MORPH_OPEN,
+      cv::getStructuringElement(cv::MORPH_RECT, cv::Size(2, 2) * rim + cv::Size(1, 1)));
+  if (cv::countNonZero(rest) < kMissedShare * cv::countNonZero(carried)) return std::nullopt;
+  FollowedObject part = object;
+  part.id = next_id_++;
+  ++part.misses;
+  const cv::Rect box = grown(cv::boundingRect(rest), 1, view.size());
+  set_reference(part, rest(box).clone(), box, view);
+  return part;
 }
 
 void FlowDepthPropagator::set_reference(FollowedObject& object, const cv::Mat& mask, cv::Rect box,

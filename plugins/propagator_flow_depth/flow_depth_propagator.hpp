@@ -2,6 +2,7 @@
 #pragma once
 
 #include <deque>
+#include <optional>
 #include <vector>
 
 #include "propagator_flow_depth/followed_object.hpp"
@@ -40,6 +41,8 @@ class FlowDepthPropagator final : public Propagator {
   const View& followed_near(const View& view) const;
   void learn(const Segmentation& segmentation, const View& view);
   void miss(FollowedObject& object, const View& view) const;
+  std::optional<FollowedObject> missed_part(const FollowedObject& object, const View& before,
+                                            const cv::Mat& found, const View& view);
   void set_reference(FollowedObject& object, const cv::Mat& mask, cv::Rect box,
                      const View& view) const;
   void bring_tracks_forward();

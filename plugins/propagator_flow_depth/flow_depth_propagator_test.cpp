@@ -122,6 +122,42 @@ TEST(FlowDepthPropagator, KeepsWhatTheNetworkMisses) {
   }
 }
 
+/// What a network leaves that has found only the upper `rows` rows.
+Segmentation upper_part(const Scene& scene, int rows) {
+  Segmentation result{.labels = scene.labels.clone(), .frame = scene.frame.index};
+  result.labels.rowRange(rows, kSize.height).setTo(0);
+  find_objects(result, 20);
+  return result;
+}
+
+TEST(FlowDepthPropagator, KeepsThePartThatTheNetworkMisses) {
+  FlowDepthPropagator propagator({.max_misses = 5});
+  for (int i = 0; i < 20; ++i) {
+    const Scene now(i, {walker(i)});
+    const Segmentation found = i < 8 ? now.truth() : upper_part(now, 100);
+    const Segmentation carried = propagator.propagate(found, now.frame, now.frame);
+    if (i < 13) {
+      EXPECT_GE(overlap(carried.labels, now.labels), 0.85) << i;
+    } else {
+      EXPECT_GE(overlap(carried.labels, found.labels), 0.75) << i;  // grown by the margin
+    }
+  }
+}
+
+TEST(FlowDepthPropagator, OutlinesThatWobbleAreNoPartsOfTheirOwn) {
+  FlowDepthPropagator propagator({});
+  for (int i = 0; i < 12; ++i) {
+    const Scene now(i, {walker(i)});
+    Segmentation found{.labels = now.labels.clone(), .frame = now.frame.index};
+    if (i % 2)
+      cv::erode(found.labels, found.labels, cv::Mat(), {-1, -1}, 3);
+    else
+      cv::dilate(found.labels, found.labels, cv::Mat(), {-1, -1}, 3);
+    find_objects(found, 20);
+    EXPECT_EQ(propagator.propagate(found, now.frame, now.frame).objects.size(), 1U) << i;
+  }
+}
+
 TEST(FlowDepthPropagator, KeepsNothingLongerThanAsked) {
   FlowDepthPropagator propagator({.keep_seconds = 0.11, .max_misses = 100});
   for (int i = 0; i < 20; ++i) {

@@ -71,7 +71,7 @@ TEST(BodyTiles, FewTilesForASmallBody) {
   for (Eigen::Affine3f& pose : moving.world_from_body) pose.translation().z() = 2;
   const int count = marked(moving.tiles({Vector3f::Constant(-0.04F), Vector3f::Constant(0.04F)}));
   EXPECT_GE(count, 4);
-  EXPECT_LE(count, 20);  // 2 px and a margin of 3 on each side
+  EXPECT_LE(count, 20);  // 2 px, and a margin of a tile on each side
 }
 
 TEST(BodyTiles, WhatIsBehindIsNotSeenAndWhatIsHereIsEverywhere) {

@@ -3,6 +3,7 @@
 
 #include <Eigen/Geometry>
 #include <cstdint>
+#include <opencv2/core/mat.hpp>
 #include <span>
 #include <vector>
 
@@ -22,19 +23,15 @@ class BodyTiles {
   void add(const Eigen::AlignedBox3f& box, std::span<const Eigen::Affine3f> world_from_body,
            std::span<const Eye> eyes);
 
-  bool at(int column, int row) const {
-    return tiles_[static_cast<std::size_t>(row * columns_ + column)];
-  }
+  bool at(int column, int row) const { return tiles_.at<std::uint8_t>(row, column) != 0; }
 
  private:
-  void mark(const Eigen::AlignedBox2f& pixels);
+  cv::Point2f tile_of(const Eigen::Vector3f& point_in_camera) const;
+  void mark(const std::vector<cv::Point2f>& corners);
 
   Camera camera_;
-  int tile_width_;
-  int tile_height_;
-  int columns_;
-  int rows_;
-  std::vector<std::uint8_t> tiles_;
+  cv::Size tile_;  // px
+  cv::Mat tiles_;  // CV_8UC1
 };
 
 }  // namespace stillpoint::simulation

@@ -90,7 +90,8 @@ Bytes filtered(const cv::Mat& image) {
 
 Bytes compressed(const Bytes& data) {
   constexpr int kFastest = 1;
-  const std::unique_ptr<libdeflate_compressor, Deleter> compressor(
+  // One per thread: making one costs as much as a small image.
+  thread_local const std::unique_ptr<libdeflate_compressor, Deleter> compressor(
       libdeflate_alloc_compressor(kFastest));
   Bytes result(libdeflate_zlib_compress_bound(compressor.get(), data.size()));
   result.resize(libdeflate_zlib_compress(compressor.get(), data.data(), data.size(), result.data(),

@@ -18,12 +18,13 @@ using Eigen::Vector3f;
 
 constexpr int kPacketWidth = 4;  // px
 constexpr int kPacketHeight = 2;
-constexpr std::size_t kFew = 4;   // samples at an edge
-constexpr std::size_t kMany = 8;  // samples at a fast edge; the most anywhere
+constexpr std::size_t kFew = 4;   // samples where surfaces move past each other
+constexpr std::size_t kMany = 8;  // samples where they do so fast; the most anywhere
 
-constexpr std::size_t kEdgePixels = kPacket / kFew;  // whose samples make a packet
+constexpr std::size_t kEdgeViews = 2;  // at an edge that stands still, besides the pixel's centre
+constexpr std::size_t kEdgePixels = kPacket / kEdgeViews;  // whose views make a packet
 
-/// Columns and rows of the samples of an edge pixel in a grid of kFew or kMany: each is used once,
+/// Columns and rows of the samples of a pixel in a grid of kFew or kMany: each is used once,
 /// so that the mean stays at the pixel's centre, and in an order that has nothing to do with time.
 constexpr std::array<std::array<int, kFew>, 2> kFewCells = {{{1, 3, 0, 2}, {0, 2, 3, 1}}};
 constexpr std::array<std::array<int, kMany>, 2> kManyCells = {
@@ -67,9 +68,9 @@ class AspectMemory {
  public:
   explicit AspectMemory(const Shader& shader) : shader_(shader) {}
 
-  const Aspect& of(const Hit& hit, const Vector3f& direction) {
-    const std::int32_t key = shader_.surface_key(hit);
-    if (key != key_) aspect_ = shader_.aspect(hit, direction);
+  const Aspect& of(const Hit& hit, const Face& face, const Vector3f& direction) {
+    const std::int32_t key = Shader::surface_key(hit, face);
+    if (key != key_) aspect_ = shader_.aspect(hit, face, direction);
     key_ = key;
     return aspect_;
   }
@@ -207,17 +208,27 @@ struct Renderer::Job {
   }
 
   void keep(const Hit& hit, const Vector3f& direction, int x, int y, AspectMemory& aspects) {
-    const bool found = hit.distance > 0;
-    const Face* face = found ? &shader.face(hit) : nullptr;
+    if (hit.distance == 0) {
+      keep_nothing(x, y);
+      return;
+    }
+    const Face& face = shader.face(hit);
+    const Aspect& aspect = aspects.of(hit, face, direction);
     view.depth.at<float>(y, x) = hit.distance;
-    view.labels.at<std::uint8_t>(y, x) = found ? face->label : 0;
-    view.instances.at<std::uint8_t>(y, x) = found ? face->instance : 0;
-    surfaces.at<int>(y, x) = found ? shader.surface_key(hit) : -1;
-    view.infrared.at<float>(y, x) = found ? shader.infrared(hit, aspects.of(hit, direction)) : 0;
-    if (sharp.empty()) return;
-    Vector3f color = Vector3f::Zero();
-    if (found) color = shader.color(hit, aspects.of(hit, direction));
-    set_color(sharp, x, y, color);
+    view.labels.at<std::uint8_t>(y, x) = face.label;
+    view.instances.at<std::uint8_t>(y, x) = face.instance;
+    surfaces.at<int>(y, x) = Shader::surface_key(hit, face);
+    view.infrared.at<float>(y, x) = aspect.infrared;
+    if (sharp.data) set_color(sharp, x, y, shader.color(hit, face, aspect));
+  }
+
+  void keep_nothing(int x, int y) {
+    view.depth.at<float>(y, x) = 0;
+    view.labels.at<std::uint8_t>(y, x) = 0;
+    view.instances.at<std::uint8_t>(y, x) = 0;
+    surfaces.at<int>(y, x) = -1;
+    view.infrared.at<float>(y, x) = 0;
+    if (sharp.data) set_color(sharp, x, y, Vector3f::Zero());
   }
 
   static void set_color(cv::Mat& image, int x, int y, const Vector3f& c) {
@@ -243,6 +254,7 @@ struct Renderer::Job {
 
   /// Smooth edges in `sharp`, and final colours where surfaces move past each other.
   void refine(int row) {
+    AspectMemory aspects(shader);
     std::array<cv::Point, kEdgePixels> edges;
     std::size_t waiting = 0;
     for (int column = 0; column < packet_columns(); ++column) {
@@ -250,59 +262,74 @@ struct Renderer::Job {
       const MotionRange range = motion.around(column, row);
       motion_around.at(column, row) = range;
       if (is_torn(range)) {
-        expose(pixels, targets(column, row), range.fastest() <= kFew ? kFew : kMany);
+        expose(pixels, targets(column, row), range.fastest() <= kFew ? kFew : kMany, aspects);
         continue;
       }
       for (std::size_t i = 0; i < kPacket; ++i) {
         if (!is_edge(pixels.x[i], pixels.y[i])) continue;
         edges[waiting] = {pixels.x[i], pixels.y[i]};
         if (++waiting < kEdgePixels) continue;
-        smooth(edges);
+        smooth(edges, aspects);
         waiting = 0;
       }
     }
     if (waiting == 0) return;
     std::fill(edges.begin() + static_cast<std::ptrdiff_t>(waiting), edges.end(), edges[0]);
-    smooth(edges);
+    smooth(edges, aspects);
+  }
+
+  Vector3f color(const Hit& hit, const Face& face, const Vector3f& direction,
+                 AspectMemory& aspects) const {
+    return shader.color(hit, face, aspects.of(hit, face, direction));
   }
 
   /// Several views spread over each pixel; one look at each surface's colour is enough.
-  void smooth(const std::array<cv::Point, kEdgePixels>& pixels) {
+  void smooth(const std::array<cv::Point, kEdgePixels>& pixels, AspectMemory& aspects) {
+    constexpr float kAside = 1.0F / 3;  // px
     Points points{};
     for (std::size_t i = 0; i < kPacket; ++i) {
-      points.x[i] = static_cast<float>(pixels[i / kFew].x) + cell_offset(0, i % kFew, kFew);
-      points.y[i] = static_cast<float>(pixels[i / kFew].y) + cell_offset(1, i % kFew, kFew);
+      const cv::Point& pixel = pixels[i / kEdgeViews];
+      const float dx = i % kEdgeViews == 0 ? -kAside : kAside;
+      // One diagonal or the other, in turn: no direction is smoother than others.
+      const float dy = (pixel.x + pixel.y) % 2 == 0 ? dx : -dx;
+      points.x[i] = static_cast<float>(pixel.x) + dx;
+      points.y[i] = static_cast<float>(pixel.y) + dy;
     }
     Bundle bundle;
     cast(points, middle, targets(pixels), bundle);
     std::array<Vector3f, kEdgePixels> sums;
-    sums.fill(Vector3f::Zero());
-    AspectMemory aspects(shader);
+    for (std::size_t i = 0; i < kEdgePixels; ++i) sums[i] = color_at(pixels[i]);
     for (std::size_t i = 0; i < kPacket; ++i) {
       const Hit& hit = bundle.hits[i];
       if (hit.distance == 0) continue;
-      const cv::Point& pixel = pixels[i / kFew];
-      if (shader.surface_key(hit) == surfaces.at<int>(pixel))
-        sums[i / kFew] += Vector3f(sharp.at<cv::Vec3f>(pixel).val);
+      const cv::Point& pixel = pixels[i / kEdgeViews];
+      const Face& face = shader.face(hit);
+      if (Shader::surface_key(hit, face) == surfaces.at<int>(pixel))
+        sums[i / kEdgeViews] += color_at(pixel);
       else
-        sums[i / kFew] += shader.color(hit, aspects.of(hit, bundle.directions[i]));
+        sums[i / kEdgeViews] += color(hit, face, bundle.directions[i], aspects);
     }
     for (std::size_t i = 0; i < kEdgePixels; ++i)
-      set_color(sharp, pixels[i].x, pixels[i].y, sums[i] / static_cast<float>(kFew));
+      set_color(sharp, pixels[i].x, pixels[i].y, sums[i] / static_cast<float>(kEdgeViews + 1));
+  }
+
+  Vector3f color_at(const cv::Point& pixel) const {
+    return Vector3f(sharp.at<cv::Vec3f>(pixel).val);
   }
 
   /// Views spread over each pixel and the exposure.
-  void expose(const Pixels& pixels, RayCaster::Targets targets, std::size_t count) {
+  void expose(const Pixels& pixels, RayCaster::Targets targets, std::size_t count,
+              AspectMemory& aspects) {
     Bundle bundle;
     std::array<Vector3f, kPacket> sums;
     sums.fill(Vector3f::Zero());
     for (std::size_t s = 0; s < count; ++s) {
       cast(points_in(pixels, cell_offset(0, s, count), cell_offset(1, s, count)), eyes[count][s],
            targets, bundle);
-      AspectMemory aspects(shader);
       for (std::size_t i = 0; i < kPacket; ++i) {
         const Hit& hit = bundle.hits[i];
-        if (hit.distance > 0) sums[i] += shader.color(hit, aspects.of(hit, bundle.directions[i]));
+        if (hit.distance > 0)
+          sums[i] += color(hit, shader.face(hit), bundle.directions[i], aspects);
       }
     }
     for (std::size_t i = 0; i < kPacket; ++i)

@@ -15,16 +15,6 @@ Shader::Shader(const World& world, double time, float pixel) : world_(world), pi
     world_from_body_.push_back(body.world_from_body(time).linear().cast<float>());
 }
 
-const Face& Shader::face(const Hit& hit) const {
-  const Mesh& mesh =
-      hit.body < 0 ? world_.room : world_.bodies[static_cast<std::size_t>(hit.body)].mesh;
-  return mesh.faces[hit.face];
-}
-
-std::int32_t Shader::surface_key(const Hit& hit) const {
-  return (hit.body + 1) << 16 | face(hit).surface;
-}
-
 Vector3f Shader::normal(const Hit& hit, const Face& face) const {
   // Corners' normals are close to each other: what is between is as good as normalised.
   const Vector3f n =
@@ -32,9 +22,8 @@ Vector3f Shader::normal(const Hit& hit, const Face& face) const {
   return hit.body < 0 ? n : world_from_body_[static_cast<std::size_t>(hit.body)] * n;
 }
 
-Aspect Shader::aspect(const Hit& hit, const Vector3f& direction) const {
+Aspect Shader::aspect(const Hit& hit, const Face& f, const Vector3f& direction) const {
   constexpr float kGrazing = 0.08F;  // footprints grow no longer than 1 / this
-  const Face& f = face(hit);
   const Vector3f n = normal(hit, f);
   const float cosine = std::abs(n.dot(direction)) / direction.norm();
   const Vector3f tangent =
@@ -46,21 +35,17 @@ Aspect Shader::aspect(const Hit& hit, const Vector3f& direction) const {
   Footprint footprint{Vector2f::Zero(), size};
   if (length > 1e-6F)
     footprint.major = along_uv * (0.5F * size / std::max(cosine, kGrazing) / length);
-  return {cosine, world_.textures[f.texture].filter(footprint)};
+  const Texture& texture = world_.textures[f.texture];
+  return {cosine * texture.infrared(), &texture, texture.filter(footprint)};
 }
 
-Vector3f Shader::color(const Hit& hit, const Aspect& aspect) const {
-  const Face& f = face(hit);
+Vector3f Shader::color(const Hit& hit, const Face& f, const Aspect& aspect) const {
   const float w = 1 - hit.u - hit.v;
   const Vector2f uv = w * f.uv[0] + hit.u * f.uv[1] + hit.v * f.uv[2];
   const float light = f.glows        ? 1.0F
                       : hit.body < 0 ? w * f.light[0] + hit.u * f.light[1] + hit.v * f.light[2]
                                      : light_on_body(normal(hit, f));
-  return world_.textures[f.texture].sample(uv, aspect.filter) * light;
-}
-
-float Shader::infrared(const Hit& hit, const Aspect& aspect) const {
-  return aspect.cosine * world_.textures[face(hit).texture].infrared();
+  return aspect.texture->sample(uv, aspect.filter) * light;
 }
 
 }  // namespace stillpoint::simulation

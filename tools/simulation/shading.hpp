@@ -9,7 +9,8 @@ namespace stillpoint::simulation {
 
 /// How a surface is seen from here; pixels a few px apart on one surface share it.
 struct Aspect {
-  float cosine = 0;  ///< between ray and surface normal, [0, 1]
+  float infrared = 0;  ///< share of the depth sensor's light that comes back
+  const Texture* texture = nullptr;
   TextureFilter filter;
 };
 
@@ -18,14 +19,18 @@ class Shader {
   /// `pixel` is the size of a pixel at a distance of 1 m. Normals are those at `time`.
   Shader(const World& world, double time, float pixel);
 
-  const Face& face(const Hit& hit) const;
-  /// Two hits of the same surface have the same key, of different ones different keys.
-  std::int32_t surface_key(const Hit& hit) const;
-  Aspect aspect(const Hit& hit, const Eigen::Vector3f& direction) const;
+  const Face& face(const Hit& hit) const {
+    return (hit.body < 0 ? world_.room : world_.bodies[static_cast<std::size_t>(hit.body)].mesh)
+        .faces[hit.face];
+  }
+  /// Two hits of the same surface have the same key, of different ones different keys. `face` is
+  /// the hit's here and below.
+  static std::int32_t surface_key(const Hit& hit, const Face& face) {
+    return (hit.body + 1) << 16 | face.surface;
+  }
+  Aspect aspect(const Hit& hit, const Face& face, const Eigen::Vector3f& direction) const;
   /// b, g, r, 0…255 at normal exposure.
-  Eigen::Vector3f color(const Hit& hit, const Aspect& aspect) const;
-  /// Share of the depth sensor's light that comes back.
-  float infrared(const Hit& hit, const Aspect& aspect) const;
+  Eigen::Vector3f color(const Hit& hit, const Face& face, const Aspect& aspect) const;
 
  private:
   Eigen::Vector3f normal(const Hit& hit, const Face& face) const;
