@@ -44,6 +44,20 @@ class BoundedQueue {
     return replaced;
   }
 
+  /// Never waits: without room the item takes the place of everything that waits. Returns how many
+  /// items that were.
+  std::size_t push_or_replace(T item) {
+    const std::lock_guard lock(mutex_);
+    if (closed_) return 0;
+    std::size_t replaced = 0;
+    if (items_.size() >= capacity_) {
+      replaced = items_.size();
+      items_.clear();
+    }
+    append(std::move(item));
+    return replaced;
+  }
+
   /// The next item, or nothing after a stop or when the closed queue is empty. Whoever takes an
   /// item counts as busy until the next call.
   std::optional<T> pop(std::stop_token stop) {
