@@ -42,6 +42,7 @@ class BadSetup : public ::testing::Test {
 
 TEST_F(BadSetup, CommandLine) {
   expect_refused(call({}), "Run 'stillpoint --help' for help.");
+  expect_refused(call({"simulat", "office"}), "no command 'simulat'; did you mean 'simulate'?");
   expect_refused(call({"run"}), "pipeline is required");
   expect_refused(call({"run", "orb_baseline", "--fast"}), "--fast");
   expect_refused(call({"evaluate", "--json"}), "--reference");

@@ -1,9 +1,13 @@
 // The command line. Exit codes: 0 done, 1 a stage failed, 2 wrong usage or configuration,
 // 3 unusable data.
+#include <algorithm>
 #include <exception>
 #include <iostream>
+#include <string>
+#include <vector>
 
 #include "commands.hpp"
+#include "stillpoint/did_you_mean.hpp"
 #include "stillpoint/error.hpp"
 
 namespace {
@@ -12,14 +16,19 @@ using stillpoint::Error;
 using stillpoint::Fault;
 
 constexpr void (*kCommands[])(CLI::App&) = {
-    stillpoint::add_ablate,
-    stillpoint::add_check,
-    stillpoint::add_evaluate,
-    stillpoint::add_inspect,
-    stillpoint::add_plugins,
-    stillpoint::add_run,
+    stillpoint::add_ablate,   stillpoint::add_check,   stillpoint::add_evaluate,
+    stillpoint::add_inspect,  stillpoint::add_plugins, stillpoint::add_run,
     stillpoint::add_simulate,
 };
+
+/// CLI11 would only say that a subcommand is required.
+void check_command(const CLI::App& app, const std::string& word) {
+  std::vector<std::string> names;
+  for (const CLI::App* command : app.get_subcommands({})) names.push_back(command->get_name());
+  if (word.starts_with('-') || std::ranges::find(names, word) != names.end()) return;
+  throw Error(Fault::kUsage, "no command '" + word + "'" + stillpoint::did_you_mean(word, names),
+              "stillpoint", "there are: " + stillpoint::join(names));
+}
 
 int run(int argc, char** argv) {
   CLI::App app{"RGB-D SLAM for scenes in which people and things move", "stillpoint"};
@@ -34,6 +43,7 @@ int run(int argc, char** argv) {
            " --help' for help.\n";
   });
   for (const auto add : kCommands) add(app);
+  if (argc > 1) check_command(app, argv[1]);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
