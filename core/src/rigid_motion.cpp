@@ -59,8 +59,9 @@ class Estimator {
   }
 
   // Tukey's biweight within a bound that shrinks: the start may be some pixels off.
-  RigidMotion refine(const Pose& start) const {
+  std::optional<RigidMotion> refine(const Pose& start) const {
     RigidMotion motion{.target_from_source = start};
+    Matrix6d information = Matrix6d::Zero();
     double bound = 8 * kBound;
     for (int round = 0; round < kRounds; ++round, bound = std::max(kBound, bound / 2))
       for (int step = 0; step < kSteps; ++step) {
@@ -69,9 +70,10 @@ class Estimator {
           const double fit = 1.0 - squared_error(match, motion.target_from_source) / bound;
           if (fit > 0) add(match, motion.target_from_source, match.weight * fit * fit, equations);
         }
-        if (!advance(equations, motion.target_from_source)) return motion;
-        motion.information = equations.hessian;
+        if (!advance(equations, motion.target_from_source)) return std::nullopt;
+        information = equations.hessian;
       }
+    motion.covariance = information.llt().solve(Matrix6d::Identity());
     count_inliers(motion);
     return motion;
   }
@@ -185,10 +187,8 @@ std::optional<RigidMotion> find_rigid_motion(std::span<const RigidMatch> matches
 
 double pixel_uncertainty(const RigidMotion& motion, const Camera& camera,
                          const Eigen::Vector3d& point_in_target) {
-  const Eigen::LLT<Matrix6d> factors(motion.information);
-  if (factors.info() != Eigen::Success) return std::numeric_limits<double>::infinity();
   const Eigen::Matrix<double, 2, 6> j = jacobian(point_in_target, camera).topRows<2>();
-  return std::sqrt((j * factors.solve(j.transpose())).trace());
+  return std::sqrt((j * motion.covariance * j.transpose()).trace());
 }
 
 }  // namespace stillpoint

@@ -117,6 +117,28 @@ TEST_F(RgbdCheckerTest, BoardThatFillsMoreThanHalfOfThePictureIsWhatMoves) {
   }
 }
 
+// As when a person passes close by: what is static is seen on one side only, and places the points
+// of the other side less well, but well enough.
+TEST_F(RgbdCheckerTest, FindsWhatMovesBesideAllThatIsStatic) {
+  scene_.boards = {{{-3.7, 0, 4}, 6, 9, 0.02, 1}};  // the left third of the picture
+  const auto eye = [](std::uint32_t i) { return camera_at(0.005 * i, 0, 0); };
+  Frame previous = scene_.see(eye(0), 0);
+  for (std::uint32_t i = 1; i < 12; ++i) {
+    if (i == 5) scene_.boards.push_back({{0.8, -0.3, 2}, 1.4, 1.6, 0.012, 5});
+    const Board passing = scene_.boards.back();
+    if (i > 5) scene_.boards.back().centre.y() += 0.07;
+    const Frame current = scene_.see(eye(i), i);
+    const MovingPoints result = checker_.check(previous, current);
+    EXPECT_TRUE(result.reliable) << "frame " << i;
+    if (i > 5) {
+      const Counts counts = count(result, passing, scene_.camera(), eye(i - 1));
+      EXPECT_EQ(counts.wrong, 0) << "frame " << i;
+      EXPECT_GE(counts.found, 0.8 * counts.on_board) << "frame " << i;
+    }
+    previous = current;
+  }
+}
+
 TEST_F(RgbdCheckerTest, PointsAtDepthEdgesDoNotMove) {
   const Pose before = camera_at(0, 0, 0);
   const Frame previous = scene_.see(before, 0);

@@ -201,11 +201,12 @@ std::optional<FollowedObject> FlowDepthPropagator::missed_part(const FollowedObj
   if (place == before.ids.end()) return std::nullopt;
   const cv::Mat carried = before.instances == static_cast<int>(place - before.ids.begin()) + 1;
   cv::Mat rest = carried & (found == 0);
+  const double enough = kMissedShare * cv::countNonZero(carried);
+  if (cv::countNonZero(rest) < enough) return std::nullopt;
   const int rim = std::max(1, options_.margin / kViewScale);
-  cv::morphologyEx(
-      rest, rest, cv::MORPH_OPEN,
-      cv::getStructuringElement(cv::MORPH_RECT, cv::Size(2, 2) * rim + cv::Size(1, 1)));
-  if (cv::countNonZero(rest) < kMissedShare * cv::countNonZero(carried)) return std::nullopt;
+  const cv::Size twice(2 * rim + 1, 2 * rim + 1);
+  cv::morphologyEx(rest, rest, cv::MORPH_OPEN, cv::getStructuringElement(cv::MORPH_RECT, twice));
+  if (cv::countNonZero(rest) < enough) return std::nullopt;
   FollowedObject part = object;
   part.id = next_id_++;
   ++part.misses;

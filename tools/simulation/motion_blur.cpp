@@ -21,22 +21,21 @@ cv::Vec3f bilinear(const cv::Mat& image, float x, float y) {
 
 }  // namespace
 
-void MotionRange::include(const MotionRange& other) {
-  low = low.cwiseMin(other.low);
-  high = high.cwiseMax(other.high);
-}
-
 float MotionRange::fastest() const { return low.cwiseAbs().cwiseMax(high.cwiseAbs()).norm(); }
 
-MotionRange MotionMap::around(int column, int row) const {
-  const auto tile = [&](int x, int y) {
-    return tiles_[static_cast<std::size_t>(y * columns_ + x)];
-  };
-  MotionRange range = tile(column, row);
-  for (int y = std::max(0, row - 2); y <= std::min(rows_ - 1, row + 2); ++y)
-    for (int x = std::max(0, column - 1); x <= std::min(columns_ - 1, column + 1); ++x)
-      range.include(tile(x, y));
-  return range;
+MotionMap MotionMap::widened() const {
+  constexpr int kColumns = 1;  // to either side
+  constexpr int kRows = 2;
+  MotionMap wide = *this;
+  for (int y = 0; y < rows_; ++y)
+    for (int x = 0; x < columns_; ++x)
+      for (int i = std::max(0, x - kColumns); i <= std::min(columns_ - 1, x + kColumns); ++i)
+        wide.at(x, y).include(at(i, y));
+  MotionMap result = wide;
+  for (int y = 0; y < rows_; ++y)
+    for (int i = std::max(0, y - kRows); i <= std::min(rows_ - 1, y + kRows); ++i)
+      for (int x = 0; x < columns_; ++x) result.at(x, y).include(wide.at(x, i));
+  return result;
 }
 
 cv::Vec3f mean_along(const cv::Mat& image, const cv::Point& pixel, const Eigen::Vector2f& motion) {

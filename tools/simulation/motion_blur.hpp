@@ -12,7 +12,10 @@ struct MotionRange {
   Eigen::Vector2f low = Eigen::Vector2f::Zero();
   Eigen::Vector2f high = Eigen::Vector2f::Zero();
 
-  void include(const MotionRange& other);
+  void include(const MotionRange& other) {
+    low = low.cwiseMin(other.low);
+    high = high.cwiseMax(other.high);
+  }
   Eigen::Vector2f mean() const { return 0.5F * (low + high); }
   float fastest() const;                                ///< at most, px
   float spread() const { return (high - low).norm(); }  ///< px
@@ -27,8 +30,11 @@ class MotionMap {
   MotionRange& at(int column, int row) {
     return tiles_[static_cast<std::size_t>(row * columns_ + column)];
   }
-  /// Motion in a tile and in those near enough to come here during the exposure.
-  MotionRange around(int column, int row) const;
+  const MotionRange& at(int column, int row) const {
+    return tiles_[static_cast<std::size_t>(row * columns_ + column)];
+  }
+  /// Motion in every tile and in those near enough to come there during the exposure.
+  MotionMap widened() const;
 
  private:
   int columns_;

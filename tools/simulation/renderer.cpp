@@ -9,6 +9,7 @@
 #include "simulation/eye.hpp"
 #include "simulation/motion_blur.hpp"
 #include "simulation/parallel.hpp"
+#include "simulation/sample_pattern.hpp"
 #include "simulation/shading.hpp"
 
 namespace stillpoint::simulation {
@@ -16,69 +17,10 @@ namespace {
 
 using Eigen::Vector3f;
 
-constexpr int kPacketWidth = 4;  // px
-constexpr int kPacketHeight = 2;
-constexpr std::size_t kFew = 4;   // samples where surfaces move past each other
-constexpr std::size_t kMany = 8;  // samples where they do so fast; the most anywhere
-
-constexpr std::size_t kEdgeViews = 2;  // at an edge that stands still, besides the pixel's centre
-constexpr std::size_t kEdgePixels = kPacket / kEdgeViews;  // whose views make a packet
-
-/// Columns and rows of the samples of a pixel in a grid of kFew or kMany: each is used once,
-/// so that the mean stays at the pixel's centre, and in an order that has nothing to do with time.
-constexpr std::array<std::array<int, kFew>, 2> kFewCells = {{{1, 3, 0, 2}, {0, 2, 3, 1}}};
-constexpr std::array<std::array<int, kMany>, 2> kManyCells = {
-    {{0, 4, 2, 6, 1, 5, 3, 7}, {2, 7, 4, 1, 6, 3, 0, 5}}};
-
-/// Offset in px along axis 0 (x) or 1 (y).
-float cell_offset(std::size_t axis, std::size_t sample, std::size_t count) {
-  const int cell = count == kFew ? kFewCells[axis][sample] : kManyCells[axis][sample];
-  return (static_cast<float>(cell) + 0.5F) / static_cast<float>(count) - 0.5F;
-}
-
-/// Pixels whose rays are cast together; those near each other are faster.
-struct Pixels {
-  std::array<int, kPacket> x;
-  std::array<int, kPacket> y;
-};
-
-/// Points of the image, px; integers are centres of pixels.
-struct Points {
-  std::array<float, kPacket> x;
-  std::array<float, kPacket> y;
-};
-
-Points points_in(const Pixels& pixels, float dx, float dy) {
-  Points points{};
-  for (std::size_t i = 0; i < kPacket; ++i) {
-    points.x[i] = static_cast<float>(pixels.x[i]) + dx;
-    points.y[i] = static_cast<float>(pixels.y[i]) + dy;
-  }
-  return points;
-}
-
 /// A packet of rays and what they meet.
 struct Bundle {
   std::array<Vector3f, kPacket> directions;
   std::array<Hit, kPacket> hits;
-};
-
-/// Remembers how the surface met last is seen: mostly, the next pixel shows it as well.
-class AspectMemory {
- public:
-  explicit AspectMemory(const Shader& shader) : shader_(shader) {}
-
-  const Aspect& of(const Hit& hit, const Face& face, const Vector3f& direction) {
-    const std::int32_t key = Shader::surface_key(hit, face);
-    if (key != key_) aspect_ = shader_.aspect(hit, face, direction);
-    key_ = key;
-    return aspect_;
-  }
-
- private:
-  const Shader& shader_;
-  std::int32_t key_ = -1;
-  Aspect aspect_;
 };
 
 }  // namespace
@@ -195,13 +137,13 @@ struct Renderer::Job {
   /// Geometry of a row of packets.
   void find_surfaces(int row) {
     Bundle bundle;
-    AspectMemory aspects(shader);
     for (int column = 0; column < packet_columns(); ++column) {
       const Pixels pixels = packet(column, row);
       cast(points_in(pixels, 0, 0), middle, targets(column, row), bundle);
       MotionRange& moved = motion.at(column, row);
       moved = image_motion(bundle.hits[0], bundle.directions[0]);
       moved.include(image_motion(bundle.hits[7], bundle.directions[7]));
+      AspectMemory aspects(shader);
       for (std::size_t i = 0; i < kPacket; ++i)
         keep(bundle.hits[i], bundle.directions[i], pixels.x[i], pixels.y[i], aspects);
     }
@@ -254,28 +196,26 @@ struct Renderer::Job {
 
   /// Smooth edges in `sharp`, and final colours where surfaces move past each other.
   void refine(int row) {
-    AspectMemory aspects(shader);
     std::array<cv::Point, kEdgePixels> edges;
     std::size_t waiting = 0;
     for (int column = 0; column < packet_columns(); ++column) {
       const Pixels pixels = packet(column, row);
-      const MotionRange range = motion.around(column, row);
-      motion_around.at(column, row) = range;
+      const MotionRange& range = motion_around.at(column, row);
       if (is_torn(range)) {
-        expose(pixels, targets(column, row), range.fastest() <= kFew ? kFew : kMany, aspects);
+        expose(pixels, targets(column, row), range.fastest() <= kFew ? kFew : kMany);
         continue;
       }
       for (std::size_t i = 0; i < kPacket; ++i) {
         if (!is_edge(pixels.x[i], pixels.y[i])) continue;
         edges[waiting] = {pixels.x[i], pixels.y[i]};
         if (++waiting < kEdgePixels) continue;
-        smooth(edges, aspects);
+        smooth(edges);
         waiting = 0;
       }
     }
     if (waiting == 0) return;
     std::fill(edges.begin() + static_cast<std::ptrdiff_t>(waiting), edges.end(), edges[0]);
-    smooth(edges, aspects);
+    smooth(edges);
   }
 
   Vector3f color(const Hit& hit, const Face& face, const Vector3f& direction,
@@ -284,7 +224,7 @@ struct Renderer::Job {
   }
 
   /// Several views spread over each pixel; one look at each surface's colour is enough.
-  void smooth(const std::array<cv::Point, kEdgePixels>& pixels, AspectMemory& aspects) {
+  void smooth(const std::array<cv::Point, kEdgePixels>& pixels) {
     constexpr float kAside = 1.0F / 3;  // px
     Points points{};
     for (std::size_t i = 0; i < kPacket; ++i) {
@@ -297,6 +237,7 @@ struct Renderer::Job {
     }
     Bundle bundle;
     cast(points, middle, targets(pixels), bundle);
+    AspectMemory aspects(shader);
     std::array<Vector3f, kEdgePixels> sums;
     for (std::size_t i = 0; i < kEdgePixels; ++i) sums[i] = color_at(pixels[i]);
     for (std::size_t i = 0; i < kPacket; ++i) {
@@ -318,9 +259,9 @@ struct Renderer::Job {
   }
 
   /// Views spread over each pixel and the exposure.
-  void expose(const Pixels& pixels, RayCaster::Targets targets, std::size_t count,
-              AspectMemory& aspects) {
+  void expose(const Pixels& pixels, RayCaster::Targets targets, std::size_t count) {
     Bundle bundle;
+    AspectMemory aspects(shader);
     std::array<Vector3f, kPacket> sums;
     sums.fill(Vector3f::Zero());
     for (std::size_t s = 0; s < count; ++s) {
@@ -366,6 +307,7 @@ View Renderer::render(double time, double exposure) {
   job.sharp.create(job.surfaces.size(), CV_32FC3);
   job.view.color.create(job.surfaces.size(), CV_32FC3);
   parallel_for(threads_, job.packet_rows(), [&](int row) { job.find_surfaces(row); });
+  job.motion_around = job.motion.widened();
   parallel_for(threads_, job.packet_rows(), [&](int row) { job.refine(row); });
   parallel_for(threads_, job.packet_rows(), [&](int row) { job.blur(row); });
   return job.view;

@@ -138,21 +138,17 @@ void Sensor::measure_row(const View& view, int frame, int y, std::uint16_t* out)
   const auto sigma_white = static_cast<float>(options_.disparity_noise * std::sqrt(0.3));
   const auto sigma_shared = static_cast<float>(options_.disparity_noise * std::sqrt(0.7 * 9 / 4));
   const std::vector<float> seen = seen_row(view, frame, y);
-  const auto count = seen.size();
-  std::vector<float> noise(count);
-  for (std::size_t x = 0; x < count; ++x) {
-    const int column = static_cast<int>(x);
-    noise[x] = sigma_white * white.normal(column) + sigma_shared * shared.at(column);
-  }
-  // Apart from what decides and looks up, so that compilers make vector instructions of it.
   const auto focal = static_cast<float>(options_.baseline_focal);
   const auto step = static_cast<float>(options_.disparity_step);
-  for (std::size_t x = 0; x < count; ++x) {
-    const float disparity = focal / seen[x] + noise[x];
+  for (int x = 0; x < view.depth.cols; ++x) {
+    out[x] = 0;
+    const float z = seen[static_cast<std::size_t>(x)];
+    if (z == kNothing) continue;
+    const float noise = sigma_white * white.normal(x) + sigma_shared * shared.at(x);
+    const float disparity = focal / z + noise;
     const float measured =
         step > 0 ? step * static_cast<float>(round_to_int(disparity / step)) : disparity;
-    const float z = focal / measured;
-    out[x] = seen[x] < kNothing && measured > 0 ? encode(z, depth_factor_) : 0;
+    if (measured > 0) out[x] = encode(focal / measured, depth_factor_);
   }
 }
 

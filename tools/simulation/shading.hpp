@@ -40,4 +40,23 @@ class Shader {
   std::vector<Eigen::Matrix3f> world_from_body_;  // rotations
 };
 
+/// Remembers how the surface met last is seen: mostly, the next pixel shows it as well. For one
+/// packet: further away, a surface is seen at another angle.
+class AspectMemory {
+ public:
+  explicit AspectMemory(const Shader& shader) : shader_(shader) {}
+
+  const Aspect& of(const Hit& hit, const Face& face, const Eigen::Vector3f& direction) {
+    const std::int32_t key = Shader::surface_key(hit, face);
+    if (key != key_) aspect_ = shader_.aspect(hit, face, direction);
+    key_ = key;
+    return aspect_;
+  }
+
+ private:
+  const Shader& shader_;
+  std::int32_t key_ = -1;
+  Aspect aspect_;
+};
+
 }  // namespace stillpoint::simulation

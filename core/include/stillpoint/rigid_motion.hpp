@@ -29,8 +29,8 @@ struct RigidNoise {
 
 struct RigidMotion {
   Pose target_from_source = Pose::Identity();
-  Matrix6d information = Matrix6d::Zero();  ///< inverse covariance of the pose's tangent
-  std::vector<bool> inlier;                 ///< per match
+  Matrix6d covariance = Matrix6d::Zero();  ///< of the pose's tangent
+  std::vector<bool> inlier;                ///< per match
   int inliers = 0;
   double agreement = 0;  ///< share of the matches that are inliers, by weight
 };

@@ -26,7 +26,7 @@ void SegmentationStage::offer(const FramePtr& frame) {
   if (options_.schedule == Schedule::kWait)
     network_.push(frame);
   else if (network_.threaded())
-    network_.replace(frame);
+    network_.push_or_replace(frame);
   else
     waiting_ = frame;
 }

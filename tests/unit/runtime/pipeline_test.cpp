@@ -5,50 +5,14 @@
 #include <set>
 #include <thread>
 
-#include "doubles.hpp"
+#include "pipeline_fixture.hpp"
 
 namespace stillpoint {
 namespace {
 
-using testing::Journal;
-using Pace = RuntimeOptions::Pace;
+using testing::Fixture;
+using testing::runtime;
 using Strings = std::vector<std::string>;
-
-struct Fixture {
-  explicit Fixture(std::uint32_t frames = 6)
-      : source(std::make_shared<testing::FakeSource>(journal, frames)) {}
-
-  Stages stages() {
-    return {.source = {source, "list"},
-            .segmenter = {std::make_shared<testing::FakeSegmenter>(journal), "net"},
-            .propagator = {std::make_shared<testing::FakePropagator>(journal), "flow"},
-            .moving_checker = {std::make_shared<testing::FakeChecker>(journal), "lk"},
-            .decision = {std::make_shared<testing::FakeDecision>(journal), "vote"},
-            .tracker = {std::make_shared<testing::FakeTracker>(journal), "orb"},
-            .local_mapper = {mapper, "orb"},
-            .loop_closer = {closer, "bits"},
-            .map_backend = {backend, "cloud"},
-            .outputs = {{output, "first"}, {second_output, "second"}},
-            .map_directory = ::testing::TempDir() + "stillpoint_pipeline_test"};
-  }
-
-  Journal journal;
-  std::shared_ptr<Source> source;
-  std::shared_ptr<testing::FakeMapper> mapper = std::make_shared<testing::FakeMapper>(journal);
-  std::shared_ptr<LoopCloser> closer = std::make_shared<testing::FakeCloser>(journal);
-  std::shared_ptr<testing::FakeBackend> backend = std::make_shared<testing::FakeBackend>(journal);
-  std::shared_ptr<testing::FakeOutput> output = std::make_shared<testing::FakeOutput>(journal);
-  Journal second_journal;
-  std::shared_ptr<testing::FakeOutput> second_output =
-      std::make_shared<testing::FakeOutput>(second_journal);
-};
-
-RuntimeOptions runtime(Mode mode, Pace pace = Pace::kFree) {
-  RuntimeOptions options;
-  options.mode = mode;
-  options.pace = pace;
-  return options;
-}
 
 class PipelineInBothModes : public ::testing::TestWithParam<Mode> {};
 INSTANTIATE_TEST_SUITE_P(Modes, PipelineInBothModes,
@@ -280,71 +244,6 @@ TEST(Pipeline, InlineNeverHurries) {
     EXPECT_FALSE(hurry.stop_requested());
   };
   Pipeline(f.stages(), runtime(Mode::kInline), {}).run();
-}
-
-/// Stands still until a test lets it go on.
-class ManualClock final : public PaceClock {
- public:
-  double now() override { return now_; }
-  void wait_until(double time, std::stop_token stop) override {
-    std::unique_lock lock(mutex_);
-    waits_for_ = time;
-    changed_.notify_all();
-    changed_.wait(lock, std::move(stop), [&] { return now_ >= time - 1e-9; });
-  }
-  void set(double time) {
-    const std::lock_guard lock(mutex_);
-    now_ = time;
-    changed_.notify_all();
-  }
-  /// Returns when all frames due by `time` have been delivered and the next one is waited for.
-  void advance(double time) {
-    set(time);
-    std::unique_lock lock(mutex_);
-    changed_.wait(lock, [&] { return waits_for_ > time; });
-  }
-
- private:
-  std::mutex mutex_;
-  std::condition_variable_any changed_;
-  double now_ = 0.0;
-  double waits_for_ = -1.0;
-};
-
-TEST_P(PipelineInBothModes, AtThePaceOfTheSensorTwoFramesWaitAndAThirdReplacesThem) {
-  Fixture f(8);  // 0.1 s apart
-  auto clock = std::make_unique<ManualClock>();
-  ManualClock* time = clock.get();
-  f.journal.hook = [&](const std::string& entry) {
-    if (entry == "track 0") time->advance(0.45);   // 1 and 2 wait, 3 takes their place, 4 waits
-    if (entry == "output 4") time->advance(0.65);  // 5 and 6 wait
-    if (entry == "output 6") time->set(0.75);      // frame 7, the last
-  };
-  Pipeline(f.stages(), runtime(GetParam(), Pace::kSensor), {}, std::move(clock)).run();
-  EXPECT_EQ(f.journal.entries("track"),
-            (Strings{"track 0", "track 3", "track 4", "track 5", "track 6", "track 7"}));
-  EXPECT_EQ(f.output->dropped, 2);
-}
-
-TEST_P(PipelineInBothModes, AStopEndsTheWaitForTheSensor) {
-  Fixture f(8);
-  std::stop_source stop;
-  f.journal.hook = [&](const std::string& entry) {
-    if (entry == "output 0") stop.request_stop();
-  };
-  Pipeline(f.stages(), runtime(GetParam(), Pace::kSensor), {}, std::make_unique<ManualClock>())
-      .run(stop.get_token());
-  EXPECT_EQ(f.output->finished, 1);
-}
-
-TEST(SteadyClock, WaitsUntilTheTimeOrAStop) {
-  SteadyClock clock;
-  const double start = clock.now();
-  clock.wait_until(start + 0.001, {});
-  EXPECT_GE(clock.now(), start + 0.001);
-  std::stop_source stop;
-  stop.request_stop();
-  clock.wait_until(start + 1e6, stop.get_token());
 }
 
 }  // namespace

@@ -103,25 +103,24 @@ TEST(Worker, ItemsPastTheLimitNeverWait) {
   EXPECT_EQ(handled, (std::vector<int>{0, 1, 2, 3}));
 }
 
-TEST(Worker, ReplaceTakesThePlaceOfTheWaitingItem) {
+TEST(Worker, WithoutRoomAnItemTakesThePlaceOfThoseWaiting) {
   StopSignal stop;
   std::vector<int> handled;
   std::latch busy(1);
   std::latch release(1);
-  Worker<int> worker(Mode::kThreaded, 1, stop, [&](int i) {
+  Worker<int> worker(Mode::kThreaded, 2, stop, [&](int i) {
     handled.push_back(i);
     if (i == 0) {
       busy.count_down();
       release.wait();
     }
   });
-  worker.replace(0);
+  worker.push_or_replace(0);
   busy.wait();
-  worker.replace(1);
-  worker.replace(2);
+  for (int i = 1; i < 5; ++i) worker.push_or_replace(i);  // 3 finds no room
   release.count_down();
   worker.end();
-  EXPECT_EQ(handled, (std::vector<int>{0, 2}));
+  EXPECT_EQ(handled, (std::vector<int>{0, 3, 4}));
 }
 
 TEST(Worker, AHandlerMayPushToItself) {

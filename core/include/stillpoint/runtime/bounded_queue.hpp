@@ -34,16 +34,6 @@ class BoundedQueue {
     append(std::move(item));
   }
 
-  /// Takes the place of everything that waits; returns how many items that were.
-  std::size_t replace(T item) {
-    const std::lock_guard lock(mutex_);
-    if (closed_) return 0;
-    const std::size_t replaced = items_.size();
-    items_.clear();
-    append(std::move(item));
-    return replaced;
-  }
-
   /// Never waits: without room the item takes the place of everything that waits. Returns how many
   /// items that were.
   std::size_t push_or_replace(T item) {

@@ -47,10 +47,10 @@ class Worker {
     else
       handler_(std::move(item));
   }
-  /// Never waits: the item takes the place of those waiting.
-  void replace(T item) {
+  /// Never waits: without room the item takes the place of those waiting.
+  void push_or_replace(T item) {
     if (threaded_)
-      queue_.replace(std::move(item));
+      queue_.push_or_replace(std::move(item));
     else
       handler_(std::move(item));
   }

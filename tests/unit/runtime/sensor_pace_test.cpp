@@ -1,0 +1,89 @@
+// `pace: sensor`, with a clock that the test turns.
+#include <gtest/gtest.h>
+
+#include <condition_variable>
+#include <mutex>
+
+#include "pipeline_fixture.hpp"
+
+namespace stillpoint {
+namespace {
+
+using testing::Fixture;
+using testing::runtime;
+using Pace = RuntimeOptions::Pace;
+using Strings = std::vector<std::string>;
+
+class SensorPace : public ::testing::TestWithParam<Mode> {};
+INSTANTIATE_TEST_SUITE_P(Modes, SensorPace, ::testing::Values(Mode::kInline, Mode::kThreaded),
+                         [](const auto& test) {
+                           return test.param == Mode::kInline ? "Inline" : "Threaded";
+                         });
+
+/// Stands still until a test lets it go on.
+class ManualClock final : public PaceClock {
+ public:
+  double now() override { return now_; }
+  void wait_until(double time, std::stop_token stop) override {
+    std::unique_lock lock(mutex_);
+    waits_for_ = time;
+    changed_.notify_all();
+    changed_.wait(lock, std::move(stop), [&] { return now_ >= time - 1e-9; });
+  }
+  void set(double time) {
+    const std::lock_guard lock(mutex_);
+    now_ = time;
+    changed_.notify_all();
+  }
+  /// Returns when all frames due by `time` have been delivered and the next one is waited for.
+  void advance(double time) {
+    set(time);
+    std::unique_lock lock(mutex_);
+    changed_.wait(lock, [&] { return waits_for_ > time; });
+  }
+
+ private:
+  std::mutex mutex_;
+  std::condition_variable_any changed_;
+  double now_ = 0.0;
+  double waits_for_ = -1.0;
+};
+
+TEST_P(SensorPace, TwoFramesWaitAndAThirdReplacesThem) {
+  Fixture f(8);  // 0.1 s apart
+  auto clock = std::make_unique<ManualClock>();
+  ManualClock* time = clock.get();
+  f.journal.hook = [&](const std::string& entry) {
+    if (entry == "track 0") time->advance(0.45);   // 1 and 2 wait, 3 takes their place, 4 waits
+    if (entry == "output 4") time->advance(0.65);  // 5 and 6 wait
+    if (entry == "output 6") time->set(0.75);      // frame 7, the last
+  };
+  Pipeline(f.stages(), runtime(GetParam(), Pace::kSensor), {}, std::move(clock)).run();
+  EXPECT_EQ(f.journal.entries("track"),
+            (Strings{"track 0", "track 3", "track 4", "track 5", "track 6", "track 7"}));
+  EXPECT_EQ(f.output->dropped, 2);
+}
+
+TEST_P(SensorPace, AStopEndsTheWait) {
+  Fixture f(8);
+  std::stop_source stop;
+  f.journal.hook = [&](const std::string& entry) {
+    if (entry == "output 0") stop.request_stop();
+  };
+  Pipeline(f.stages(), runtime(GetParam(), Pace::kSensor), {}, std::make_unique<ManualClock>())
+      .run(stop.get_token());
+  EXPECT_EQ(f.output->finished, 1);
+}
+
+TEST(SteadyClock, WaitsUntilTheTimeOrAStop) {
+  SteadyClock clock;
+  const double start = clock.now();
+  clock.wait_until(start + 0.001, {});
+  EXPECT_GE(clock.now(), start + 0.001);
+  std::stop_source stop;
+  stop.request_stop();
+  clock.wait_until(start + 1e6, stop.get_token());
+}
+
+}  // namespace
+}  // namespace stillpoint
