@@ -3,10 +3,36 @@
 #include <utility>
 
 namespace stillpoint::orb {
+namespace {
+
+double way_between(const SparseMap& map, KeyFrameId from, KeyFrameId to) {
+  double metres = 0;
+  Eigen::Vector3d last = map.world_from_keyframe(from).translation();
+  for (KeyFrameId id = from + 1; id <= to; ++id) {
+    const KeyFrame* keyframe = map.keyframe(id);
+    if (!keyframe) continue;
+    metres += (keyframe->world_from_camera.translation() - last).norm();
+    last = keyframe->world_from_camera.translation();
+  }
+  return metres;
+}
+
+// Of two rooms that look the same, one is where the camera cannot have got to.
+bool is_within_reach(const SparseMap& map, const LoopMatch& loop, double max_drift) {
+  constexpr double kSlack = 0.5;  // metres; people may have pulled the camera along
+  const Eigen::Vector3d before = map.keyframe(loop.keyframe)->world_from_camera.translation();
+  return (loop.world_from_camera.translation() - before).norm() <=
+         kSlack + max_drift * way_between(map, loop.place, loop.keyframe);
+}
+
+}  // namespace
 
 void OrbLoopCloser::Options::visit(OptionVisitor& v) {
   v("pause", pause,
     {.min = 0, .unit = "key frames", .help = "after a loop, before the next one is looked for"});
+  v("max_drift", max_drift,
+    {.min = 0,
+     .help = "share of the way since a place was left; a loop that asks for more is none"});
   v("adjust_iterations", adjust_iterations,
     {.min = 0, .help = "of the bundle adjustment of the whole map after a loop; 0 = none"});
 }
@@ -21,7 +47,9 @@ std::optional<MapCorrection> OrbLoopCloser::close(const SparseMap& map, KeyFrame
     return std::nullopt;
   for (const KeyFrameId place : candidates) {
     if (stop.stop_requested()) return std::nullopt;
-    if (auto loop = match_loop(map, latest, place)) return correct(map, *loop, std::move(stop));
+    const auto loop = match_loop(map, latest, place);
+    if (loop && is_within_reach(map, *loop, options_.max_drift))
+      return correct(map, *loop, std::move(stop));
   }
   return std::nullopt;
 }

@@ -18,6 +18,7 @@ class OrbLoopCloser final : public LoopCloser {
  public:
   struct Options {
     int pause = 10;
+    double max_drift = 0.05;
     int adjust_iterations = 10;
 
     void visit(OptionVisitor& visitor);

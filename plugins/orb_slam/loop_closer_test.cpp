@@ -56,6 +56,19 @@ TEST_F(LoopCloserTest, WithoutReturnThereIsNoLoop) {
   }
 }
 
+// As between two rooms that look the same.
+TEST_F(LoopCloserTest, APlaceOutOfReachIsNone) {
+  const RoundTrip far_off(0.02);  // 0.8 m at the end of a way of 6.3 m
+  const auto closes = [&](double max_drift) {
+    OrbLoopCloser closer({.max_drift = max_drift}, StageContext{});
+    for (int i = 0; i < RoundTrip::kKeyFrames; ++i)
+      if (closer.close(far_off.map(i + 1), static_cast<KeyFrameId>(i), {})) return true;
+    return false;
+  };
+  EXPECT_FALSE(closes(0.01));
+  EXPECT_TRUE(closes(0.1));
+}
+
 TEST_F(LoopCloserTest, AStopEndsTheSearch) {
   std::stop_source stop;
   stop.request_stop();

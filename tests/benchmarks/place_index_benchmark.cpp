@@ -1,22 +1,29 @@
 // Place recognition on simulated recordings, whose truth is known:
-//   stillpoint simulate room_loop -o DIR/room_loop
-//   STILLPOINT_RECORDINGS=DIR place_index_benchmark
+//   stillpoint simulate room_loop --frames 1920 -o DIR/room_loop
+//   STILLPOINT_RECORDINGS=DIR STILLPOINT_EXAMPLES=OTHER_DIR place_index_benchmark
+// With recordings in OTHER_DIR, a vocabulary tree trained on them is measured as well.
 //
 // Every eighth frame is a key frame. One that shows at least half of what a key frame of more than
-// five seconds before showed has returned to a place.
+// five seconds before showed has returned to a place. Candidates are right when they show at least
+// 15 % of what is seen.
 //
 // returns: key frames that have returned. first, first_ten: share of them whose best candidate, or
-// one of the ten best, shows the place. verified: share for which one of the ten passes the
-// geometric verification. wrong: verified places whose pose is more than 10 cm or 3 degrees off.
-// query_ms, match_ms: per query, per verification.
+// one of the ten best, is right. pN: precision at the score where N % of the returns are
+// recognised by their best candidate. sure: most of them that are recognised without any fault.
+// verified: share for which one of the ten passes the geometric verification. wrong: verified
+// places whose pose is more than 10 cm or 3 degrees off. query_ms, match_ms: per query, per
+// verification. Benchmarks named time/: every fourth frame is a key frame; add_ms per key frame.
 #include <benchmark/benchmark.h>
 
 #include <chrono>
+#include <cstdio>
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
 #include "benchmarks/true_recording.hpp"
+#include "benchmarks/vocabulary_tree.hpp"
 #include "orb_slam/landmark_geometry.hpp"
 #include "orb_slam/loop_match.hpp"
 #include "orb_slam/observed_frame.hpp"
@@ -28,9 +35,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kEvery = 8;          // frames
-constexpr double kApart = 5.0;     // seconds
-constexpr double kSameView = 0.5;  // share of the image
+constexpr double kApart = 5.0;       // seconds
+constexpr double kReturned = 0.5;    // share of the image seen before
+constexpr double kSamePlace = 0.15;  // enough in common to be the same place
+constexpr std::size_t kCandidates = 10;
 
 struct Place {
   cv::Mat depth;  // metres
@@ -70,11 +78,11 @@ void add_keyframe(MapEdit& edit, const FramePtr& frame, const Pose& pose, OrbExt
   }
 }
 
-Recording load(const fs::path& folder) {
+Recording load(const fs::path& folder, int every) {
   OrbExtractor orb(OrbOptions{});
   MapEdit edit{SparseMap{}};
   Recording recording;
-  for (const TrueFrame& read : read_true_frames(folder, kEvery)) {
+  for (const TrueFrame& read : read_true_frames(folder, every)) {
     recording.places.push_back({read.frame->depth, read.world_from_camera, read.frame->time});
     add_keyframe(edit, read.frame, read.world_from_camera, orb);
   }
@@ -101,75 +109,195 @@ double overlap(const Place& from, const Place& to, const Camera& camera) {
   return measured > 100 ? static_cast<double>(seen) / measured : 0;
 }
 
-double milliseconds_since(std::chrono::steady_clock::time_point start) {
-  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start)
-      .count();
+bool same_place(const Recording& recording, KeyFrameId a, KeyFrameId b, double share) {
+  const Camera& camera = *recording.map.keyframe(a)->camera;
+  return overlap(recording.places[a], recording.places[b], camera) >= share;
 }
 
-void recognise(benchmark::State& state, const fs::path& folder) {
-  const Recording recording = load(folder);
-  const Camera& camera = *recording.map.keyframe(0)->camera;
+bool before(const Recording& recording, KeyFrameId a, KeyFrameId b) {
+  return recording.places[a].time < recording.places[b].time - kApart;
+}
+
+bool has_returned(const Recording& recording, KeyFrameId id) {
+  for (KeyFrameId other = 0; other < id && before(recording, other, id); ++other)
+    if (same_place(recording, id, other, kReturned)) return true;
+  return false;
+}
+
+class Stopwatch {
+ public:
+  double milliseconds() const {
+    const auto passed = std::chrono::steady_clock::now() - start_;
+    return std::chrono::duration<double, std::milli>(passed).count();
+  }
+
+ private:
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+/// The best candidate of a key frame.
+struct Answer {
+  double score = 0;
+  bool right = false;
+  bool returned = false;
+};
+
+/// Precision where at least `recall` of the returns are recognised; 0 where so many never are.
+double precision_at(std::vector<Answer> answers, double recall, int returns) {
+  std::ranges::sort(answers, std::greater(), &Answer::score);
+  int right = 0, all = 0;
+  for (const Answer& answer : answers) {
+    ++all;
+    right += answer.right;
+    if (right >= recall * returns) return static_cast<double>(right) / all;
+  }
+  return 0;
+}
+
+int right_before_the_first_fault(std::vector<Answer> answers) {
+  std::ranges::sort(answers, std::greater(), &Answer::score);
+  const auto fault = std::ranges::find(answers, false, &Answer::right);
+  return static_cast<int>(fault - answers.begin());
+}
+
+/// How well one index recognises places of one recording.
+class Recognition {
+ public:
+  using Query = std::function<std::vector<PlaceVote>(std::span<const Descriptor>)>;
+
+  explicit Recognition(const Recording& recording) : recording_(recording) {}
+
+  void ask(KeyFrameId id, const Query& query) {
+    const Stopwatch watch;
+    std::vector<PlaceVote> votes = query(place_descriptors(*recording_.map.keyframe(id)));
+    query_ms_ += watch.milliseconds();
+    ++queries_;
+    std::erase_if(votes, [&](const PlaceVote& v) { return !before(recording_, v.keyframe, id); });
+    votes.resize(std::min(votes.size(), kCandidates));
+    const auto right = [&](const PlaceVote& v) {
+      return same_place(recording_, id, v.keyframe, kSamePlace);
+    };
+    const bool returned = has_returned(recording_, id);
+    returns_ += returned;
+    first_ten_ += returned && std::ranges::any_of(votes, right);
+    if (!votes.empty()) answers_.push_back({votes[0].score, right(votes[0]), returned});
+    verified_ += verify(id, votes) && returned;
+  }
+
+  benchmark::UserCounters counters() const {
+    const double all = std::max(returns_, 1);
+    const auto first =
+        std::ranges::count_if(answers_, [](const Answer& a) { return a.returned && a.right; });
+    return {{"returns", returns_},
+            {"first", static_cast<double>(first) / all},
+            {"first_ten", first_ten_ / all},
+            {"p50", precision_at(answers_, 0.5, returns_)},
+            {"p90", precision_at(answers_, 0.9, returns_)},
+            {"sure", right_before_the_first_fault(answers_) / all},
+            {"verified", verified_ / all},
+            {"wrong", wrong_},
+            {"query_ms", query_ms_ / std::max(queries_, 1)},
+            {"match_ms", match_ms_ / std::max(matches_, 1)}};
+  }
+
+ private:
+  bool verify(KeyFrameId id, const std::vector<PlaceVote>& votes) {
+    for (const PlaceVote& vote : votes) {
+      const Stopwatch watch;
+      const auto loop = match_loop(recording_.map, id, vote.keyframe);
+      match_ms_ += watch.milliseconds();
+      ++matches_;
+      if (!loop) continue;
+      judge(*loop);
+      return true;
+    }
+    return false;
+  }
+
+  void judge(const LoopMatch& loop) {
+    const Pose error =
+        recording_.places[loop.keyframe].world_from_camera.inverse() * loop.world_from_camera;
+    if (error.translation().norm() < 0.1 && rotation_angle(error) < 0.05) return;
+    ++wrong_;
+    std::fprintf(stderr, "wrong: key frame %u at %u, %.2f m off, %d inliers, support %.2f\n",
+                 loop.keyframe, loop.place, error.translation().norm(), loop.inliers, loop.support);
+  }
+
+  const Recording& recording_;
+  std::vector<Answer> answers_;
+  int returns_ = 0, first_ten_ = 0, verified_ = 0, wrong_ = 0, queries_ = 0, matches_ = 0;
+  double query_ms_ = 0, match_ms_ = 0;
+};
+
+void recognise_by_hashes(benchmark::State& state, const fs::path& folder) {
+  const Recording recording = load(folder, 8);
   PlaceIndex index;
   index.update(recording.map);
-  int returns = 0, first = 0, first_ten = 0, verified = 0, wrong = 0, queries = 0, matches = 0;
-  double query_ms = 0, match_ms = 0;
-  for ([[maybe_unused]] auto _ : state) {
-    for (KeyFrameId id = 0; id < recording.places.size(); ++id) {
-      const Place& here = recording.places[id];
-      const auto before = [&](KeyFrameId other) {
-        return recording.places[other].time < here.time - kApart;
-      };
-      const auto same = [&](KeyFrameId other) {
-        return before(other) && overlap(here, recording.places[other], camera) >= kSameView;
-      };
-      const auto start = std::chrono::steady_clock::now();
-      std::vector<PlaceVote> votes = index.query(place_descriptors(*recording.map.keyframe(id)));
-      query_ms += milliseconds_since(start);
-      ++queries;
-      std::erase_if(votes, [&](const PlaceVote& vote) { return !before(vote.keyframe); });
-      votes.resize(std::min<std::size_t>(votes.size(), 10));
+  Recognition recognition(recording);
+  for ([[maybe_unused]] auto _ : state)
+    for (KeyFrameId id = 0; id < recording.places.size(); ++id)
+      recognition.ask(id, [&](std::span<const Descriptor> view) { return index.query(view); });
+  state.counters = recognition.counters();
+}
 
-      bool returned = false, found = false, passed = false;
-      for (KeyFrameId other = 0; other < id && !returned; ++other) returned = same(other);
-      for (const PlaceVote& vote : votes) found = found || same(vote.keyframe);
-      for (const PlaceVote& vote : votes) {
-        const auto match_start = std::chrono::steady_clock::now();
-        const auto loop = match_loop(recording.map, id, vote.keyframe);
-        match_ms += milliseconds_since(match_start);
-        ++matches;
-        if (!loop) continue;
-        const Pose error = here.world_from_camera.inverse() * loop->world_from_camera;
-        const bool right = error.translation().norm() < 0.1 && rotation_angle(error) < 0.05;
-        if (!right)
-          std::printf("wrong: %u at %u, inliers %d, support %.2f\n", id, vote.keyframe,
-                      loop->inliers, loop->support);
-        wrong += !right;
-        passed = true;
-        break;
+const VocabularyTree& trained_tree() {
+  static const VocabularyTree tree = [] {
+    OrbExtractor orb(OrbOptions{});
+    std::vector<Descriptor> examples;
+    for (const fs::path& folder : recordings_in("STILLPOINT_EXAMPLES"))
+      for (const TrueFrame& read : read_true_frames(folder, 4)) {
+        const Features features = orb.extract(read.frame->gray);
+        examples.insert(examples.end(), features.descriptors.begin(), features.descriptors.end());
       }
-      returns += returned;
-      first += returned && !votes.empty() && same(votes.front().keyframe);
-      first_ten += returned && found;
-      verified += returned && passed;
-    }
+    return VocabularyTree(std::move(examples), 10, 5);
+  }();
+  return tree;
+}
+
+void recognise_by_tree(benchmark::State& state, const fs::path& folder) {
+  const Recording recording = load(folder, 8);
+  TreeIndex index(trained_tree());
+  for (KeyFrameId id = 0; id < recording.places.size(); ++id)
+    index.add(id, place_descriptors(*recording.map.keyframe(id)));
+  index.finish();
+  Recognition recognition(recording);
+  for ([[maybe_unused]] auto _ : state)
+    for (KeyFrameId id = 0; id < recording.places.size(); ++id)
+      recognition.ask(id, [&](std::span<const Descriptor> view) { return index.query(view); });
+  state.counters = recognition.counters();
+  state.counters["words"] = static_cast<double>(trained_tree().words());
+  state.counters["tree_MB"] = trained_tree().megabytes();
+}
+
+void time_of(benchmark::State& state, const fs::path& folder) {
+  const Recording recording = load(folder, 4);
+  const auto count = static_cast<double>(recording.places.size());
+  const Stopwatch watch;
+  PlaceIndex index;
+  index.update(recording.map);
+  const double add_ms = watch.milliseconds();
+  KeyFrameId id = 0;
+  for ([[maybe_unused]] auto _ : state) {
+    benchmark::DoNotOptimize(index.query(place_descriptors(*recording.map.keyframe(id))));
+    id = (id + 1) % static_cast<KeyFrameId>(recording.places.size());
   }
-  const double all = std::max(returns, 1);
-  state.counters = {{"keyframes", recording.places.size()},
-                    {"returns", returns},
-                    {"first", first / all},
-                    {"first_ten", first_ten / all},
-                    {"verified", verified / all},
-                    {"wrong", wrong},
-                    {"query_ms", query_ms / queries},
-                    {"match_ms", match_ms / std::max(matches, 1)}};
+  state.counters = {{"keyframes", count}, {"add_ms", add_ms / count}};
+}
+
+void measure(const std::string& kind, void (*function)(benchmark::State&, const fs::path&),
+             int iterations) {
+  for (const fs::path& folder : recordings_in("STILLPOINT_RECORDINGS")) {
+    auto* entry =
+        benchmark::RegisterBenchmark((kind + folder.filename().string()).c_str(),
+                                     [=](benchmark::State& state) { function(state, folder); });
+    entry->Unit(benchmark::kMillisecond)->Iterations(iterations);
+  }
 }
 
 const bool kRegistered = [] {
-  for (const fs::path& folder : recordings_to_measure())
-    benchmark::RegisterBenchmark(folder.filename().c_str(),
-                                 [=](benchmark::State& state) { recognise(state, folder); })
-        ->Unit(benchmark::kMillisecond)
-        ->Iterations(1);
+  measure("hashes/", recognise_by_hashes, 1);
+  if (!recordings_in("STILLPOINT_EXAMPLES").empty()) measure("tree/", recognise_by_tree, 1);
+  measure("time/", time_of, 500);
   return true;
 }();
 

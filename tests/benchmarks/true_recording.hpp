@@ -11,8 +11,8 @@
 #include <string>
 #include <vector>
 
-#include "evaluation/trajectory.hpp"
 #include "stillpoint/contracts/frame.hpp"
+#include "support/true_pose.hpp"
 
 namespace stillpoint {
 
@@ -21,14 +21,6 @@ struct TrueFrame {
   std::string name;              // of its files in labels/ and instances/
   Pose world_from_camera;
 };
-
-inline Pose pose_at(const evaluation::Trajectory& truth, double time) {
-  std::size_t i = 1;
-  while (i + 1 < truth.poses.size() && truth.poses[i].time < time) ++i;
-  const auto& [before, a] = truth.poses[i - 1];
-  const auto& [after, b] = truth.poses[i];
-  return interpolate(a, b, (time - before) / (after - before));
-}
 
 /// Every n-th frame of a recording, numbered from 0.
 inline std::vector<TrueFrame> read_true_frames(const std::filesystem::path& folder, int every = 1) {
@@ -56,13 +48,16 @@ inline std::vector<TrueFrame> read_true_frames(const std::filesystem::path& fold
   return frames;
 }
 
-/// The recordings in the folder that STILLPOINT_RECORDINGS names.
-inline std::vector<std::filesystem::path> recordings_to_measure() {
+/// The recordings in the folder that an environment variable names.
+inline std::vector<std::filesystem::path> recordings_in(const char* variable) {
   std::vector<std::filesystem::path> folders;
-  if (const char* folder = std::getenv("STILLPOINT_RECORDINGS"))
+  if (const char* folder = std::getenv(variable))
     for (const auto& entry : std::filesystem::directory_iterator(folder))
       if (exists(entry.path() / "associations.txt")) folders.push_back(entry.path());
   return folders;
+}
+inline std::vector<std::filesystem::path> recordings_to_measure() {
+  return recordings_in("STILLPOINT_RECORDINGS");
 }
 
 }  // namespace stillpoint

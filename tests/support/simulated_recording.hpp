@@ -55,16 +55,21 @@ inline std::filesystem::file_time_type newest_of_simulator() {
 
 /// Rendering takes a while and ctest gives each test a process of its own: the recording stays in
 /// the build folder until the simulator is newer.
-inline std::filesystem::path recording_of(const std::string& scene) {
+inline std::filesystem::path recording_of(const std::string& scene, int frames = kSimulatedFrames,
+                                          const std::vector<std::string>& settings = {}) {
   namespace fs = std::filesystem;
-  const fs::path folder = fs::path(STILLPOINT_BINARY_DIR) / "tests/recordings" / scene;
+  std::string name = fs::path(scene).stem().string() + "_" + std::to_string(frames);
+  for (const std::string& setting : settings) name += "_" + setting;
+  const fs::path folder = fs::path(STILLPOINT_BINARY_DIR) / "tests/recordings" / name;
   const fs::path done = folder / "done";
   fs::create_directories(folder.parent_path());
   const FileLock lock(folder.string() + ".lock");
   if (fs::exists(done) && fs::last_write_time(done) > newest_of_simulator()) return folder;
   fs::remove_all(folder);
-  const Outcome outcome = call(
-      {"simulate", scene, "--frames", std::to_string(kSimulatedFrames), "-o", folder.string()});
+  std::vector<std::string> arguments = {
+      "simulate", scene, "--frames", std::to_string(frames), "-o", folder.string()};
+  for (const std::string& setting : settings) arguments.insert(arguments.end(), {"--set", setting});
+  const Outcome outcome = call(std::move(arguments));
   if (outcome.exit_code != 0) throw std::runtime_error("simulate failed: " + outcome.err);
   std::ofstream(done) << "complete\n";
   return folder;

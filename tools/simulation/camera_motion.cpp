@@ -42,6 +42,11 @@ Vector3d room_loop(double turns) {
 
 }  // namespace
 
+CameraMotion::CameraMotion(const MotionOptions& options, int seed)
+    : options_(options), seed_(seed) {
+  if (options.kind == MotionOptions::Kind::kWalk) path_.emplace(options.path);
+}
+
 Pose CameraMotion::world_from_camera(double time) const {
   const double t = time * options_.speed;
   return wanted(t) * trembling(t);
@@ -82,6 +87,15 @@ Pose CameraMotion::wanted(double t) const {
       const Vector3d place = eye + e * room_loop(turns);
       const double angle = 2 * M_PI * turns + M_PI_2 + 0.25;
       return look_at(place, place + Vector3d(std::cos(angle), std::sin(angle), -0.2));
+    }
+    case MotionOptions::Kind::kWalk: {
+      constexpr double kSpeed = 0.9;  // m/s
+      constexpr double kAhead = 0.5;  // metres; one looks where one will go
+      const double way = kSpeed * t;
+      const Eigen::Vector2d foot = path_->at(way);
+      const double angle = path_->heading(way + kAhead);
+      const Vector3d place(foot.x(), foot.y(), eye.z());
+      return look_at(place, place + Vector3d(std::cos(angle), std::sin(angle), -0.15));
     }
   }
   return start;

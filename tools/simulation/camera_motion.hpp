@@ -1,14 +1,17 @@
 // How the camera moves: the handheld motions of the TUM benchmark as smooth functions of time.
 #pragma once
 
+#include <optional>
+
 #include "simulation/scene_options.hpp"
+#include "simulation/walking_path.hpp"
 #include "stillpoint/pose_math.hpp"
 
 namespace stillpoint::simulation {
 
 class CameraMotion {
  public:
-  CameraMotion(const MotionOptions& options, int seed) : options_(options), seed_(seed) {}
+  CameraMotion(const MotionOptions& options, int seed);
 
   /// `time` in seconds from the first frame.
   Pose world_from_camera(double time) const;
@@ -18,6 +21,7 @@ class CameraMotion {
   Pose trembling(double time) const;
 
   MotionOptions options_;
+  std::optional<WalkingPath> path_;
   int seed_;
 };
 

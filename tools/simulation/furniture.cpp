@@ -4,8 +4,9 @@ namespace stillpoint::simulation {
 
 using Eigen::Vector3f;
 
-Furnisher::Furnisher(World& world, int seed)
+Furnisher::Furnisher(World& world, int seed, const Eigen::Affine3f& origin)
     : world_(world),
+      origin_(origin),
       painter_(100 + seed),
       wood_(texture(painter_.wood({1024, 512}, {150, 178, 200}, 0.10), 2.0F, 1.0F)),
       birch_(texture(painter_.wood({1024, 512}, {110, 165, 205}, 0.14), 1.2F, 0.6F)),
@@ -29,20 +30,20 @@ Skin Furnisher::skin(std::uint16_t texture, std::uint8_t label) {
 
 void Furnisher::box(const Place& place, const Vector3f& centre, const Vector3f& size,
                     const Skin& skin) {
-  add_box(world_.room, place.pose() * Eigen::Translation3f(centre), size, skin);
+  add_box(world_.room, pose(place) * Eigen::Translation3f(centre), size, skin);
 }
 
 /// A picture lying flat.
 void Furnisher::sheet(const Place& place, float width, float height, const cv::Mat& image,
                       float lift) {
-  const Eigen::Affine3f pose = place.pose();
-  add_panel(world_.room, pose * Vector3f(-width / 2, height / 2, lift),
-            pose.linear() * Vector3f(width, 0, 0), pose.linear() * Vector3f(0, -height, 0),
+  const Eigen::Affine3f at = pose(place);
+  add_panel(world_.room, at * Vector3f(-width / 2, height / 2, lift),
+            at.linear() * Vector3f(width, 0, 0), at.linear() * Vector3f(0, -height, 0),
             {.texture = texture(image, width, height)});
 }
 
 void Furnisher::upright(const Place& place, const std::vector<Ring>& rings, const Skin& skin) {
-  add_loft(world_.room, place.pose(), rings, skin, 16);
+  add_loft(world_.room, pose(place), rings, skin, 16);
 }
 
 void Furnisher::desk(const Place& place, float width, float depth) {
@@ -84,9 +85,9 @@ void Furnisher::monitor(const Place& place, float width, bool on) {
   const float h = height - 0.04F;
   screen.texture = texture(painter_.screen({512, 512}, on), w, h, 0.25F);
   screen.glows = on;
-  const Eigen::Affine3f pose = place.pose();
-  add_panel(world_.room, pose * Vector3f(-w / 2, -0.027F, 0.12F + height / 2 + h / 2),
-            pose.linear() * Vector3f(w, 0, 0), pose.linear() * Vector3f(0, 0, -h), screen);
+  const Eigen::Affine3f at = pose(place);
+  add_panel(world_.room, at * Vector3f(-w / 2, -0.027F, 0.12F + height / 2 + h / 2),
+            at.linear() * Vector3f(w, 0, 0), at.linear() * Vector3f(0, 0, -h), screen);
 }
 
 void Furnisher::keyboard(const Place& place) {
@@ -102,13 +103,13 @@ void Furnisher::bookshelf(const Place& place, float width, float height) {
   for (const float x : {-width / 2, width / 2})
     box(place, {x, 0, height / 2}, {0.025F, kDepth, height}, side);
   box(place, {0, kDepth / 2, height / 2}, {width, 0.01F, height}, skin(birch_));
-  const Eigen::Affine3f pose = place.pose();
+  const Eigen::Affine3f at = pose(place);
   for (float z = 0.05F; z + kShelf < height + 0.01F; z += kShelf) {
     box(place, {0, 0, z}, {width, kDepth, 0.025F}, skin(birch_));
     const float books = width * static_cast<float>(painter_.uniform(60, 97)) / 100;
     const cv::Size size(static_cast<int>(books * 1000), 310);
-    add_panel(world_.room, pose * Vector3f(-width / 2 + 0.02F, -0.08F, z + 0.32F),
-              pose.linear() * Vector3f(books, 0, 0), pose.linear() * Vector3f(0, 0, -0.31F),
+    add_panel(world_.room, at * Vector3f(-width / 2 + 0.02F, -0.08F, z + 0.32F),
+              at.linear() * Vector3f(books, 0, 0), at.linear() * Vector3f(0, 0, -0.31F),
               {.texture = texture(painter_.books(size), books, 0.31F)});
   }
   box(place, {0, 0, height}, {width, kDepth, 0.025F}, skin(birch_));
@@ -199,17 +200,17 @@ void Furnisher::cardboard_box(const Place& place, const Vector3f& size) {
 
 void Furnisher::poster(const Place& place, float width, float height) {
   const cv::Size size(static_cast<int>(width * 900), static_cast<int>(height * 900));
-  const Eigen::Affine3f pose = place.pose();
-  add_panel(world_.room, pose * Vector3f(-width / 2, 0, height),
-            pose.linear() * Vector3f(width, 0, 0), pose.linear() * Vector3f(0, 0, -height),
+  const Eigen::Affine3f at = pose(place);
+  add_panel(world_.room, at * Vector3f(-width / 2, 0, height), at.linear() * Vector3f(width, 0, 0),
+            at.linear() * Vector3f(0, 0, -height),
             {.texture = texture(painter_.poster(size), width, height)});
 }
 
 void Furnisher::whiteboard(const Place& place, float width, float height) {
   box(place, {0, 0.02F, height / 2}, {width + 0.05F, 0.03F, height + 0.05F}, skin(metal_));
-  const Eigen::Affine3f pose = place.pose();
-  add_panel(world_.room, pose * Vector3f(-width / 2, 0, height),
-            pose.linear() * Vector3f(width, 0, 0), pose.linear() * Vector3f(0, 0, -height),
+  const Eigen::Affine3f at = pose(place);
+  add_panel(world_.room, at * Vector3f(-width / 2, 0, height), at.linear() * Vector3f(width, 0, 0),
+            at.linear() * Vector3f(0, 0, -height),
             {.texture = texture(painter_.whiteboard({1024, 768}), width, height)});
 }
 

@@ -23,7 +23,9 @@ struct Place {
 
 class Furnisher {
  public:
-  Furnisher(World& world, int seed);
+  /// Places are relative to `origin`, which may change on the way.
+  Furnisher(World& world, int seed, const Eigen::Affine3f& origin = Eigen::Affine3f::Identity());
+  void move_origin(const Eigen::Affine3f& world_from_origin) { origin_ = world_from_origin; }
 
   void desk(const Place& place, float width, float depth);
   void chair(const Place& place);
@@ -47,6 +49,7 @@ class Furnisher {
   void scaffold(const Place& place, float width, float height);
 
  private:
+  Eigen::Affine3f pose(const Place& place) const { return origin_ * place.pose(); }
   std::uint16_t texture(const cv::Mat& image, float width, float height, float infrared = 1.0F);
   Skin skin(std::uint16_t texture, std::uint8_t label = kBackground);
   void box(const Place& place, const Eigen::Vector3f& centre, const Eigen::Vector3f& size,
@@ -55,6 +58,7 @@ class Furnisher {
   void upright(const Place& place, const std::vector<Ring>& rings, const Skin& skin);
 
   World& world_;
+  Eigen::Affine3f origin_;
   Painter painter_;
   std::uint16_t wood_;
   std::uint16_t birch_;

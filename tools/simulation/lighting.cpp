@@ -38,9 +38,11 @@ float openness(const RayCaster& caster, const Vector3f& point, const Vector3f& n
 
 float lamplight(const RayCaster& caster, const std::vector<Lamp>& lamps, const Vector3f& point,
                 const Vector3f& normal) {
-  constexpr int kSamples = 3;  // along the longer side of a lamp
+  constexpr int kSamples = 3;      // along the longer side of a lamp
+  constexpr float kReach = 11.0F;  // metres; what is farther adds less than a 300th
   float sum = 0;
   for (const Lamp& lamp : lamps) {
+    if ((lamp.centre - point).squaredNorm() > kReach * kReach) continue;
     for (int i = 0; i < kSamples; ++i) {
       const float along = (static_cast<float>(i) + 0.5F) / kSamples - 0.5F;
       const Vector3f source =

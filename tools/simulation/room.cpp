@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "simulation/furniture.hpp"
+#include "simulation/shell.hpp"
 
 namespace stillpoint::simulation {
 namespace {
@@ -22,38 +23,18 @@ constexpr float kAtLeft = kQuarter;
 constexpr float kAtRight = -kQuarter;
 constexpr float kAtFront = 2 * kQuarter;
 
-void add_shell(World& world, Painter& painter) {
+void add_shell(World& world, const ShellSkins& skins) {
   const float width = kRight - kLeft;
   const float depth = kBack - kFront;
-  const auto wall = [&](cv::Scalar color) {
-    const cv::Mat image = painter.plaster({2048, 1024}, color, 0.035);
-    return Skin{.texture = world.add_texture({image, {6.0F, 3.0F}})};
-  };
-  const Skin floor{.texture =
-                       world.add_texture({painter.carpet({2048, 2048}), {3.5F, 3.5F}, 0.9F})};
-  const Skin ceiling{.texture = world.add_texture({painter.ceiling({512, 512}), {0.6F, 0.6F}})};
-  const Skin pale = wall({205, 212, 214});
-  const Skin grey = wall({176, 172, 165});
   const Vector3f down(0, 0, -kHeight);
-  add_panel(world.room, {kLeft, kBack, kHeight}, {width, 0, 0}, down, grey);
-  add_panel(world.room, {kRight, kFront, kHeight}, {-width, 0, 0}, down, pale);
-  add_panel(world.room, {kLeft, kFront, kHeight}, {0, depth, 0}, down, pale);
-  add_panel(world.room, {kRight, kBack, kHeight}, {0, -depth, 0}, down, pale);
-  add_panel(world.room, {kLeft, kBack, 0}, {width, 0, 0}, {0, -depth, 0}, floor);
-  add_panel(world.room, {kLeft, kFront, kHeight}, {width, 0, 0}, {0, depth, 0}, ceiling);
-}
-
-void add_lamps(World& world) {
-  const cv::Mat white(16, 16, CV_8UC3, cv::Scalar(255, 255, 255));
-  const Skin tube{.texture = world.add_texture({white, {1, 1}}), .glows = true};
-  for (const float x : {-1.7F, 1.7F}) {
-    for (const float y : {-2.2F, 0.2F, 2.6F}) {
-      const Lamp lamp{{x, y, kHeight - 0.03F}, {0.25F, 1.2F}};
-      world.lamps.push_back(lamp);
-      add_panel(world.room, lamp.centre - Vector3f(lamp.size.x() / 2, lamp.size.y() / 2, 0),
-                {lamp.size.x(), 0, 0}, {0, lamp.size.y(), 0}, tube);
-    }
-  }
+  add_panel(world.room, {kLeft, kBack, kHeight}, {width, 0, 0}, down, skins.grey);
+  add_panel(world.room, {kRight, kFront, kHeight}, {-width, 0, 0}, down, skins.pale);
+  add_panel(world.room, {kLeft, kFront, kHeight}, {0, depth, 0}, down, skins.pale);
+  add_panel(world.room, {kRight, kBack, kHeight}, {0, -depth, 0}, down, skins.pale);
+  add_panel(world.room, {kLeft, kBack, 0}, {width, 0, 0}, {0, -depth, 0}, skins.floor);
+  add_panel(world.room, {kLeft, kFront, kHeight}, {width, 0, 0}, {0, depth, 0}, skins.ceiling);
+  for (const float x : {-1.7F, 1.7F})
+    for (const float y : {-2.2F, 0.2F, 2.6F}) add_lamp(world, skins.tube, {x, y, kHeight});
 }
 
 void add_desks(Furnisher& furnish) {
@@ -124,9 +105,7 @@ void add_walls(Furnisher& furnish, bool rich) {
 }  // namespace
 
 void add_room(World& world, const RoomOptions& options) {
-  Painter painter(options.seed);
-  add_shell(world, painter);
-  add_lamps(world);
+  add_shell(world, shell_skins(world, options.seed));
   if (!options.furnished) return;
   const bool rich = options.walls == RoomOptions::Walls::kRich;
   Furnisher furnish(world, options.seed);

@@ -3,9 +3,13 @@
 namespace stillpoint::simulation {
 
 void RoomOptions::visit(OptionVisitor& v) {
+  v.choice(
+      "plan", plan, {{"office", Plan::kOffice}, {"suite", Plan::kSuite}},
+      {.help = "office: one room; suite: ten rooms of 6 x 6 m in two rows, in a ring of doorways"});
   v.choice("walls", walls, {{"rich", Walls::kRich}, {"poor", Walls::kPoor}},
            {.help = "rich: posters, boards and shelves on the walls; poor: bare plaster"});
   v("furnished", furnished, {.help = "desks, chairs, monitors, shelves and what lies on them"});
+  v("alike", alike, {.help = "every room of a suite is furnished as the others are"});
   v("seed", seed, {.min = 0, .help = "of what is printed on posters, papers and books"});
 }
 
@@ -15,14 +19,20 @@ void MotionOptions::visit(OptionVisitor& v) {
             {"xyz", Kind::kXyz},
             {"rpy", Kind::kRpy},
             {"halfsphere", Kind::kHalfsphere},
-            {"loop", Kind::kLoop}},
-           {.help = "as in the sequences of the TUM benchmark; loop: once around the room"});
-  v("position", position, {.unit = "m", .help = "x, y, z of the centre of the motion"});
+            {"loop", Kind::kLoop},
+            {"walk", Kind::kWalk}},
+           {.help = "as in the sequences of the TUM benchmark; loop: once around the room; walk: "
+                    "along the path, looking ahead"});
+  v("position", position,
+    {.unit = "m", .help = "x, y, z of the centre of the motion; of a walk z only"});
   v("look_at", look_at, {.unit = "m", .help = "x, y, z of the point in the middle of the view"});
+  v("path", path, {.unit = "m", .help = "x, y, x, y, … on the floor, of a walk round and round"});
   v("extent", extent, {.min = 0, .max = 3, .help = "scales the size of the motion"});
   v("speed", speed, {.min = 0.01, .max = 10, .help = "scales the rate of the motion"});
   v("jitter", jitter, {.min = 0, .max = 10, .help = "scales the trembling of the hand"});
   v.require(position.size() == 3 && look_at.size() == 3, "position and look_at take x, y, z");
+  v.require(path.size() % 2 == 0 && (kind != Kind::kWalk || path.size() >= 6),
+            "path takes pairs x, y; a walk three or more of them");
   v.require(position.size() != 3 || look_at.size() != 3 || position[0] != look_at[0] ||
                 position[1] != look_at[1],
             "look_at must not lie right above or below position");

@@ -8,19 +8,22 @@
 
 namespace stillpoint::simulation {
 
-/// World frame: metres, z up, floor at 0, the desks ahead of the camera along +y.
+/// World frame: metres, z up, floor at 0; the office's desks ahead of the camera along +y.
 struct RoomOptions {
+  enum class Plan { kOffice, kSuite } plan = Plan::kOffice;
   enum class Walls { kRich, kPoor } walls = Walls::kRich;
   bool furnished = true;
-  int seed = 1;  ///< of what is printed on posters, papers and books
+  bool alike = false;  ///< the rooms of a suite
+  int seed = 1;        ///< of what is printed on posters, papers and books
 
   void visit(OptionVisitor& v);
 };
 
 struct MotionOptions {
-  enum class Kind { kStatic, kXyz, kRpy, kHalfsphere, kLoop } kind = Kind::kXyz;
+  enum class Kind { kStatic, kXyz, kRpy, kHalfsphere, kLoop, kWalk } kind = Kind::kXyz;
   std::vector<double> position = {-0.1, -1.75, 1.4};  ///< metres, centre of the motion
   std::vector<double> look_at = {0.05, 1.2, 0.85};    ///< metres
+  std::vector<double> path;                           ///< x, y, x, y, … of a closed walk, metres
   double extent = 1.0;                                ///< scales the size of the motion
   double speed = 1.0;                                 ///< scales its rate
   double jitter = 1.0;                                ///< scales the trembling of the hand

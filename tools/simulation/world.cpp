@@ -6,6 +6,7 @@
 #include "simulation/lighting.hpp"
 #include "simulation/person.hpp"
 #include "simulation/room.hpp"
+#include "simulation/suite.hpp"
 #include "stillpoint/error.hpp"
 
 namespace stillpoint::simulation {
@@ -24,7 +25,10 @@ std::uint8_t World::add_instance() {
 
 World build_world(const SceneOptions& scene) {
   World world;
-  add_room(world, scene.room);
+  if (scene.room.plan == RoomOptions::Plan::kSuite)
+    add_suite(world, scene.room);
+  else
+    add_room(world, scene.room);
   light_room(world);
   for (const PersonOptions& person : scene.people) add_person(world, person);
   for (const BallOptions& ball : scene.balls) add_ball(world, ball);

@@ -1,0 +1,204 @@
+// The camera is lost, or somewhere else than expected, and finds itself again.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <opencv2/core.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "evaluation/trajectory.hpp"
+#include "support/simulated_recording.hpp"
+#include "support/true_pose.hpp"
+
+namespace stillpoint::testing {
+namespace {
+
+namespace fs = std::filesystem;
+using evaluation::read_trajectory;
+using evaluation::Trajectory;
+
+constexpr double kRate = 30.0;      // frames per second
+constexpr double kStart = 1000.0;   // time stamp of the simulator's first frame
+constexpr int kOneSecond = 30;      // frames
+constexpr double kAccurate = 0.02;  // metres
+constexpr double kDrifted = 0.04;   // metres, at the end of the tour
+
+double stamp_of(int frame) { return kStart + frame / kRate; }
+
+/// Frames of a simulated recording in another order and with other time stamps.
+class Replay {
+ public:
+  explicit Replay(const fs::path& original)
+      : original_(original), truth_(read_trajectory(original / "groundtruth.txt")) {
+    fs::copy_file(original / "camera.yaml", path() / "camera.yaml");
+    for (const char* stream : {"rgb", "depth"})
+      fs::create_directory_symlink(original / stream, path() / stream);
+    cv::imwrite((path() / "black.png").string(), cv::Mat::zeros(480, 640, CV_8UC3));
+  }
+
+  void show(int first, int count) {
+    for (int frame = first; frame < first + count; ++frame) add(frame, color_of(frame));
+  }
+  /// The lens is covered; the camera moves on.
+  void show_darkness(int first, int count) {
+    for (int frame = first; frame < first + count; ++frame) add(frame, "black.png");
+  }
+
+  const fs::path& path() const { return folder_.path(); }
+  int size() const { return shown_; }
+
+  void finish() const {
+    folder_.write("rgb.txt", colors_);
+    folder_.write("depth.txt", depths_);
+    folder_.write("groundtruth.txt", poses_);
+  }
+
+ private:
+  static std::string color_of(int frame) { return "rgb/" + stamp_text(stamp_of(frame)) + ".png"; }
+
+  void add(int frame, const std::string& color) {
+    const std::string stamp = stamp_text(stamp_of(shown_++));
+    colors_ += stamp + " " + color + "\n";
+    depths_ += stamp + " depth/" + stamp_text(stamp_of(frame)) + ".png\n";
+    const Pose pose = pose_at(truth_, stamp_of(frame));
+    const Eigen::Vector3d t = pose.translation();
+    const Eigen::Quaterniond q(pose.linear());
+    std::ostringstream row;
+    row << stamp << ' ' << t.transpose() << ' ' << q.coeffs().transpose() << '\n';
+    poses_ += row.str();
+  }
+
+  TemporaryFolder folder_;
+  fs::path original_;
+  Trajectory truth_;
+  std::string colors_, depths_, poses_;
+  int shown_ = 0;
+};
+
+/// Frames from `first` on until the camera has a pose again; nothing when it never has.
+std::optional<int> frames_until_found(const Trajectory& estimate, int first) {
+  for (const auto& pose : estimate.poses)
+    if (pose.time >= stamp_of(first) - 0.01)
+      return static_cast<int>(std::lround((pose.time - stamp_of(first)) * kRate));
+  return std::nullopt;
+}
+
+/// Largest distance to the truth from frame `first` on, where frame 0 of `world` is the origin of
+/// the estimate.
+double worst_error(const Trajectory& estimate, const Trajectory& truth, const Pose& world,
+                   int first) {
+  double worst = 0;
+  for (const auto& [time, pose] : estimate.poses)
+    if (time >= stamp_of(first) - 0.01)
+      worst = std::max(
+          worst,
+          (pose.translation() - (world.inverse() * pose_at(truth, time)).translation()).norm());
+  return worst;
+}
+
+class Relocalisation : public ::testing::Test {
+ protected:
+  // Not under a sanitizer: long recordings, and code that other tests reach.
+  void SetUp() override {
+    if (kSanitized) GTEST_SKIP() << "takes minutes under a sanitizer";
+  }
+
+  fs::path last_run() const { return folder_.path() / std::to_string(runs_); }
+  Trajectory run(const std::string& pipeline, const fs::path& recording,
+                 std::vector<std::string> more = {}) {
+    ++runs_;
+    more.insert(more.begin(), {"run", pipeline, "--dataset", recording.string(), "-o",
+                               last_run().string(), "--set", "runtime.mode=inline"});
+    const Outcome outcome = call(std::move(more));
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    return read_trajectory(last_run() / "trajectory.txt");
+  }
+
+  // From frame `again` on the camera must be found within a second, where it is.
+  void expect_found(const Replay& replay, int again) {
+    replay.finish();
+    const Trajectory estimate = run("orb_baseline", replay.path());
+    const Trajectory truth = read_trajectory(replay.path() / "groundtruth.txt");
+    const auto waited = frames_until_found(estimate, again);
+    ASSERT_TRUE(waited);
+    EXPECT_LE(*waited, kOneSecond);
+    EXPECT_GE(std::ssize(estimate.poses), again / 2 + replay.size() - again - kOneSecond);
+    EXPECT_LT(worst_error(estimate, truth, truth.poses.front().world_from_camera, again), kDrifted);
+  }
+
+  TemporaryFolder folder_;
+  int runs_ = 0;
+};
+
+// Once around the room, 11 degrees per second.
+fs::path tour(int seed = 1) {
+  return recording_of("room_loop_empty", 240, {"source.seed=" + std::to_string(seed)});
+}
+
+TEST_F(Relocalisation, AfterTwoSecondsOfDarkness) {
+  Replay replay(tour());
+  replay.show(0, 120);
+  replay.show_darkness(120, 60);
+  replay.show(180, 60);
+  expect_found(replay, 180);
+}
+
+TEST_F(Relocalisation, AfterBeingCarriedToAPlaceOnTheMap) {
+  Replay replay(tour());
+  replay.show(0, 240);
+  replay.show(30, 60);
+  expect_found(replay, 240);
+}
+
+// Somebody walks past, a hand's breadth before the lens, and is all that is seen.
+TEST_F(Relocalisation, AfterSomebodyCoveredTheLens) {
+  const TemporaryFolder scenes;
+  const fs::path scene =
+      scenes.write("covered_lens.yaml",
+                   "version: 1\n"
+                   "extends: " STILLPOINT_SOURCE_DIR
+                   "/configs/scenes/fr3_walking_xyz_empty.yaml\n"
+                   "source:\n"
+                   "  motion: {extent: 0.4}\n"
+                   "  people:\n"
+                   "    - {pose: walk, speed: 0.12, start: 1.0, seed: 4,\n"
+                   "       path: [-1.6, -1.35, 1.4, -1.35, 1.4, 0.2, -1.6, 0.2]}\n");
+  constexpr int kFrames = 180, kCovered = 90;
+  const fs::path recording = recording_of(scene.string(), kFrames);
+  const Trajectory estimate = run("stillpoint", recording);
+  EXPECT_EQ(json_file(last_run() / "summary.json")["times_lost"], 1);
+  const auto waited = frames_until_found(estimate, kCovered + 1);
+  ASSERT_TRUE(waited);
+  EXPECT_LE(*waited, kOneSecond);
+  EXPECT_GE(std::ssize(estimate.poses), kFrames - kOneSecond);
+  const Trajectory truth = read_trajectory(recording / "groundtruth.txt");
+  EXPECT_LT(worst_error(estimate, truth, truth.poses.front().world_from_camera, kCovered + 1),
+            kAccurate);
+}
+
+TEST_F(Relocalisation, InALoadedMap) {
+  const std::string map = (folder_.path() / "room.map").string();
+  const fs::path first = tour();
+  run("orb_baseline", first, {"--save-map", map});
+  const Pose world = read_trajectory(first / "groundtruth.txt").poses.front().world_from_camera;
+  // Another visit: the hand trembles otherwise, and the noise is another.
+  const fs::path second = tour(2);
+  Replay replay(second);
+  replay.show(60, 120);
+  replay.finish();
+  const Trajectory estimate =
+      run("orb_baseline", replay.path(), {"--load-map", map, "--localise-only"});
+  const auto waited = frames_until_found(estimate, 0);
+  ASSERT_TRUE(waited);
+  EXPECT_LE(*waited, kOneSecond);
+  EXPECT_GE(std::ssize(estimate.poses), replay.size() - kOneSecond);
+  const Trajectory truth = read_trajectory(replay.path() / "groundtruth.txt");
+  EXPECT_LT(worst_error(estimate, truth, world, 0), kAccurate);
+}
+
+}  // namespace
+}  // namespace stillpoint::testing
