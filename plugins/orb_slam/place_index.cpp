@@ -6,9 +6,11 @@
 namespace stillpoint::orb {
 namespace {
 
-constexpr std::size_t kDescriptors = 500;  // of a key frame; more cost time and find no more
-constexpr int kMaxDistance = 40;           // Hamming; of one point in two images, mostly below 30
-constexpr std::size_t kStopWord = 8;       // a word this often per key frame tells nothing
+constexpr std::size_t kDescriptors = 500;  // of a key frame
+constexpr int kMaxDistance = 40;           // Hamming
+// A word of more descriptors tells nothing; as many as this, and as this share of the key frames.
+constexpr double kMostEntries = 24;
+constexpr double kMostEntriesPerKeyFrame = 0.01;
 
 }  // namespace
 
@@ -73,11 +75,12 @@ std::vector<PlaceVote> PlaceIndex::query(std::span<const Descriptor> view) const
   std::vector<std::size_t> voted(present_.size());  // by which descriptor last, from 1
   std::vector<KeyFrameId> shown_by;
   const double all = static_cast<double>(keyframe_count_) + 1;
+  const double most = kMostEntries + kMostEntriesPerKeyFrame * all;
   for (std::size_t i = 0; i < view.size(); ++i) {
     shown_by.clear();
     for (int table = 0; table < kTables; ++table) {
       const auto& entries = bucket(table, word(view[i], table));
-      if (entries.size() > kStopWord * (keyframe_count_ + 8)) continue;
+      if (static_cast<double>(entries.size()) > most) continue;
       for (const std::uint32_t e : entries) {
         const KeyFrameId id = entries_[e].keyframe;
         if (!present_[id] || voted[id] == i + 1) continue;

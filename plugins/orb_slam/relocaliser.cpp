@@ -7,8 +7,8 @@
 namespace stillpoint::orb {
 namespace {
 
-constexpr std::size_t kCandidates = 5;   // per frame, two of them around the last known place
-constexpr std::size_t kNewPlaces = 100;  // taken into the index per frame; 10 ms
+constexpr std::size_t kCandidates = 5;  // per frame, two of them around the last known place
+constexpr std::size_t kNewPlaces = 50;  // taken into the index per frame; 15 ms
 constexpr int kMinInliers = 30;
 
 }  // namespace

@@ -157,7 +157,7 @@ double precision_at(std::vector<Answer> answers, double recall, int returns) {
 int right_before_the_first_fault(std::vector<Answer> answers) {
   std::ranges::sort(answers, std::greater(), &Answer::score);
   const auto fault = std::ranges::find(answers, false, &Answer::right);
-  return static_cast<int>(fault - answers.begin());
+  return static_cast<int>(std::count_if(answers.begin(), fault, std::mem_fn(&Answer::returned)));
 }
 
 /// How well one index recognises places of one recording.
