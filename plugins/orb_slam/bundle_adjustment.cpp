@@ -135,6 +135,8 @@ class BundleProblem {
     StopCallback stop(std::move(hurry));
     ceres::Solver::Options solver;
     solver.linear_solver_type = ceres::SPARSE_SCHUR;
+    // Neither threads of its own nor a BLAS that rounds differently on another machine.
+    solver.sparse_linear_algebra_library_type = ceres::EIGEN_SPARSE;
     solver.max_num_iterations = options.max_iterations;
     solver.num_threads = options.threads;
     solver.logging_type = ceres::SILENT;

@@ -78,6 +78,8 @@ class PoseGraph {
     StopCallback callback(std::move(stop));
     ceres::Solver::Options solver;
     solver.linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;
+    // Neither threads of its own nor a BLAS that rounds differently on another machine.
+    solver.sparse_linear_algebra_library_type = ceres::EIGEN_SPARSE;
     solver.max_num_iterations = kIterations;
     solver.logging_type = ceres::SILENT;
     solver.callbacks = {&callback};
