@@ -82,12 +82,12 @@ void MappingSystem::save(const std::filesystem::path& directory) {
 
 void MappingSystem::map(NewKeyFrame item) {
   const KeyFrameId id = item.keyframe.id;
-  mapped_frame_ = item.keyframe.frame;
+  const std::uint32_t frame = item.keyframe.frame;
   const MapStore::Snapshot before = map_.snapshot();
-  map_.publish(local_mapper_.call("map_insert", mapped_frame_, &LocalMapper::insert, *before,
+  map_.publish(local_mapper_.call("map_insert", frame, &LocalMapper::insert, *before,
                                   std::move(item.keyframe)));
   map_.publish(
-      local_mapper_.call("map_refine", mapped_frame_, &LocalMapper::refine, *map_.snapshot(), id,
+      local_mapper_.call("map_refine", frame, &LocalMapper::refine, *map_.snapshot(), id,
                          mapping_hurry_.begin(threaded_ && (waiting() || stop_.requested()))));
   const MapStore::Snapshot after = map_.snapshot();
   send_moved(*before, *after);
@@ -97,17 +97,17 @@ void MappingSystem::map(NewKeyFrame item) {
   }
   if (loop_closing_.size() >= kQueriesWaiting / 2) adjustment_hurry_.request();
   // Last: inline, its correction is applied within.
-  loop_closing_.push(LoopQuery{id, mapped_frame_});
+  loop_closing_.push(LoopQuery{id, frame});
 }
 
 void MappingSystem::correct(const Correction& item) {
   const MapStore::Snapshot before = map_.snapshot();
-  map_.publish(local_mapper_.call("map_correct", mapped_frame_,
+  map_.publish(local_mapper_.call("map_correct", item.frame,
                                   [&](LocalMapper&) { return apply(item.correction, *before); }));
   send_moved(*before, *map_.snapshot());
   if (!item.closes_loop) return;
   ++loops_;
-  loop_closing_.push_past_limit(AdjustRequest{mapped_frame_});
+  loop_closing_.push_past_limit(AdjustRequest{item.frame});
 }
 
 void MappingSystem::close_loop(const LoopQuery& query) {
@@ -116,7 +116,7 @@ void MappingSystem::close_loop(const LoopQuery& query) {
                                       query.keyframe, stop_.token());
   if (!correction) return;
   correction_pending_ = true;
-  local_mapping_.push_past_limit(Correction{std::move(*correction), true});
+  local_mapping_.push_past_limit(Correction{std::move(*correction), query.frame, true});
 }
 
 void MappingSystem::adjust(const AdjustRequest& request) {
@@ -124,7 +124,7 @@ void MappingSystem::adjust(const AdjustRequest& request) {
   auto correction =
       loop_closer_.call("loop_adjust", request.frame, &LoopCloser::adjust, *map_.snapshot(),
                         adjustment_hurry_.begin(threaded_ && stop_.requested()));
-  if (correction) local_mapping_.push_past_limit(Correction{std::move(*correction)});
+  if (correction) local_mapping_.push_past_limit(Correction{std::move(*correction), request.frame});
 }
 
 void MappingSystem::map_densely(const DenseItem& item) {

@@ -44,8 +44,10 @@ class MappingSystem {
   void save(const std::filesystem::path& directory);
 
  private:
+  // In all of these, `frame` is the key frame's that asked first, for messages and times.
   struct Correction {
     MapCorrection correction;
+    std::uint32_t frame = 0;
     bool closes_loop = false;
   };
   using MappingItem = std::variant<NewKeyFrame, Correction>;
@@ -72,8 +74,7 @@ class MappingSystem {
   StageCaller<LoopCloser> loop_closer_;
   StageCaller<MapBackend> map_backend_;
   MapStore map_;
-  std::uint32_t mapped_frame_ = 0;  // given last to local mapping, for messages and times
-  std::uint32_t dense_frame_ = 0;   // given last to the dense map
+  std::uint32_t dense_frame_ = 0;  // given last to the dense map, for messages and times
   int loops_ = 0;
   // Of the loop thread: the map does not show yet what it found last, so it looks for nothing more.
   bool correction_pending_ = false;
