@@ -8,7 +8,7 @@
 #include <map>
 #include <set>
 
-#include "orb_slam/ceres_stop.hpp"
+#include "orb_slam/ceres_solver.hpp"
 #include "orb_slam/landmark_geometry.hpp"
 #include "orb_slam/pose_solver.hpp"
 #include "orb_slam/scale_pyramid.hpp"
@@ -133,14 +133,9 @@ class BundleProblem {
   bool solve(const BundleOptions& options, std::stop_token hurry) {
     if (problem_.NumResidualBlocks() == 0) return false;
     StopCallback stop(std::move(hurry));
-    ceres::Solver::Options solver;
-    solver.linear_solver_type = ceres::SPARSE_SCHUR;
-    // Neither threads of its own nor a BLAS that rounds differently on another machine.
-    solver.sparse_linear_algebra_library_type = ceres::EIGEN_SPARSE;
-    solver.max_num_iterations = options.max_iterations;
+    ceres::Solver::Options solver =
+        solver_options(ceres::SPARSE_SCHUR, options.max_iterations, stop);
     solver.num_threads = options.threads;
-    solver.logging_type = ceres::SILENT;
-    solver.callbacks = {&stop};
     solver.linear_solver_ordering = std::make_shared<ceres::ParameterBlockOrdering>();
     for (auto& [id, position] : points_)
       if (problem_.HasParameterBlock(position.data()))

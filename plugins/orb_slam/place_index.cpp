@@ -8,7 +8,7 @@ namespace {
 
 constexpr std::size_t kDescriptors = 500;  // of a key frame
 constexpr int kMaxDistance = 40;           // Hamming
-// A word of more descriptors tells nothing; as many as this, and as this share of the key frames.
+// Words that more descriptors have tell little and would cost nearly all of the time.
 constexpr double kMostEntries = 24;
 constexpr double kMostEntriesPerKeyFrame = 0.01;
 

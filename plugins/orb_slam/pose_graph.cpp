@@ -5,7 +5,7 @@
 #include <deque>
 #include <utility>
 
-#include "orb_slam/ceres_stop.hpp"
+#include "orb_slam/ceres_solver.hpp"
 
 namespace stillpoint::orb {
 namespace {
@@ -76,15 +76,9 @@ class PoseGraph {
 
   bool solve(std::stop_token stop) {
     StopCallback callback(std::move(stop));
-    ceres::Solver::Options solver;
-    solver.linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;
-    // Neither threads of its own nor a BLAS that rounds differently on another machine.
-    solver.sparse_linear_algebra_library_type = ceres::EIGEN_SPARSE;
-    solver.max_num_iterations = kIterations;
-    solver.logging_type = ceres::SILENT;
-    solver.callbacks = {&callback};
     ceres::Solver::Summary summary;
-    ceres::Solve(solver, &problem_, &summary);
+    ceres::Solve(solver_options(ceres::SPARSE_NORMAL_CHOLESKY, kIterations, callback), &problem_,
+                 &summary);
     return summary.IsSolutionUsable();
   }
 

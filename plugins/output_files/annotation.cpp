@@ -69,18 +69,6 @@ void draw_features(cv::Mat& picture, const std::vector<TrackedFeature>& features
   }
 }
 
-const char* name_of(TrackState state) {
-  switch (state) {
-    case TrackState::kWaiting:
-      return "waiting";
-    case TrackState::kTracking:
-      return "tracking";
-    case TrackState::kLost:
-      return "LOST";
-  }
-  return "";
-}
-
 void draw_text(cv::Mat& picture, const FrameReport& report) {
   const int height = std::max(16, picture.rows / 22);
   cv::Mat bar = picture.rowRange(std::max(0, picture.rows - height), picture.rows);

@@ -286,7 +286,7 @@ void time_of(benchmark::State& state, const fs::path& folder) {
 
 void measure(const std::string& kind, void (*function)(benchmark::State&, const fs::path&),
              int iterations) {
-  for (const fs::path& folder : recordings_in("STILLPOINT_RECORDINGS")) {
+  for (const fs::path& folder : recordings_to_measure()) {
     auto* entry =
         benchmark::RegisterBenchmark((kind + folder.filename().string()).c_str(),
                                      [=](benchmark::State& state) { function(state, folder); });

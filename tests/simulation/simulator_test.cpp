@@ -5,14 +5,11 @@
 
 #include <opencv2/imgproc.hpp>
 
+#include "small_camera.hpp"
 #include "stillpoint/error.hpp"
 
 namespace stillpoint::simulation {
 namespace {
-
-CameraModel small_camera() {
-  return {.name = "small", .width = 160, .height = 120, .fx = 134, .fy = 135, .cx = 80, .cy = 60};
-}
 
 SceneOptions scene_with_people() {
   SceneOptions scene;

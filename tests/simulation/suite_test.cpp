@@ -6,15 +6,12 @@
 
 #include "simulation/renderer.hpp"
 #include "simulation/simulator.hpp"
+#include "small_camera.hpp"
 
 namespace stillpoint::simulation {
 namespace {
 
 using Eigen::Vector3d;
-
-CameraModel small_camera() {
-  return {.name = "small", .width = 160, .height = 120, .fx = 134, .fy = 135, .cx = 80, .cy = 60};
-}
 
 SceneOptions suite() {
   SceneOptions scene;

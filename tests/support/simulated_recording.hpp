@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <stdexcept>
@@ -58,9 +59,10 @@ inline std::filesystem::file_time_type newest_of_simulator() {
 inline std::filesystem::path recording_of(const std::string& scene, int frames = kSimulatedFrames,
                                           const std::vector<std::string>& settings = {}) {
   namespace fs = std::filesystem;
-  std::string name = fs::path(scene).stem().string() + "_" + std::to_string(frames);
-  for (const std::string& setting : settings) name += "_" + setting;
-  const fs::path folder = fs::path(STILLPOINT_BINARY_DIR) / "tests/recordings" / name;
+  std::string all = std::to_string(frames);
+  for (const std::string& setting : settings) all += ' ' + setting;
+  const fs::path folder = fs::path(STILLPOINT_BINARY_DIR) / "tests/recordings" /
+                          (scene + '_' + std::to_string(std::hash<std::string>{}(all)));
   const fs::path done = folder / "done";
   fs::create_directories(folder.parent_path());
   const FileLock lock(folder.string() + ".lock");

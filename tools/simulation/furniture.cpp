@@ -4,9 +4,8 @@ namespace stillpoint::simulation {
 
 using Eigen::Vector3f;
 
-Furnisher::Furnisher(World& world, int seed, const Eigen::Affine3f& origin)
+Furnisher::Furnisher(World& world, int seed)
     : world_(world),
-      origin_(origin),
       painter_(100 + seed),
       wood_(texture(painter_.wood({1024, 512}, {150, 178, 200}, 0.10), 2.0F, 1.0F)),
       birch_(texture(painter_.wood({1024, 512}, {110, 165, 205}, 0.14), 1.2F, 0.6F)),

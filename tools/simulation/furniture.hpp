@@ -23,8 +23,8 @@ struct Place {
 
 class Furnisher {
  public:
-  /// Places are relative to `origin`, which may change on the way.
-  Furnisher(World& world, int seed, const Eigen::Affine3f& origin = Eigen::Affine3f::Identity());
+  Furnisher(World& world, int seed);
+  /// From now on, places are relative to this; at first, to the world.
   void move_origin(const Eigen::Affine3f& world_from_origin) { origin_ = world_from_origin; }
 
   void desk(const Place& place, float width, float depth);
@@ -58,7 +58,7 @@ class Furnisher {
   void upright(const Place& place, const std::vector<Ring>& rings, const Skin& skin);
 
   World& world_;
-  Eigen::Affine3f origin_;
+  Eigen::Affine3f origin_ = Eigen::Affine3f::Identity();
   Painter painter_;
   std::uint16_t wood_;
   std::uint16_t birch_;

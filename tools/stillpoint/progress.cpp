@@ -28,18 +28,6 @@ std::string minutes(double seconds) {
   return text.data();
 }
 
-const char* name_of(TrackState state) {
-  switch (state) {
-    case TrackState::kWaiting:
-      return "waiting";
-    case TrackState::kTracking:
-      return "tracking";
-    case TrackState::kLost:
-      return "LOST";
-  }
-  return "";
-}
-
 }  // namespace
 
 Progress::Progress(Console& console, std::optional<std::size_t> frames)

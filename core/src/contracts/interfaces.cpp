@@ -1,5 +1,5 @@
-// The destructors anchor each interface's type information in this library, so that every plugin
-// and the program agree on it.
+// What the contracts define. The destructors anchor each interface's type information in this
+// library, so that every plugin and the program agree on it.
 #include "stillpoint/sdk.hpp"
 
 namespace stillpoint {
@@ -17,5 +17,17 @@ std::optional<MapCorrection> LoopCloser::adjust(const SparseMap&, std::stop_toke
 }
 MapBackend::~MapBackend() = default;
 Output::~Output() = default;
+
+const char* name_of(TrackState state) {
+  switch (state) {
+    case TrackState::kWaiting:
+      return "waiting";
+    case TrackState::kTracking:
+      return "tracking";
+    case TrackState::kLost:
+      return "LOST";
+  }
+  return "";
+}
 
 }  // namespace stillpoint

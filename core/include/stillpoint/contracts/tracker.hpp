@@ -13,6 +13,8 @@
 namespace stillpoint {
 
 enum class TrackState { kWaiting /* no map yet and no start possible */, kTracking, kLost };
+/// "waiting", "tracking" or "LOST", for people.
+STILLPOINT_EXPORT const char* name_of(TrackState state);
 
 /// A feature as tracking used it, for pictures and statistics.
 struct TrackedFeature {
