@@ -10,6 +10,7 @@ namespace {
 
 constexpr float kMaxDepthStep = 0.04f;  // of the depth; more around a keypoint is an edge
 constexpr int kDepthWindow = 3;         // px around a keypoint
+constexpr double kNewcomer = 0.05;      // least weight of a landmark that is not proven yet
 
 // Depth of the surface a keypoint lies on; 0 beside a depth edge, where it may be that of the other
 // side. Such features made estimated motions 0.5 to 1 % too small, since errors of that kind go
@@ -40,6 +41,15 @@ ObservedFrame unmatched(FramePtr frame, FeaturesPtr features) {
   observed.track_weights.assign(count, 255);
   observed.map_weights.assign(count, 255);
   return observed;
+}
+
+// All that a person wears can become landmarks at once, and they agree with each other. A landmark
+// from another recording, saved with its map, may seem to lie in the future.
+double proven(const Landmark& landmark, const SparseMap& map, double time, double proving_time) {
+  const KeyFrame* creator = map.keyframe(landmark.created_by);
+  if (!creator || time < creator->time) return 1;
+  const double age = time - creator->time;
+  return age < proving_time ? std::max(age / proving_time, kNewcomer) : 1;
 }
 
 }  // namespace
@@ -100,7 +110,7 @@ int ObservedFrame::matched() const {
       std::count_if(landmarks.begin(), landmarks.end(), [](LandmarkId id) { return id != kNoId; }));
 }
 
-int solve_pose(ObservedFrame& observed, const SparseMap& map) {
+int solve_pose(ObservedFrame& observed, const SparseMap& map, double proving_time) {
   const Features& features = *observed.features;
   const ScalePyramid pyramid(features);
   std::vector<PoseObservation> observations;
@@ -110,13 +120,14 @@ int solve_pose(ObservedFrame& observed, const SparseMap& map) {
     if (!landmark && !observed.temporary[i]) continue;
     const cv::KeyPoint& k = features.keypoints[i];
     const double sigma = pyramid.pixel_sigma(k.octave);
+    const double trust = landmark ? proven(*landmark, map, observed.frame->time, proving_time) : 1;
     observations.push_back(
         {.point_in_world = landmark ? landmark->position_in_world : *observed.temporary[i],
          .pixel = {k.pt.x, k.pt.y},
          .inverse_depth = features.depth[i] > 0 ? 1.0 / features.depth[i] : 0.0,
          .pixel_sigma = sigma,
          .inverse_depth_sigma = observed.frame->camera->depth_noise,
-         .weight = observed.track_weights[i] / 255.0});
+         .weight = trust * observed.track_weights[i] / 255.0});
     index.push_back(i);
   }
   const PoseSolution solution =

@@ -53,7 +53,8 @@ ObservedFrame observe(FramePtr frame, Features features);
 ObservedFrame observe_again(const KeyFrame& keyframe);
 
 /// Pose from the landmarks and temporary points assigned so far, starting from the frame's own;
-/// marks the outliers and returns the number of inliers.
-int solve_pose(ObservedFrame& frame, const SparseMap& map);
+/// marks the outliers and returns the number of inliers. Landmarks count in full from an age of
+/// `proving_time` seconds on, younger ones in proportion.
+int solve_pose(ObservedFrame& frame, const SparseMap& map, double proving_time = 0.0);
 
 }  // namespace stillpoint::orb

@@ -129,6 +129,47 @@ TEST_F(SolvePoseTest, LandmarksThatAreGoneAreLeftOut) {
   EXPECT_LT(metres_between(frame_.world_from_camera, walk(2)), 0.004);
 }
 
+// The left half of the image is somebody whom a key frame took for a wall, and who has gone on by
+// 3 cm since.
+class NewcomersTest : public SolvePoseTest {
+ protected:
+  NewcomersTest() {
+    match_truth();
+    MapEdit edit(known_.map);
+    edit.keyframe(0).time = edit.map().keyframe(1)->time - 10;
+    for (LandmarkId id = 0; id < known_.map.landmark_id_end(); ++id) {
+      const bool worn = known_.map.landmark(id)->position_in_world.x() < 0;
+      edit.landmark(id).created_by = worn ? 1 : 0;
+      if (worn) edit.landmark(id).position_in_world += Eigen::Vector3d(0.02, 0.0, 0.02);
+    }
+    map_ = std::move(edit).finish();
+  }
+
+  double error_at(double seconds_since_newcomers, double proving_time) {
+    auto frame = std::make_shared<Frame>(*frame_.frame);
+    frame->time = map_.keyframe(1)->time + seconds_since_newcomers;
+    frame_.frame = std::move(frame);
+    frame_.world_from_camera = walk(2);
+    solve_pose(frame_, map_, proving_time);
+    return metres_between(frame_.world_from_camera, walk(2));
+  }
+
+  SparseMap map_;
+};
+
+TEST_F(NewcomersTest, CountLittleAtFirst) {
+  EXPECT_GT(error_at(0.05, 0.0), 0.02);
+  EXPECT_LT(error_at(0.05, 1.0), 0.01);
+}
+
+TEST_F(NewcomersTest, CountInFullOnceTheyAreProven) {
+  EXPECT_EQ(error_at(2.0, 1.0), error_at(2.0, 0.0));
+}
+
+TEST_F(NewcomersTest, OfAnotherRecordingAreNone) {
+  EXPECT_EQ(error_at(-20.0, 1.0), error_at(-20.0, 0.0));
+}
+
 TEST_F(SolvePoseTest, WithoutMatchesThePoseStays) {
   frame_.world_from_camera = walk(7);
   EXPECT_EQ(solve_pose(frame_, known_.map), 0);

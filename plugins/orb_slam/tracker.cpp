@@ -61,6 +61,11 @@ void OrbTracker::Options::visit(OptionVisitor& v) {
      .help = "search radius around the place predicted from the last frame"});
   v("local_window", local_window,
     {.min = 0.5, .unit = "px", .help = "search radius around the place predicted from the map"});
+  v("proving_time", proving_time,
+    {.min = 0,
+     .max = 60,
+     .unit = "s",
+     .help = "until a new landmark counts in full for the pose; 0: at once"});
   keyframe.visit(v);
 }
 
@@ -123,7 +128,7 @@ bool OrbTracker::track_with_motion(const SparseMap& map) {
   int matches = match_projected(current_, targets, prediction, options_.motion_window, 1);
   if (matches < kMinMotionMatches)
     matches = match_projected(current_, targets, prediction, 2 * options_.motion_window, 1);
-  const int inliers = solve_pose(current_, map);
+  const int inliers = solve_pose(current_, map, options_.proving_time);
   current_.drop_outliers();
   return inliers >= kMinMotionInliers && inliers >= kMinMotionShare * matches;
 }
@@ -142,14 +147,15 @@ bool OrbTracker::track_local_map(const SparseMap& map) {
   const Pose prior = current_.world_from_camera;
   const auto temporary =
       std::exchange(current_.temporary, decltype(current_.temporary)(current_.features->size()));
-  inliers_ = solve_pose(current_, map);
+  inliers_ = solve_pose(current_, map, options_.proving_time);
   bridged_ = inliers_ < options_.min_inliers;
   if (!bridged_) return true;
   // A view that the map hardly knows: carried by what the last frame measured, it becomes a key
   // frame and the map knows it from then on.
   current_.temporary = temporary;
   current_.world_from_camera = prior;
-  return current_.reference != kNoId && solve_pose(current_, map) >= options_.min_bridge_points;
+  return current_.reference != kNoId &&
+         solve_pose(current_, map, options_.proving_time) >= options_.min_bridge_points;
 }
 
 void OrbTracker::search_local_map(const SparseMap& map) {

@@ -24,6 +24,7 @@ class OrbTracker final : public Tracker {
     int local_keyframes = 80;
     double motion_window = 15.0;
     double local_window = 3.0;
+    double proving_time = 0.0;
 
     void visit(OptionVisitor& visitor);
   };
