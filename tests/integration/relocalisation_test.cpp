@@ -163,6 +163,15 @@ TEST_F(Relocalisation, AfterBeingCarriedToAPlaceOnTheMap) {
   expect_found_again(replay, 240);
 }
 
+// Of five rooms on the way it is the first.
+TEST_F(Relocalisation, AfterBeingCarriedToAnotherRoom) {
+  Replay replay(
+      recording_of("suite_loop_empty", 600, with_small_images({"source.motion.speed=1.6"})));
+  replay.show(0, 600);
+  replay.show(30, 60);
+  expect_found_again(replay, 600);
+}
+
 // Somebody walks past, a hand's breadth before the lens, and is all that is seen.
 TEST_F(Relocalisation, AfterSomebodyCoveredTheLens) {
   constexpr int kFrames = 180, kCovered = 90;

@@ -54,6 +54,13 @@ inline std::filesystem::file_time_type newest_of_simulator() {
   return newest;
 }
 
+/// Settings of a scene for images of a quarter of the pixels, where a recording is long.
+inline std::vector<std::string> with_small_images(std::vector<std::string> settings) {
+  settings.insert(settings.end(), {"camera.width=320", "camera.height=240", "camera.fx=267.7",
+                                   "camera.fy=269.6", "camera.cx=159.8", "camera.cy=123.6"});
+  return settings;
+}
+
 /// Rendering takes a while and ctest gives each test a process of its own: the recording stays in
 /// the build folder until the simulator is newer.
 inline std::filesystem::path recording_of(const std::string& scene, int frames = kSimulatedFrames,

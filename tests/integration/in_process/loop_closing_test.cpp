@@ -49,9 +49,7 @@ class CheckedLoopCloser final : public LoopCloser {
 
 // Three times as fast as in room_loop, and small images: a sanitizer takes its time.
 fs::path once_around() {
-  return recording_of("room_loop_empty", 460,
-                      {"source.motion.speed=2.6", "camera.width=320", "camera.height=240",
-                       "camera.fx=267.7", "camera.fy=269.6", "camera.cx=159.8", "camera.cy=123.6"});
+  return recording_of("room_loop_empty", 460, with_small_images({"source.motion.speed=2.6"}));
 }
 
 class LoopClosing : public ::testing::TestWithParam<const char*> {};
