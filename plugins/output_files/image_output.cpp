@@ -6,7 +6,7 @@
 #include <cstdio>
 #include <opencv2/imgcodecs.hpp>
 
-#include "output_files/atomic_file.hpp"
+#include "stillpoint/atomic_file.hpp"
 
 namespace stillpoint {
 namespace {

@@ -1,6 +1,7 @@
 // Everything a plugin author includes.
 #pragma once
 
+#include "stillpoint/atomic_file.hpp"
 #include "stillpoint/class_names.hpp"
 #include "stillpoint/contracts/decision.hpp"
 #include "stillpoint/contracts/local_mapper.hpp"

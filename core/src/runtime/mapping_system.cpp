@@ -74,7 +74,7 @@ void MappingSystem::end() {
 
 void MappingSystem::save(const std::filesystem::path& directory) {
   if (!map_backend_.present()) return;
-  map_backend_.call_unmeasured({}, [&](const MapBackend& backend) {
+  map_backend_.call_unmeasured({}, [&](MapBackend& backend) {
     std::filesystem::create_directories(directory);
     backend.save(directory);
   });

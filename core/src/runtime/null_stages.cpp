@@ -62,7 +62,7 @@ class NullMapBackend final : public MapBackend {
  public:
   void integrate(const DenseKeyFrame&) override {}
   void move(std::span<const MovedKeyFrame>) override {}
-  void save(const std::filesystem::path&) const override {}
+  void save(const std::filesystem::path&) override {}
 };
 
 }  // namespace

@@ -225,7 +225,7 @@ class FakeBackend final : public MapBackend {
     for (const MovedKeyFrame& m : moved)
       if (poses.contains(m.keyframe)) poses[m.keyframe] = m.world_from_camera;
   }
-  void save(const std::filesystem::path&) const override { journal_.write("save", 0); }
+  void save(const std::filesystem::path&) override { journal_.write("save", 0); }
 
   std::map<KeyFrameId, Pose> poses;
 

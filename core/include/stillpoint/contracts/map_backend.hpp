@@ -30,8 +30,8 @@ class STILLPOINT_EXPORT MapBackend {
   virtual void integrate(const DenseKeyFrame& keyframe) = 0;
   /// Key frames that were moved by mapping or a loop closure.
   virtual void move(std::span<const MovedKeyFrame> moved) = 0;
-  /// Writes the map's files into an existing folder.
-  virtual void save(const std::filesystem::path& directory) const = 0;
+  /// Writes the map's files into an existing folder; may bring the map up to date before.
+  virtual void save(const std::filesystem::path& directory) = 0;
 };
 
 }  // namespace stillpoint

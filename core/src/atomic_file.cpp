@@ -1,10 +1,11 @@
-#include "output_files/atomic_file.hpp"
+#include "stillpoint/atomic_file.hpp"
 
 #include <cerrno>
 #include <cstring>
-#include <stillpoint/error.hpp>
 #include <system_error>
 #include <utility>
+
+#include "stillpoint/error.hpp"
 
 namespace stillpoint {
 namespace {

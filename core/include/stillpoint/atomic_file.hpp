@@ -4,11 +4,13 @@
 #include <filesystem>
 #include <fstream>
 
+#include "stillpoint/export.hpp"
+
 namespace stillpoint {
 
 /// Written under a temporary name beside its place, and put there by commit(). Without commit(),
 /// nothing is left behind.
-class AtomicFile {
+class STILLPOINT_EXPORT AtomicFile {
  public:
   /// Makes missing folders. Throws Error when the file cannot be made.
   explicit AtomicFile(std::filesystem::path path);

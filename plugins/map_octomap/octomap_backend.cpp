@@ -1,0 +1,161 @@
+#include "map_octomap/octomap_backend.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+
+#include "map_octomap/map_files.hpp"
+
+namespace stillpoint {
+namespace {
+
+float log_odds(double probability) {
+  return static_cast<float>(std::log(probability / (1 - probability)));
+}
+
+OccupancyModel model_of(const OctomapBackend::Options& options) {
+  const bool carves = options.model == OctomapBackend::Options::Model::kRays;
+  return {.hit = log_odds(options.hit),
+          .miss = carves ? log_odds(options.miss) : 0.0F,
+          .min = log_odds(options.least),
+          .max = log_odds(options.most)};
+}
+
+ScanOptions scan_options_of(const OctomapBackend::Options& options) {
+  return {.resolution = options.resolution,
+          .range = options.range,
+          .carve = options.model == OctomapBackend::Options::Model::kRays,
+          .min_weight = static_cast<std::uint8_t>(options.min_weight)};
+}
+
+bool share_any(const std::vector<BrickKey>& some, const std::vector<BrickKey>& others) {
+  for (auto a = some.begin(), b = others.begin(); a != some.end() && b != others.end();) {
+    if (*a == *b) return true;
+    *a < *b ? ++a : ++b;
+  }
+  return false;
+}
+
+void unite(std::vector<BrickKey>& all, const std::vector<BrickKey>& more) {
+  std::vector<BrickKey> united;
+  std::set_union(all.begin(), all.end(), more.begin(), more.end(), std::back_inserter(united));
+  all = std::move(united);
+}
+
+}  // namespace
+
+void OctomapBackend::Options::visit(OptionVisitor& v) {
+  v("resolution", resolution, {.min = 0.005, .max = 1, .unit = "m", .help = "edge of a voxel"});
+  v("range", range, {.min = 0.5, .max = 13, .unit = "m", .help = "surfaces beyond are left out"});
+  v.choice("model", model, {{"rays", Model::kRays}, {"hits", Model::kHits}},
+           {.help = "whether rays carve free space, or only hits count (the paper, eq. 6)"});
+  v("hit", hit, {.min = 0.51, .max = 0.99, .help = "probability of a voxel that a ray ends in"});
+  v("miss", miss, {.min = 0.01, .max = 0.49, .help = "probability of one that a ray goes through"});
+  v("least", least,
+    {.min = 0.001, .max = 0.49, .help = "probability, however often looked through"});
+  v("most", most, {.min = 0.51, .max = 0.999, .help = "probability, however often hit"});
+  v("occupied_above", occupied_above,
+    {.min = 0.01, .max = 0.99, .help = "probability from which a voxel is occupied"});
+  v("tolerance", tolerance,
+    {.min = 0,
+     .max = 10,
+     .unit = "voxels",
+     .help = "that key frames may move without a new fusion"});
+  v("stride", stride,
+    {.min = 0,
+     .max = 32,
+     .unit = "px",
+     .help = "between pixels that are used; 0: by the resolution"});
+  v("min_weight", min_weight,
+    {.min = 1, .max = 255, .help = "of a pixel in the map: less is not mapped"});
+  v.require(range / resolution <= 1000, "range is more than 1000 voxels");
+}
+
+OctomapBackend::OctomapBackend(const Options& options, const StageContext& context)
+    : options_(options),
+      classes_(context.classes),
+      model_(model_of(options)),
+      tree_(options.resolution),
+      scan_(scan_options_of(options)) {
+  tree_.setOccupancyThres(options.occupied_above);
+  tree_.setProbHit(options.hit);
+  tree_.setProbMiss(options.miss);
+  tree_.setClampingThresMin(options.least);
+  tree_.setClampingThresMax(options.most);
+}
+
+void OctomapBackend::integrate(const DenseKeyFrame& keyframe) {
+  index_[keyframe.id] = entries_.size();
+  Entry& entry = entries_.emplace_back(
+      Entry{.images = StoredKeyFrame(keyframe, stride_for(*keyframe.frame->camera)),
+            .world_from_camera = keyframe.world_from_camera,
+            .fused_at = {},
+            .bricks = {}});
+  scan(entry);
+  tree_.add(scan_, scan_.bricks(), model_);
+}
+
+void OctomapBackend::move(std::span<const MovedKeyFrame> moved) {
+  for (const MovedKeyFrame& keyframe : moved)
+    if (const auto found = index_.find(keyframe.keyframe); found != index_.end())
+      entries_[found->second].world_from_camera = keyframe.world_from_camera;
+  std::vector<std::size_t> far;
+  for (std::size_t i = 0; i < entries_.size(); ++i)
+    if (moved_by(entries_[i]) > options_.tolerance * options_.resolution) far.push_back(i);
+  fuse_again(far);
+}
+
+void OctomapBackend::save(const std::filesystem::path& directory) {
+  std::vector<std::size_t> moved;
+  for (std::size_t i = 0; i < entries_.size(); ++i)
+    if (moved_by(entries_[i]) > 0) moved.push_back(i);
+  fuse_again(moved);
+  write_octree(tree_, classes_, directory / "map.ot");
+  write_occupancy(tree_, directory / "map.bt");
+  write_point_cloud(tree_, classes_, directory / "map.ply");
+}
+
+/// Neighbouring pixels are less than half a voxel apart everywhere.
+int OctomapBackend::stride_for(const Camera& camera) const {
+  if (options_.stride > 0) return options_.stride;
+  const double pixel = options_.range / std::min(camera.fx, camera.fy);  // metres, at the end
+  return std::max(1, static_cast<int>(0.5 * options_.resolution / pixel));
+}
+
+void OctomapBackend::scan(Entry& entry) {
+  entry.fused_at = entry.world_from_camera;
+  scan_.scan(entry.images.unpack(entry.fused_at));
+  entry.bricks.clear();
+  for (const ScanBrick* brick : scan_.bricks()) entry.bricks.push_back(brick->key);
+  std::sort(entry.bricks.begin(), entry.bricks.end());
+}
+
+/// What the farthest surface moved at most, in metres.
+double OctomapBackend::moved_by(const Entry& entry) const {
+  const Pose change = entry.fused_at.inverse() * entry.world_from_camera;
+  return change.translation().norm() + options_.range * rotation_angle(change);
+}
+
+void OctomapBackend::fuse_again(std::span<const std::size_t> entries) {
+  if (entries.empty()) return;
+  std::vector<BrickKey> changed;
+  for (const std::size_t i : entries) {
+    unite(changed, entries_[i].bricks);
+    scan(entries_[i]);
+    unite(changed, entries_[i].bricks);
+  }
+  tree_.remove(changed);
+  std::vector<const ScanBrick*> bricks;
+  for (Entry& entry : entries_) {
+    if (!share_any(entry.bricks, changed)) continue;
+    scan_.scan(entry.images.unpack(entry.fused_at));
+    bricks.clear();
+    std::copy_if(scan_.bricks().begin(), scan_.bricks().end(), std::back_inserter(bricks),
+                 [&](const ScanBrick* brick) {
+                   return std::binary_search(changed.begin(), changed.end(), brick->key);
+                 });
+    tree_.add(scan_, bricks, model_);
+  }
+}
+
+}  // namespace stillpoint

@@ -1,0 +1,70 @@
+// Map back end `octomap`: the dense semantic octree (DS-SLAM III-E), which follows its key frames.
+#pragma once
+
+#include <map>
+#include <span>
+#include <vector>
+
+#include "map_octomap/scan_bricks.hpp"
+#include "map_octomap/semantic_octree.hpp"
+#include "map_octomap/stored_keyframe.hpp"
+#include "stillpoint/sdk.hpp"
+
+namespace stillpoint {
+
+/// The map is a function of its key frames, their poses and their order: where some have moved, all
+/// that was ever seen there is fused again, and the rest stays as it is.
+class OctomapBackend final : public MapBackend {
+ public:
+  struct Options {
+    enum class Model {
+      kRays,  ///< free space is carved along every ray
+      kHits   ///< the paper's eq. 6: only what is seen to be occupied counts
+    };
+    double resolution = 0.05;  ///< metres
+    double range = 4.0;        ///< metres
+    Model model = Model::kRays;
+    double hit = 0.7;             ///< probability that a voxel is occupied when it is hit
+    double miss = 0.4;            ///< likewise, when it is looked through
+    double least = 0.12;          ///< probabilities are clamped, so that things may appear
+    double most = 0.97;           ///< and disappear again
+    double occupied_above = 0.5;  ///< probability
+    double tolerance = 0.25;      ///< voxels that key frames may move before they are fused again
+    int stride = 0;               ///< px; 0 = by resolution and range
+    int min_weight = 128;         ///< of StaticWeights::map
+
+    void visit(OptionVisitor& visitor);
+  };
+
+  OctomapBackend(const Options& options, const StageContext& context);
+
+  /// Throws Error(kData) for a pose that is out of the octree's reach.
+  void integrate(const DenseKeyFrame& keyframe) override;
+  void move(std::span<const MovedKeyFrame> moved) override;
+  void save(const std::filesystem::path& directory) override;
+
+  const SemanticOctree& tree() const { return tree_; }
+
+ private:
+  struct Entry {
+    StoredKeyFrame images;
+    Pose world_from_camera = Pose::Identity();  // as it is now
+    Pose fused_at = Pose::Identity();
+    std::vector<BrickKey> bricks;  // that it has seen, sorted
+  };
+
+  int stride_for(const Camera& camera) const;
+  void scan(Entry& entry);
+  double moved_by(const Entry& entry) const;
+  void fuse_again(std::span<const std::size_t> entries);
+
+  Options options_;
+  ClassNames classes_;
+  OccupancyModel model_;
+  SemanticOctree tree_;
+  ScanBricks scan_;
+  std::vector<Entry> entries_;  // in the order in which they came
+  std::map<KeyFrameId, std::size_t> index_;
+};
+
+}  // namespace stillpoint

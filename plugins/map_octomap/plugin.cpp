@@ -1,0 +1,5 @@
+#include "map_octomap/octomap_backend.hpp"
+
+STILLPOINT_PLUGIN(map_octomap, "0.1.0",
+                  stillpoint::provide<stillpoint::MapBackend, stillpoint::OctomapBackend>(
+                      "octomap", "dense semantic octree that follows its key frames (OctoMap)"));

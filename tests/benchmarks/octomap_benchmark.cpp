@@ -1,0 +1,112 @@
+// Integration of key frames into the octree, beside OctoMap's own: every thirtieth frame of the
+// recordings in the folder STILLPOINT_RECORDINGS, all pixels, 4 m.
+#include <benchmark/benchmark.h>
+#include <octomap/ColorOcTree.h>
+
+#include <filesystem>
+#include <string>
+
+#include "benchmarks/true_recording.hpp"
+#include "map_octomap/semantic_octree.hpp"
+
+namespace stillpoint {
+namespace {
+
+constexpr double kRange = 4.0;  // metres
+constexpr int kEvery = 30;
+
+std::vector<DenseKeyFrame> keyframes_of(const std::filesystem::path& folder) {
+  std::vector<DenseKeyFrame> keyframes;
+  for (const TrueFrame& seen : read_true_frames(folder, kEvery)) {
+    auto frame = std::make_shared<Frame>(*seen.frame);
+    cv::cvtColor(frame->gray, frame->bgr, cv::COLOR_GRAY2BGR);
+    keyframes.push_back({.frame = frame, .world_from_camera = seen.world_from_camera});
+  }
+  return keyframes;
+}
+
+void ours(benchmark::State& state, const std::filesystem::path& folder, double resolution) {
+  const auto keyframes = keyframes_of(folder);
+  std::size_t nodes = 0, bytes = 0;
+  for (auto _ : state) {
+    SemanticOctree tree(resolution);
+    ScanBricks scan({.resolution = resolution, .range = kRange});
+    for (const DenseKeyFrame& keyframe : keyframes) {
+      scan.scan(keyframe);
+      tree.add(scan, scan.bricks(), {});
+    }
+    state.PauseTiming();
+    nodes = tree.size();
+    bytes = tree.memoryUsage();
+    tree.clear();
+    state.ResumeTiming();
+  }
+  state.counters["ms_per_keyframe"] = benchmark::Counter(
+      1e-3 * static_cast<double>(keyframes.size()),
+      benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
+  state.counters["nodes"] = static_cast<double>(nodes);
+  state.counters["MiB"] = static_cast<double>(bytes) / (1 << 20);
+}
+
+void scans_only(benchmark::State& state, const std::filesystem::path& folder, double resolution) {
+  const auto keyframes = keyframes_of(folder);
+  ScanBricks scan({.resolution = resolution, .range = kRange});
+  for (auto _ : state)
+    for (const DenseKeyFrame& keyframe : keyframes) scan.scan(keyframe);
+  state.counters["ms_per_keyframe"] = benchmark::Counter(
+      1e-3 * static_cast<double>(keyframes.size()),
+      benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
+}
+
+void octomaps(benchmark::State& state, const std::filesystem::path& folder, double resolution) {
+  struct Cloud {
+    octomap::Pointcloud points;
+    octomap::point3d eye;
+  };
+  std::vector<Cloud> clouds;
+  for (const DenseKeyFrame& keyframe : keyframes_of(folder)) {
+    Cloud& cloud = clouds.emplace_back();
+    const Pose& pose = keyframe.world_from_camera;
+    const Eigen::Vector3f eye = pose.translation().cast<float>();
+    cloud.eye = {eye.x(), eye.y(), eye.z()};
+    const cv::Mat& depth = keyframe.frame->depth;
+    for (int v = 0; v < depth.rows; ++v)
+      for (int u = 0; u < depth.cols; ++u) {
+        const float z = depth.at<float>(v, u);
+        if (z <= 0) continue;
+        const Eigen::Vector3f p = (pose * keyframe.frame->camera->unproject(u, v, z)).cast<float>();
+        cloud.points.push_back(p.x(), p.y(), p.z());
+      }
+  }
+  for (auto _ : state) {
+    octomap::ColorOcTree tree(resolution);
+    for (const Cloud& cloud : clouds)
+      tree.insertPointCloud(cloud.points, cloud.eye, kRange, false, true);
+    state.PauseTiming();
+    tree.clear();
+    state.ResumeTiming();
+  }
+  state.counters["ms_per_keyframe"] = benchmark::Counter(
+      1e-3 * static_cast<double>(clouds.size()),
+      benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
+}
+
+[[maybe_unused]] const bool kRegistered = [] {
+  for (const auto& folder : recordings_to_measure())
+    for (const double resolution : {0.05, 0.02}) {
+      const std::string name =
+          folder.filename().string() + "/" + std::to_string(std::lround(100 * resolution)) + "cm/";
+      const auto add = [&](const std::string& what, auto* function) {
+        benchmark::RegisterBenchmark((name + what).c_str(), [=](benchmark::State& state) {
+          function(state, folder, resolution);
+        })->Unit(benchmark::kMillisecond);
+      };
+      add("scan", scans_only);
+      add("ours", ours);
+      add("octomap", octomaps);
+    }
+  return true;
+}();
+
+}  // namespace
+}  // namespace stillpoint
