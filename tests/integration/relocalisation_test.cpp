@@ -107,8 +107,9 @@ void expect_found(const Trajectory& estimate, const Return& there) {
   }
 }
 
+/// Of the first image: the truth begins before it.
 Pose first_pose(const fs::path& recording) {
-  return read_trajectory(recording / "groundtruth.txt").poses.front().world_from_camera;
+  return pose_at(read_trajectory(recording / "groundtruth.txt"), kStart);
 }
 
 class Relocalisation : public ::testing::Test {

@@ -38,15 +38,18 @@ MappingSystem::MappingSystem(Stage<LocalMapper> local_mapper, Stage<LoopCloser> 
                        else
                          correct(std::get<Correction>(item));
                      }),
-      loop_closing_(loop_closer_.present() ? mode : Mode::kInline, kQueriesWaiting, stop,
-                    [this](const LoopItem& item) {
-                      if (const auto* query = std::get_if<LoopQuery>(&item))
-                        close_loop(*query);
-                      else
-                        adjust(std::get<AdjustRequest>(item));
-                    }),
-      dense_mapping_(map_backend_.present() ? mode : Mode::kInline, kDenseWaiting, stop,
-                     [this](const DenseItem& item) { map_densely(item); }),
+      loop_closing_(
+          loop_closer_.present() ? mode : Mode::kInline, kQueriesWaiting, stop,
+          [this](const LoopItem& item) {
+            if (const auto* query = std::get_if<LoopQuery>(&item))
+              close_loop(*query);
+            else
+              adjust(std::get<AdjustRequest>(item));
+          },
+          ThreadPriority::kBackground),
+      dense_mapping_(
+          map_backend_.present() ? mode : Mode::kInline, kDenseWaiting, stop,
+          [this](const DenseItem& item) { map_densely(item); }, ThreadPriority::kBackground),
       hurry_on_stop_(stop.token(), [this] {
         if (!threaded_) return;
         mapping_hurry_.request();

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <latch>
 #include <stdexcept>
 #include <thread>
@@ -135,6 +136,20 @@ TEST(Worker, AHandlerMayPushToItself) {
   worker.push(5);
   worker.wait_idle();
   EXPECT_EQ(handled, 6);
+}
+
+TEST(WorkerPriority, IsThatOfTheWorkersThreadAlone) {
+  const auto nice_value = [] { return getpriority(PRIO_PROCESS, static_cast<id_t>(gettid())); };
+  const int mine = nice_value();
+  StopSignal stop;
+  int background = 0;
+  Worker<int> worker(
+      Mode::kThreaded, 1, stop, [&](int) { background = nice_value(); },
+      ThreadPriority::kBackground);
+  worker.push(1);
+  worker.end();
+  EXPECT_EQ(background, std::min(mine + 10, 19));
+  EXPECT_EQ(nice_value(), mine);
 }
 
 }  // namespace

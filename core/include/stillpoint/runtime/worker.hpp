@@ -10,6 +10,7 @@
 #include "stillpoint/runtime/bounded_queue.hpp"
 #include "stillpoint/runtime/pipeline_config.hpp"
 #include "stillpoint/runtime/stop_signal.hpp"
+#include "stillpoint/runtime/thread_priority.hpp"
 
 namespace stillpoint {
 
@@ -22,12 +23,13 @@ class Worker {
  public:
   using Handler = std::function<void(T)>;
 
-  Worker(Mode mode, std::size_t capacity, StopSignal& stop, Handler handler)
+  Worker(Mode mode, std::size_t capacity, StopSignal& stop, Handler handler,
+         ThreadPriority priority = ThreadPriority::kNormal)
       : threaded_(mode == Mode::kThreaded),
         stop_(stop),
         handler_(std::move(handler)),
         queue_(capacity) {
-    if (threaded_) thread_ = std::jthread([this] { work(); });
+    if (threaded_) thread_ = std::jthread([this, priority] { work(priority); });
   }
   ~Worker() { end(); }
   Worker(const Worker&) = delete;
@@ -70,7 +72,8 @@ class Worker {
   }
 
  private:
-  void work() {
+  void work(ThreadPriority priority) {
+    set_priority(priority);
     try {
       while (auto item = queue_.pop(stop_.token())) handler_(std::move(*item));
     } catch (...) {
