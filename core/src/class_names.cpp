@@ -68,4 +68,11 @@ int class_id(const ClassNames& classes, const std::string& name) {
                                                   : "; the segmenter has: " + join(classes)));
 }
 
+std::array<std::uint8_t, 3> color_of_class(std::uint8_t id) {
+  std::array<std::uint8_t, 3> rgb{};
+  for (unsigned bit = 0; bit < 8; ++bit)
+    rgb[bit % 3] = static_cast<std::uint8_t>(rgb[bit % 3] | (id >> bit & 1U) << (7 - bit / 3));
+  return rgb;
+}
+
 }  // namespace stillpoint

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <utility>
 
 namespace stillpoint {
 
@@ -18,7 +19,7 @@ class ClassBelief {
   void add(std::uint8_t label) {
     int place = 0;
     while (place < kClasses && counts_[place] > 0 && labels_[place] != label) ++place;
-    if (place == kClasses) labels_[--place] = label;
+    if (place == kClasses) --place;
     labels_[place] = label;
     if (++counts_[place] == kFull)
       for (std::uint8_t& count : counts_) count /= 2;

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "stillpoint/atomic_file.hpp"
+#include "stillpoint/point_cloud_file.hpp"
 
 namespace stillpoint {
 namespace {
@@ -26,19 +27,7 @@ void for_each_occupied_voxel(const SemanticOctree& tree, Function&& function) {
   }
 }
 
-template <typename Value>
-void put(std::string& bytes, Value value) {
-  bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
-}
-
 }  // namespace
-
-std::array<std::uint8_t, 3> color_of_class(std::uint8_t label) {
-  std::array<std::uint8_t, 3> rgb{};
-  for (unsigned bit = 0; bit < 8; ++bit)
-    rgb[bit % 3] = static_cast<std::uint8_t>(rgb[bit % 3] | (label >> bit & 1U) << (7 - bit / 3));
-  return rgb;
-}
 
 void write_octree(const SemanticOctree& tree, const ClassNames& classes,
                   const std::filesystem::path& file) {
@@ -49,8 +38,8 @@ void write_octree(const SemanticOctree& tree, const ClassNames& classes,
     names["colors"].push_back(color_of_class(static_cast<std::uint8_t>(label)));
   std::string bytes = "# stillpoint classes 1\n" + names.dump() + '\n';
   for (auto leaf = tree.begin_leafs(); leaf != tree.end_leafs(); ++leaf) {
-    put(bytes, leaf->classes().best());
-    put(bytes, static_cast<std::uint8_t>(std::lround(255 * leaf->classes().confidence())));
+    bytes.push_back(static_cast<char>(leaf->classes().best()));
+    bytes.push_back(static_cast<char>(std::lround(255 * leaf->classes().confidence())));
   }
   out.stream() << bytes;
   out.commit();
@@ -64,25 +53,14 @@ void write_occupancy(const SemanticOctree& tree, const std::filesystem::path& fi
 
 void write_point_cloud(const SemanticOctree& tree, const ClassNames& classes,
                        const std::filesystem::path& file) {
-  std::string points;
-  std::size_t count = 0;
+  std::vector<LabelledPoint> points;
   for_each_occupied_voxel(tree, [&](const octomap::point3d& at, const SemanticVoxel& voxel) {
-    ++count;
-    for (unsigned axis = 0; axis < 3; ++axis) put(points, at(axis));
-    put(points, voxel.getColor().r);
-    put(points, voxel.getColor().g);
-    put(points, voxel.getColor().b);
-    put(points, voxel.classes().best());
+    const auto color = voxel.getColor();
+    points.push_back({.position = {at.x(), at.y(), at.z()},
+                      .rgb = {color.r, color.g, color.b},
+                      .label = voxel.classes().best()});
   });
-  AtomicFile out(file);
-  out.stream() << "ply\nformat binary_little_endian 1.0\n";
-  for (std::size_t label = 0; label < classes.size(); ++label)
-    out.stream() << "comment label " << label << ' ' << classes[label] << '\n';
-  out.stream() << "element vertex " << count
-               << "\nproperty float x\nproperty float y\nproperty float z\nproperty uchar red\n"
-                  "property uchar green\nproperty uchar blue\nproperty uchar label\nend_header\n"
-               << points;
-  out.commit();
+  write_ply(points, classes, file);
 }
 
 }  // namespace stillpoint

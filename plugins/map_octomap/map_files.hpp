@@ -16,12 +16,8 @@ void write_octree(const SemanticOctree& tree, const ClassNames& classes,
                   const std::filesystem::path& file);
 /// OctoMap's .bt file: occupied or free.
 void write_occupancy(const SemanticOctree& tree, const std::filesystem::path& file);
-/// Binary PLY: x, y, z (float, metres, middle of the voxel), red, green, blue, label (uchar) of
-/// each occupied voxel; labels are named in comments.
+/// The occupied voxels, by write_ply().
 void write_point_cloud(const SemanticOctree& tree, const ClassNames& classes,
                        const std::filesystem::path& file);
-
-/// The usual colour of a class (PASCAL VOC's, by the bits of its id), 8 bits each.
-std::array<std::uint8_t, 3> color_of_class(std::uint8_t label);
 
 }  // namespace stillpoint

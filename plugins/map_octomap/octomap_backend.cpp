@@ -68,7 +68,7 @@ void OctomapBackend::Options::visit(OptionVisitor& v) {
      .help = "between pixels that are used; 0: by the resolution"});
   v("min_weight", min_weight,
     {.min = 1, .max = 255, .help = "of a pixel in the map: less is not mapped"});
-  v.require(range / resolution <= 1000, "range is more than 1000 voxels");
+  v.require(range / resolution <= 500, "range is more than 500 voxels");
 }
 
 OctomapBackend::OctomapBackend(const Options& options, const StageContext& context)

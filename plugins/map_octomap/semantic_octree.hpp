@@ -50,7 +50,7 @@ class SemanticVoxel : public octomap::ColorOcTreeNode {
 /// The file type is that of octomap::ColorOcTree, which reads and shows it.
 class SemanticOctree : public octomap::OccupancyOcTreeBase<SemanticVoxel> {
  public:
-  /// Edge of a voxel in metres.
+  /// `edge` of a voxel in metres.
   explicit SemanticOctree(double edge) : octomap::OccupancyOcTreeBase<SemanticVoxel>(edge) {}
 
   SemanticOctree* create() const override { return new SemanticOctree(resolution); }
@@ -58,8 +58,8 @@ class SemanticOctree : public octomap::OccupancyOcTreeBase<SemanticVoxel> {
 
   /// Adds a scan made at this tree's resolution: what it hit becomes more, what it passed less
   /// occupied. The same as OctoMap's insertPointCloud() with discretised points, but whole cubes of
-  /// free space at once. Uniform parts are pruned on the way.
-  /// `bricks` are some of the scan's, in their order.
+  /// free space at once; uniform parts are pruned on the way. `bricks` are some of the scan's, in
+  /// their order.
   void add(const ScanBricks& scan, std::span<const ScanBrick* const> bricks,
            const OccupancyModel& model);
   /// Forgets all that is known within some bricks.

@@ -45,50 +45,71 @@ __attribute__((target_clones("avx2", "default"))) void march(Rays& rays, std::in
   rays.at = at;
 }
 
+// Eight rays are always under way. Each lane has a part of the ends of its own: rays side by side
+// would wait for each other's bytes.
+class Marcher {
+ public:
+  Marcher(const VoxelBits& bits, const Eigen::Vector3f& origin,
+          std::span<const VoxelBits::Index> ends)
+      : bits_(bits),
+        ends_(ends),
+        origin_(origin),
+        start_{static_cast<int>(origin.x()), static_cast<int>(origin.y()),
+               static_cast<int>(origin.z())} {
+    for (int lane = 0; lane < kLanes; ++lane) {
+      following_[lane] = ends.size() * lane / kLanes;
+      last_[lane] = ends.size() * (lane + 1) / kLanes;
+      refill(lane);
+    }
+  }
+
+  void run(std::uint8_t* bytes) {
+    for (;;) {
+      const std::int32_t steps = *std::min_element(left_.begin(), left_.end());
+      if (steps > kMostSteps) return;
+      march(rays_, steps, bytes);
+      for (int lane = 0; lane < kLanes; ++lane)
+        if ((left_[lane] -= steps) == 0) refill(lane);
+    }
+  }
+
+ private:
+  void refill(int lane) {
+    while (left_[lane] == 0 && following_[lane] < last_[lane])
+      begin_ray(lane, bits_.place(ends_[following_[lane]++]));
+    if (left_[lane] > 0) return;
+    for (Ints& step : rays_.step) step[lane] = 0;
+    rays_.at[lane] = bits_.nowhere();
+    left_[lane] = kIdle;
+  }
+
+  void begin_ray(int lane, const std::array<int, 3>& end) {
+    const std::array<std::int32_t, 3> stride = {bits_.edge() * bits_.edge(), bits_.edge(), 1};
+    for (int axis = 0; axis < 3; ++axis) {
+      const float way = static_cast<float>(end[axis]) + 0.5F - origin_[axis];
+      const float border = static_cast<float>(start_[axis] + (way > 0 ? 1 : 0));
+      const float width = 1.0F / std::max(std::abs(way), 1e-6F);
+      rays_.width[axis][lane] = width;
+      rays_.next[axis][lane] = std::abs(border - origin_[axis]) * width;
+      rays_.step[axis][lane] = way > 0 ? stride[axis] : -stride[axis];
+      left_[lane] += std::abs(end[axis] - start_[axis]);
+    }
+    rays_.at[lane] = bits_.index(start_[0], start_[1], start_[2]);
+  }
+
+  const VoxelBits& bits_;
+  std::span<const VoxelBits::Index> ends_;
+  Eigen::Vector3f origin_;
+  std::array<int, 3> start_;
+  Rays rays_{};
+  std::array<std::size_t, kLanes> following_{}, last_{};  // of each lane's ends
+  std::array<std::int32_t, kLanes> left_{};               // steps
+};
+
 }  // namespace
 
 void VoxelBits::set_rays(const Eigen::Vector3f& origin, std::span<const Index> ends) {
-  const std::array<int, 3> start = {static_cast<int>(origin.x()), static_cast<int>(origin.y()),
-                                    static_cast<int>(origin.z())};
-  const std::array<std::int32_t, 3> stride = {edge_ * edge_, edge_, 1};
-  const Index nowhere = stride[0] * edge_;
-  Rays rays{};
-  // Each lane has a part of the ends of its own: rays side by side would wait for each other's
-  // bytes.
-  std::array<std::size_t, kLanes> following{}, last{};
-  std::array<std::int32_t, kLanes> left{};  // steps
-  const auto begin_ray = [&](int lane, const std::array<int, 3>& end) {
-    for (int axis = 0; axis < 3; ++axis) {
-      const float way = static_cast<float>(end[axis]) + 0.5F - origin[axis];
-      const float border = static_cast<float>(start[axis] + (way > 0 ? 1 : 0));
-      const float width = 1.0F / std::max(std::abs(way), 1e-6F);
-      rays.width[axis][lane] = width;
-      rays.next[axis][lane] = std::abs(border - origin[axis]) * width;
-      rays.step[axis][lane] = way > 0 ? stride[axis] : -stride[axis];
-      left[lane] += std::abs(end[axis] - start[axis]);
-    }
-    rays.at[lane] = index(start[0], start[1], start[2]);
-  };
-  const auto refill = [&](int lane) {
-    while (left[lane] == 0 && following[lane] < last[lane])
-      begin_ray(lane, place(ends[following[lane]++]));
-    if (left[lane] > 0) return;
-    for (Ints& step : rays.step) step[lane] = 0;
-    rays.at[lane] = nowhere;
-    left[lane] = kIdle;
-  };
-  for (int lane = 0; lane < kLanes; ++lane) {
-    following[lane] = ends.size() * lane / kLanes;
-    last[lane] = ends.size() * (lane + 1) / kLanes;
-    refill(lane);
-  }
-  for (;;) {
-    const std::int32_t steps = *std::min_element(left.begin(), left.end());
-    if (steps > kMostSteps) return;
-    march(rays, steps, bytes_.data());
-    for (int lane = 0; lane < kLanes; ++lane)
-      if ((left[lane] -= steps) == 0) refill(lane);
-  }
+  Marcher(*this, origin, ends).run(bytes_.data());
 }
 
 }  // namespace stillpoint

@@ -11,7 +11,7 @@
 
 namespace stillpoint {
 
-/// A cube of `edge`³ voxels; z runs fastest. `edge` must be a multiple of 64.
+/// A cube of `edge`³ voxels; z runs fastest. `edge` must be a multiple of 64, at most 1280.
 class VoxelBits {
  public:
   using Index = std::int32_t;
@@ -21,6 +21,8 @@ class VoxelBits {
 
   int edge() const { return edge_; }
   Index index(int x, int y, int z) const { return (x * edge_ + y) * edge_ + z; }
+  /// One past all voxels; its bit may be set, and means nothing.
+  Index nowhere() const { return edge_ * edge_ * edge_; }
   std::array<int, 3> place(Index index) const {
     return {index / (edge_ * edge_), index / edge_ % edge_, index % edge_};
   }
@@ -48,7 +50,7 @@ class VoxelBits {
 
  private:
   int edge_;
-  std::vector<std::uint8_t> bytes_;  // one more, where rays that have ended set bits
+  std::vector<std::uint8_t> bytes_;  // one more, of nowhere()
 };
 
 }  // namespace stillpoint

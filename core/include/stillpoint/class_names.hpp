@@ -1,6 +1,8 @@
 // What class ids mean.
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -21,5 +23,8 @@ STILLPOINT_EXPORT ClassNames classes_of(const std::vector<std::string>& option);
 
 /// The id of a class. Throws Error(kUsage) that suggests a name when there is none.
 STILLPOINT_EXPORT int class_id(const ClassNames& classes, const std::string& name);
+
+/// Red, green and blue of a class in pictures and maps: PASCAL VOC's, from the bits of its id.
+STILLPOINT_EXPORT std::array<std::uint8_t, 3> color_of_class(std::uint8_t id);
 
 }  // namespace stillpoint

@@ -19,5 +19,6 @@
 #include "stillpoint/objects.hpp"
 #include "stillpoint/options.hpp"
 #include "stillpoint/plugin.hpp"
+#include "stillpoint/point_cloud_file.hpp"
 #include "stillpoint/pose_math.hpp"
 #include "stillpoint/rigid_motion.hpp"

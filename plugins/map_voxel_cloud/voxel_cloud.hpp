@@ -1,0 +1,45 @@
+// Points gathered into voxels.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <unordered_map>
+#include <vector>
+
+#include "stillpoint/point_cloud_file.hpp"
+
+namespace stillpoint {
+
+/// A point that stands for several.
+struct VoxelPoint {
+  LabelledPoint mean;  ///< its label is that of most, by the majority vote of Boyer and Moore
+  std::uint32_t count = 0;
+};
+
+/// A hash of voxels: mean position and colour, most frequent class, number of points. Its points
+/// come out in the order in which their voxels were met first.
+class VoxelCloud {
+ public:
+  /// Edge of a voxel in metres.
+  explicit VoxelCloud(double resolution) : per_metre_(static_cast<float>(1 / resolution)) {}
+
+  /// `count` points at once. Points that are not finite or out of reach (2²⁰ voxels) are left out.
+  void add(const LabelledPoint& point, std::uint32_t count = 1);
+  std::vector<VoxelPoint> points() const;
+
+ private:
+  struct Sum {
+    Eigen::Vector3d position = Eigen::Vector3d::Zero();
+    Eigen::Vector3d rgb = Eigen::Vector3d::Zero();
+    std::uint32_t count = 0;
+    std::uint32_t votes = 0;
+    std::uint8_t label = 0;
+  };
+
+  float per_metre_;
+  std::unordered_map<std::uint64_t, std::uint32_t> index_;  // of sums_, by voxel
+  std::vector<Sum> sums_;
+};
+
+}  // namespace stillpoint
