@@ -115,13 +115,14 @@ void OctomapBackend::save(const std::filesystem::path& directory) {
   write_point_cloud(tree_, classes_, directory / "map.ply");
 }
 
-/// Neighbouring pixels are less than half a voxel apart everywhere.
+// Neighbouring pixels are less than half a voxel apart everywhere.
 int OctomapBackend::stride_for(const Camera& camera) const {
   if (options_.stride > 0) return options_.stride;
   const double pixel = options_.range / std::min(camera.fx, camera.fy);  // metres, at the end
   return std::max(1, static_cast<int>(0.5 * options_.resolution / pixel));
 }
 
+// What is kept is what is fused, so that fusing it again gives the same.
 void OctomapBackend::scan(Entry& entry) {
   entry.fused_at = entry.world_from_camera;
   scan_.scan(entry.images.unpack(entry.fused_at));
@@ -130,7 +131,7 @@ void OctomapBackend::scan(Entry& entry) {
   std::sort(entry.bricks.begin(), entry.bricks.end());
 }
 
-/// What the farthest surface moved at most, in metres.
+// What the farthest surface moved at most, in metres.
 double OctomapBackend::moved_by(const Entry& entry) const {
   const Pose change = entry.fused_at.inverse() * entry.world_from_camera;
   return change.translation().norm() + options_.range * rotation_angle(change);
@@ -139,6 +140,8 @@ double OctomapBackend::moved_by(const Entry& entry) const {
 void OctomapBackend::fuse_again(std::span<const std::size_t> entries) {
   if (entries.empty()) return;
   std::vector<BrickKey> changed;
+  // These are scanned twice: the bricks that they see now must be known before anything is fused,
+  // and keeping the scans would take up to a megabyte each.
   for (const std::size_t i : entries) {
     unite(changed, entries_[i].bricks);
     scan(entries_[i]);

@@ -91,16 +91,15 @@ void ScanBricks::begin(const DenseKeyFrame& keyframe) {
 
 void ScanBricks::find_ends(const DenseKeyFrame& keyframe) {
   const Frame& frame = *keyframe.frame;
-  const bool labelled = keyframe.segmentation && keyframe.segmentation->known();
-  const bool weighted = keyframe.weights && !keyframe.weights->map.empty();
+  const cv::Mat labels = keyframe.labels(), weights = keyframe.map_weights();
   VoxelBits::Index last = -1;  // neighbours share their voxel
   Sum* sum = nullptr;
   for (int v = 0; v < frame.depth.rows; ++v) {
     find_voxels(keyframe.world_from_camera, frame, v);
     const auto* depth = frame.depth.ptr<float>(v);
     const auto* bgr = frame.bgr.ptr<std::uint8_t>(v);
-    const auto* label = labelled ? keyframe.segmentation->labels.ptr<std::uint8_t>(v) : nullptr;
-    const auto* weight = weighted ? keyframe.weights->map.ptr<std::uint8_t>(v) : nullptr;
+    const auto* label = labels.empty() ? nullptr : labels.ptr<std::uint8_t>(v);
+    const auto* weight = weights.empty() ? nullptr : weights.ptr<std::uint8_t>(v);
     for (int u = 0; u < frame.depth.cols; ++u) {
       if (!(depth[u] > 0)) continue;
       const VoxelBits::Index voxel = row_.voxel[u];
@@ -157,15 +156,11 @@ void ScanBricks::Sum::add(const std::uint8_t* bgr, std::uint8_t seen) {
     ++pixels;
     for (int i = 0; i < 3; ++i) rgb[i] = static_cast<std::uint16_t>(rgb[i] + bgr[2 - i]);
   }
-  if (votes == 0) label = seen;
-  if (label != seen)
-    --votes;
-  else if (votes < UINT16_MAX)
-    ++votes;
+  label.add(seen);
 }
 
 VoxelLook ScanBricks::Sum::look() const {
-  VoxelLook look{.label = label};
+  VoxelLook look{.label = label.winner};
   for (int i = 0; i < 3; ++i) look.rgb[i] = static_cast<std::uint8_t>(rgb[i] / pixels);
   return look;
 }

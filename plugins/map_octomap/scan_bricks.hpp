@@ -9,6 +9,7 @@
 
 #include "map_octomap/voxel_bits.hpp"
 #include "stillpoint/contracts/map_backend.hpp"
+#include "stillpoint/majority_vote.hpp"
 
 namespace stillpoint {
 
@@ -68,8 +69,7 @@ class ScanBricks {
   struct Sum {
     std::uint16_t pixels = 0;
     std::array<std::uint16_t, 3> rgb{};
-    std::uint8_t label = 0;  // majority vote of Boyer and Moore
-    std::uint16_t votes = 0;
+    MajorityVote label;
 
     void add(const std::uint8_t* bgr, std::uint8_t seen);
     VoxelLook look() const;

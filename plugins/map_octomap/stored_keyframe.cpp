@@ -35,7 +35,7 @@ StoredKeyFrame::StoredKeyFrame(const DenseKeyFrame& keyframe, int stride)
       time_(keyframe.frame->time),
       camera_(reduced(*keyframe.frame->camera, stride)) {
   const Frame& frame = *keyframe.frame;
-  const bool labelled = keyframe.segmentation && keyframe.segmentation->known();
+  const cv::Mat labels = keyframe.labels(), weights = keyframe.map_weights();
   const std::size_t count = static_cast<std::size_t>(camera_->width) * camera_->height;
   std::string planes(kPlanes * count, '\0');
   const auto put = [&](Plane plane, std::size_t pixel, int value) {
@@ -56,10 +56,8 @@ StoredKeyFrame::StoredKeyFrame(const DenseKeyFrame& keyframe, int stride)
       put(kBlue, pixel, bgr[0]);
       put(kGreen, pixel, bgr[1]);
       put(kRed, pixel, bgr[2]);
-      put(kLabel, pixel, labelled ? keyframe.segmentation->labels.at<std::uint8_t>(v, u) : 0);
-      const float column = static_cast<float>(u), row = static_cast<float>(v);
-      put(kWeight, pixel,
-          keyframe.weights ? StaticWeights::at(keyframe.weights->map, column, row) : 255);
+      put(kLabel, pixel, labels.empty() ? 0 : labels.at<std::uint8_t>(v, u));
+      put(kWeight, pixel, weights.empty() ? 255 : weights.at<std::uint8_t>(v, u));
     }
   }
   packed_.resize(ZSTD_compressBound(planes.size()));

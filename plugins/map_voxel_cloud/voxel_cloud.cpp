@@ -22,15 +22,7 @@ void VoxelCloud::add(const LabelledPoint& point, std::uint32_t count) {
   sum.position += count * point.position.cast<double>();
   sum.rgb += count * Eigen::Vector3d(point.rgb[0], point.rgb[1], point.rgb[2]);
   sum.count += count;
-  if (point.label == sum.label || sum.votes == 0) {
-    sum.label = point.label;
-    sum.votes += count;
-  } else if (count > sum.votes) {
-    sum.label = point.label;
-    sum.votes = count - sum.votes;
-  } else {
-    sum.votes -= count;
-  }
+  sum.label.add(point.label, count);
 }
 
 std::vector<VoxelPoint> VoxelCloud::points() const {
@@ -38,7 +30,8 @@ std::vector<VoxelPoint> VoxelCloud::points() const {
   points.reserve(sums_.size());
   for (const Sum& sum : sums_) {
     const Eigen::Vector3d rgb = sum.rgb / sum.count;
-    LabelledPoint mean{.position = (sum.position / sum.count).cast<float>(), .label = sum.label};
+    LabelledPoint mean{.position = (sum.position / sum.count).cast<float>(),
+                       .label = sum.label.winner};
     for (int i = 0; i < 3; ++i) mean.rgb[i] = static_cast<std::uint8_t>(std::lround(rgb[i]));
     points.push_back({mean, sum.count});
   }

@@ -7,13 +7,14 @@
 #include <unordered_map>
 #include <vector>
 
+#include "stillpoint/majority_vote.hpp"
 #include "stillpoint/point_cloud_file.hpp"
 
 namespace stillpoint {
 
 /// A point that stands for several.
 struct VoxelPoint {
-  LabelledPoint mean;  ///< its label is that of most, by the majority vote of Boyer and Moore
+  LabelledPoint mean;  ///< its label is that of their majority
   std::uint32_t count = 0;
 };
 
@@ -33,8 +34,7 @@ class VoxelCloud {
     Eigen::Vector3d position = Eigen::Vector3d::Zero();
     Eigen::Vector3d rgb = Eigen::Vector3d::Zero();
     std::uint32_t count = 0;
-    std::uint32_t votes = 0;
-    std::uint8_t label = 0;
+    MajorityVote label;
   };
 
   float per_metre_;

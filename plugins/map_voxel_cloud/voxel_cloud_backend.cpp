@@ -12,14 +12,13 @@ void VoxelCloudBackend::Options::visit(OptionVisitor& v) {
 
 void VoxelCloudBackend::integrate(const DenseKeyFrame& keyframe) {
   const Frame& frame = *keyframe.frame;
-  const bool labelled = keyframe.segmentation && keyframe.segmentation->known();
-  const bool weighted = keyframe.weights && !keyframe.weights->map.empty();
+  const cv::Mat labels = keyframe.labels(), weights = keyframe.map_weights();
   VoxelCloud cloud(options_.resolution);
   for (int v = 0; v < frame.depth.rows; ++v) {
     const auto* depth = frame.depth.ptr<float>(v);
     const auto* bgr = frame.bgr.ptr<cv::Vec3b>(v);
-    const auto* label = labelled ? keyframe.segmentation->labels.ptr<std::uint8_t>(v) : nullptr;
-    const auto* weight = weighted ? keyframe.weights->map.ptr<std::uint8_t>(v) : nullptr;
+    const auto* label = labels.empty() ? nullptr : labels.ptr<std::uint8_t>(v);
+    const auto* weight = weights.empty() ? nullptr : weights.ptr<std::uint8_t>(v);
     for (int u = 0; u < frame.depth.cols; ++u) {
       if (!(depth[u] > 0) || depth[u] > options_.range) continue;
       if (weight && weight[u] < options_.min_weight) continue;

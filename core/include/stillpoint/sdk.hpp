@@ -15,6 +15,7 @@
 #include "stillpoint/contracts/tracker.hpp"
 #include "stillpoint/did_you_mean.hpp"
 #include "stillpoint/error.hpp"
+#include "stillpoint/majority_vote.hpp"
 #include "stillpoint/model_lookup.hpp"
 #include "stillpoint/objects.hpp"
 #include "stillpoint/options.hpp"

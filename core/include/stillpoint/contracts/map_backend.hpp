@@ -20,6 +20,11 @@ struct DenseKeyFrame {
   SegmentationPtr segmentation;
   std::shared_ptr<const StaticWeights> weights;
   Pose world_from_camera = Pose::Identity();
+
+  /// CV_8UC1, class id per pixel; empty when nothing is known.
+  cv::Mat labels() const { return segmentation ? segmentation->labels : cv::Mat(); }
+  /// CV_8UC1, how far each pixel may be mapped; empty: 255 everywhere.
+  cv::Mat map_weights() const { return weights ? weights->map : cv::Mat(); }
 };
 
 class STILLPOINT_EXPORT MapBackend {
