@@ -160,6 +160,9 @@ TEST_F(OctomapBackendTest, APoseOutOfReachIsAnError) {
   EXPECT_THROW(map.integrate(keyframe_at(0, far)), Error);
   far.translation().x() = std::nan("");
   EXPECT_THROW(map.integrate(keyframe_at(0, far)), Error);
+  far = pose_of(0);
+  far.linear()(1, 2) = std::nan("");
+  EXPECT_THROW(map.integrate(keyframe_at(0, far)), Error);
 }
 
 TEST_F(OctomapBackendTest, FilesHoldTheMap) {

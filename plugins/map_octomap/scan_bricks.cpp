@@ -62,10 +62,11 @@ void ScanBricks::scan(const DenseKeyFrame& keyframe) {
 
 void ScanBricks::begin(const DenseKeyFrame& keyframe) {
   const Eigen::Vector3d camera = keyframe.world_from_camera.translation() / options_.resolution;
+  if (!keyframe.world_from_camera.matrix().allFinite() ||
+      camera.cwiseAbs().maxCoeff() + half_ + 2 * kEdge >= kKeyOfZero)
+    throw Error(Fault::kData, "a key frame is out of the octree's reach", {},
+                "use a larger resolution");
   for (int axis = 0; axis < 3; ++axis) {
-    if (!(std::abs(camera[axis]) + half_ + 2 * kEdge < kKeyOfZero))
-      throw Error(Fault::kData, "a key frame is out of the octree's reach", {},
-                  "use a larger resolution");
     const int key = static_cast<int>(std::floor(camera[axis])) + kKeyOfZero;
     corner_[axis] = (key - half_) / kEdge * kEdge;
     origin_[axis] = static_cast<float>(camera[axis] + kKeyOfZero - corner_[axis]);
