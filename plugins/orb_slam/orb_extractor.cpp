@@ -69,7 +69,7 @@ void OrbOptions::visit(OptionVisitor& v) {
 OrbExtractor::OrbExtractor(const OrbOptions& options)
     : options_(options), features_per_level_(share_features(options)) {}
 
-Features OrbExtractor::extract(const cv::Mat& gray, const cv::Mat& spare) {
+Features OrbExtractor::extract(const cv::Mat& gray, const cv::Mat& spare, double share) {
   if (!gray.empty() && gray.type() != CV_8UC1)
     throw Error(Fault::kStage,
                 "needs a gray image of 8 bits, got OpenCV type " + cv::typeToString(gray.type()),
@@ -84,7 +84,8 @@ Features OrbExtractor::extract(const cv::Mat& gray, const cv::Mat& spare) {
   features.levels = options_.levels;
   build_pyramid(gray);
   for (std::size_t level = 0; level < pyramid_.size(); ++level) {
-    detect(pyramid_[level], spare, features_per_level_[level]);
+    detect(pyramid_[level], spare,
+           static_cast<int>(std::lround(share * features_per_level_[level])));
     describe(pyramid_[level], static_cast<int>(level), gray.size(), features);
   }
   return features;

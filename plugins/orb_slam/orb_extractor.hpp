@@ -29,12 +29,12 @@ class OrbExtractor {
  public:
   explicit OrbExtractor(const OrbOptions& options);
 
-  /// Features of a CV_8UC1 image, level by level, strongest first; `depth` stays empty. Fewer than
-  /// asked for where the image has too few corners; none where it is smaller than a patch. Where
-  /// `spare` (CV_8U, the image's size; empty: nowhere) is not zero, features are taken only when
-  /// the rest of the image has too few. Keypoints are in px of `gray` with pixel centres at whole
-  /// numbers. Throws Error for another type of image.
-  Features extract(const cv::Mat& gray, const cv::Mat& spare = {});
+  /// Features of a CV_8UC1 image, level by level, strongest first; `depth` stays empty. `share`
+  /// times as many as the options say; fewer where the image has too few corners, none where it is
+  /// smaller than a patch. Where `spare` (CV_8U, the image's size; empty: nowhere) is not zero,
+  /// features are taken only when the rest of the image has too few. Keypoints are in px of `gray`
+  /// with pixel centres at whole numbers. Throws Error for another type of image.
+  Features extract(const cv::Mat& gray, const cv::Mat& spare = {}, double share = 1.0);
 
   /// Features wanted of each level: in proportion to the level's width.
   const std::vector<int>& features_per_level() const { return features_per_level_; }

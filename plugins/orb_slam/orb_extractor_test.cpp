@@ -224,6 +224,17 @@ TEST(OrbExtractor, SpendsFeaturesOutsideTheSpareArea) {
   EXPECT_EQ(inside(features, {0, 0, kWidth / 2 - 4, kHeight}), 0);
 }
 
+TEST(OrbExtractor, MakesUpForTheSpareArea) {
+  OrbExtractor extractor(OrbOptions{});
+  const cv::Mat image = textured_image();
+  const cv::Rect half(0, 0, kWidth / 2, kHeight);
+  cv::Mat spare(image.size(), CV_8U, cv::Scalar(0));
+  spare(half) = 255;
+  const Features features = extractor.extract(image, spare, 1.5);
+  EXPECT_NEAR(features.size(), 1500, 4);  // rounded on each level
+  EXPECT_EQ(inside(features, {0, 0, kWidth / 2 - 4, kHeight}), 0);
+}
+
 TEST(OrbExtractor, TakesSpareFeaturesWhereOthersAreTooFew) {
   OrbExtractor extractor(OrbOptions{});
   cv::Mat image = textured_image();

@@ -66,14 +66,26 @@ void OrbTracker::Options::visit(OptionVisitor& v) {
      .max = 60,
      .unit = "s",
      .help = "until a new landmark counts in full for the pose; 0: at once"});
+  v("most_features", most_features,
+    {.min = 1,
+     .max = 4,
+     .help = "times `features`, to make up for a part of the image that cannot be mapped"});
   keyframe.visit(v);
 }
 
 OrbTracker::OrbTracker(Options options) : options_(options), extractor_(options.orb) {}
 
 void OrbTracker::prepare(FramePtr frame) {
-  Features features = extractor_.extract(frame->gray, unmapped_);
+  Features features = extractor_.extract(frame->gray, unmapped_, feature_share());
   current_ = observe(std::move(frame), std::move(features));
+}
+
+// So many times as many features as usual: what is left of the image says less, since it is smaller
+// and since it is a narrower view.
+double OrbTracker::feature_share() const {
+  if (unmapped_.empty()) return 1;
+  const double hidden = cv::countNonZero(unmapped_) / static_cast<double>(unmapped_.total());
+  return std::min(1 / ((1 - hidden) * (1 - hidden)), options_.most_features);
 }
 
 TrackResult OrbTracker::track(FramePtr, const StaticWeights& weights, const SparseMap& map,

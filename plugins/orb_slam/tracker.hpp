@@ -25,6 +25,7 @@ class OrbTracker final : public Tracker {
     double motion_window = 15.0;
     double local_window = 3.0;
     double proving_time = 0.0;
+    double most_features = 1.0;
 
     void visit(OptionVisitor& visitor);
   };
@@ -36,6 +37,7 @@ class OrbTracker final : public Tracker {
                     TrackHints hints) override;
 
  private:
+  double feature_share() const;
   bool start();
   void follow_map(const SparseMap& map);
   bool track_with_motion(const SparseMap& map);

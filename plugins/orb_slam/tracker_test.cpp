@@ -176,6 +176,29 @@ TEST_F(TrackerTest, FeaturesOfNoWeightAreNotUsed) {
   }
 }
 
+TEST_F(TrackerTest, WhatIsHiddenIsMadeUpFor) {
+  OrbTracker::Options options;
+  options.most_features = 1.5;
+  OrbTracker tracker(options);
+  const auto features_with = [&](const cv::Rect& hidden) {
+    StaticWeights weights;
+    weights.map = cv::Mat(480, 640, CV_8UC1, cv::Scalar(255));
+    weights.map(hidden) = 0;
+    int features = 0;
+    for (std::uint32_t i = 0; i < 2; ++i) {  // the next frame's features make up for this one's
+      const FramePtr frame = scene_.see(Pose::Identity(), i);
+      tracker.prepare(frame);
+      features = tracker.track(frame, weights, {}, {}).features;
+    }
+    return features;
+  };
+  const int usual = features_with({});
+  // Within 8 px of the rest, something may be uncovered.
+  EXPECT_NEAR(features_with({0, 0, 88, 480}), usual / (0.875 * 0.875), 0.03 * usual);
+  EXPECT_NEAR(features_with({0, 0, 488, 480}), 1.5 * usual, 0.03 * usual);
+  EXPECT_EQ(features_with({}), usual);
+}
+
 TEST_F(TrackerTest, MovingThingWithoutWeightDoesNotPull) {
   // The near panel goes its own way; its pixels have no weight.
   const auto scene_at = [](int i) {
