@@ -1,6 +1,7 @@
 // Which class a voxel has.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <utility>
@@ -27,6 +28,17 @@ class ClassBelief {
       std::swap(counts_[place], counts_[place - 1]);
       std::swap(labels_[place], labels_[place - 1]);
     }
+  }
+
+  /// One that has this best class and, but for rounding, its probability in 1/255: what files keep.
+  static ClassBelief of(std::uint8_t label, std::uint8_t confidence) {
+    const int rest = confidence > 0 ? 255 - confidence : 0;
+    ClassBelief belief;
+    belief.labels_[0] = label;
+    belief.counts_ = {std::min(confidence, static_cast<std::uint8_t>(kFull - 1)),
+                      static_cast<std::uint8_t>(rest - rest / 2),
+                      static_cast<std::uint8_t>(rest / 2)};
+    return belief;
   }
 
   bool known() const { return counts_[0] > 0; }

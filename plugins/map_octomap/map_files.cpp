@@ -8,35 +8,20 @@
 #include "stillpoint/point_cloud_file.hpp"
 
 namespace stillpoint {
-namespace {
 
-// Leaves larger than a voxel are pruned ones: as many points as voxels.
-template <typename Function>
-void for_each_occupied_voxel(const SemanticOctree& tree, Function&& function) {
-  for (auto leaf = tree.begin_leafs(); leaf != tree.end_leafs(); ++leaf) {
-    if (!tree.isNodeOccupied(*leaf)) continue;
-    const int edge = 1 << (tree.getTreeDepth() - leaf.getDepth());
-    const double first = 0.5 * (1 - edge) * tree.getResolution();
-    for (int i = 0; i < edge * edge * edge; ++i)
-      function(
-          leaf.getCoordinate() +
-              octomap::point3d(static_cast<float>(first + i / edge / edge * tree.getResolution()),
-                               static_cast<float>(first + i / edge % edge * tree.getResolution()),
-                               static_cast<float>(first + i % edge * tree.getResolution())),
-          *leaf);
-  }
+MapClasses with_colors(const ClassNames& names) {
+  MapClasses classes{.names = names, .colors = {}};
+  for (std::size_t label = 0; label < names.size(); ++label)
+    classes.colors.push_back(color_of_class(static_cast<std::uint8_t>(label)));
+  return classes;
 }
 
-}  // namespace
-
-void write_octree(const SemanticOctree& tree, const ClassNames& classes,
+void write_octree(const SemanticOctree& tree, const MapClasses& classes,
                   const std::filesystem::path& file) {
   AtomicFile out(file);
   tree.write(out.stream());
-  nlohmann::json names = {{"names", classes}, {"colors", nlohmann::json::array()}};
-  for (std::size_t label = 0; label < classes.size(); ++label)
-    names["colors"].push_back(color_of_class(static_cast<std::uint8_t>(label)));
-  std::string bytes = "# stillpoint classes 1\n" + names.dump() + '\n';
+  const nlohmann::json description = {{"names", classes.names}, {"colors", classes.colors}};
+  std::string bytes = "# stillpoint classes 1\n" + description.dump() + '\n';
   for (auto leaf = tree.begin_leafs(); leaf != tree.end_leafs(); ++leaf) {
     bytes.push_back(static_cast<char>(leaf->classes().best()));
     bytes.push_back(static_cast<char>(std::lround(255 * leaf->classes().confidence())));
@@ -51,16 +36,16 @@ void write_occupancy(const SemanticOctree& tree, const std::filesystem::path& fi
   out.commit();
 }
 
-void write_point_cloud(const SemanticOctree& tree, const ClassNames& classes,
+void write_point_cloud(const SemanticOctree& tree, const MapClasses& classes,
                        const std::filesystem::path& file) {
   std::vector<LabelledPoint> points;
-  for_each_occupied_voxel(tree, [&](const octomap::point3d& at, const SemanticVoxel& voxel) {
+  for_each_occupied_voxel(tree, [&](const Eigen::Vector3d& at, const SemanticVoxel& voxel) {
     const auto color = voxel.getColor();
-    points.push_back({.position = {at.x(), at.y(), at.z()},
+    points.push_back({.position = at.cast<float>(),
                       .rgb = {color.r, color.g, color.b},
                       .label = voxel.classes().best()});
   });
-  write_ply(points, classes, file);
+  write_ply(points, classes.names, file);
 }
 
 }  // namespace stillpoint

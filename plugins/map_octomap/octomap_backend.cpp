@@ -4,8 +4,6 @@
 #include <cmath>
 #include <iterator>
 
-#include "map_octomap/map_files.hpp"
-
 namespace stillpoint {
 namespace {
 
@@ -68,12 +66,14 @@ void OctomapBackend::Options::visit(OptionVisitor& v) {
      .help = "between pixels that are used; 0: by the resolution"});
   v("min_weight", min_weight,
     {.min = 1, .max = 255, .help = "of a pixel in the map: less is not mapped"});
+  v("cost_map", cost_map, {.help = "the map as a robot on the floor needs it, saved beside it"});
   v.require(range / resolution <= 500, "range is more than 500 voxels");
 }
 
 OctomapBackend::OctomapBackend(const Options& options, const StageContext& context)
     : options_(options),
-      classes_(context.classes),
+      log_(context.log),
+      classes_(with_colors(context.classes)),
       model_(model_of(options)),
       tree_(options.resolution),
       scan_(scan_options_of(options)) {
@@ -113,6 +113,16 @@ void OctomapBackend::save(const std::filesystem::path& directory) {
   write_octree(tree_, classes_, directory / "map.ot");
   write_occupancy(tree_, directory / "map.bt");
   write_point_cloud(tree_, classes_, directory / "map.ply");
+  save_cost_map(directory);
+}
+
+void OctomapBackend::save_cost_map(const std::filesystem::path& directory) const {
+  if (const auto floor = floor_of(tree_, options_.cost_map))
+    write_cost_map(project(tree_, *floor, options_.cost_map), directory / "map");
+  else
+    log_(LogLevel::kWarning,
+         "no floor was seen, so there is no cost map; map_backend.cost_map.floor can say where it "
+         "is");
 }
 
 // Neighbouring pixels are less than half a voxel apart everywhere.

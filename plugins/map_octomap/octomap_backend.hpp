@@ -1,10 +1,14 @@
 // Map back end `octomap`: the dense semantic octree (DS-SLAM III-E), which follows its key frames.
 #pragma once
 
+#include <functional>
 #include <map>
 #include <span>
+#include <string_view>
 #include <vector>
 
+#include "map_octomap/cost_map.hpp"
+#include "map_octomap/map_files.hpp"
 #include "map_octomap/scan_bricks.hpp"
 #include "map_octomap/semantic_octree.hpp"
 #include "map_octomap/stored_keyframe.hpp"
@@ -32,6 +36,7 @@ class OctomapBackend final : public MapBackend {
     double tolerance = 0.25;      ///< voxels that key frames may move before they are fused again
     int stride = 0;               ///< px; 0 = by resolution and range
     int min_weight = 128;         ///< of StaticWeights::map
+    CostMapOptions cost_map;
 
     void visit(OptionVisitor& visitor);
   };
@@ -57,9 +62,11 @@ class OctomapBackend final : public MapBackend {
   void scan(Entry& entry);
   double moved_by(const Entry& entry) const;
   void fuse_again(std::span<const std::size_t> entries);
+  void save_cost_map(const std::filesystem::path& directory) const;
 
   Options options_;
-  ClassNames classes_;
+  std::function<void(LogLevel, std::string_view)> log_;
+  MapClasses classes_;
   OccupancyModel model_;
   SemanticOctree tree_;
   ScanBricks scan_;

@@ -155,11 +155,15 @@ void SemanticOctree::add(const ScanBricks& scan, std::span<const ScanBrick* cons
                          const OccupancyModel& model) {
   if (bricks.empty()) return;
   const bool known = root != nullptr;
-  if (!known) {
+  Addition(*this, scan, model).add(plant(), known, 0, bricks);
+}
+
+SemanticVoxel& SemanticOctree::plant() {
+  if (!root) {
     root = new SemanticVoxel;
     ++tree_size;
   }
-  Addition(*this, scan, model).add(*root, known, 0, bricks);
+  return *root;
 }
 
 void SemanticOctree::remove(std::span<const BrickKey> bricks) {

@@ -34,6 +34,7 @@ class SemanticVoxel : public octomap::ColorOcTreeNode {
   }
 
   const ClassBelief& classes() const { return classes_; }
+  void set_classes(const ClassBelief& classes) { classes_ = classes; }
 
   void hit(const VoxelLook& look, const OccupancyModel& model);
   void pass(const OccupancyModel& model);
@@ -62,6 +63,8 @@ class SemanticOctree : public octomap::OccupancyOcTreeBase<SemanticVoxel> {
   /// their order.
   void add(const ScanBricks& scan, std::span<const ScanBrick* const> bricks,
            const OccupancyModel& model);
+  /// The root, made when there is none.
+  SemanticVoxel& plant();
   /// Forgets all that is known within some bricks.
   void remove(std::span<const BrickKey> bricks);
 

@@ -1,0 +1,180 @@
+#include "map_octomap/cost_map.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <opencv2/imgproc.hpp>
+#include <string>
+#include <vector>
+
+#include "map_octomap/map_files.hpp"
+#include "stillpoint/atomic_file.hpp"
+
+namespace stillpoint {
+namespace {
+
+constexpr double kLow = 0.3;  // metres above `from`: no lower obstacle hides under free space there
+
+Pose floor_from_world(const FloorPlane& floor) {
+  Eigen::Vector3d ahead = Eigen::Vector3d::UnitZ() - floor.up.z() * floor.up;
+  if (ahead.norm() < 0.1) ahead = Eigen::Vector3d::UnitX() - floor.up.x() * floor.up;
+  ahead.normalize();
+  Pose pose = Pose::Identity();
+  pose.linear().row(0) = ahead;
+  pose.linear().row(1) = floor.up.cross(ahead);
+  pose.linear().row(2) = floor.up;
+  pose.translation().z() = -floor.height;
+  return pose;
+}
+
+// The floor's axes are not those of the voxels: of each voxel eight points, so that no cell is
+// passed over.
+template <typename Function>
+void for_each_part(const Eigen::Vector3d& centre, double edge, double step, Function&& function) {
+  const int parts = static_cast<int>(std::lround(edge / step));
+  const double first = 0.5 * (step - edge);
+  for (int x = 0; x < parts; ++x)
+    for (int y = 0; y < parts; ++y)
+      for (int z = 0; z < parts; ++z)
+        function(Eigen::Vector3d(centre + Eigen::Vector3d::Constant(first) +
+                                 step * Eigen::Vector3d(x, y, z)));
+}
+
+class Projection {
+ public:
+  Projection(const SemanticOctree& tree, const FloorPlane& floor, const CostMapOptions& options)
+      : tree_(tree), options_(options) {
+    map_.resolution = tree.getResolution();
+    map_.floor_from_world = floor_from_world(floor);
+  }
+
+  CostMap run() {
+    make_cells();
+    for_each_leaf([&](const Eigen::Vector3d& centre, double edge, bool occupied) {
+      for_each_part(centre, edge, 0.5 * map_.resolution, [&](const Eigen::Vector3d& part) {
+        const Eigen::Vector3d at = map_.floor_from_world * part;
+        if (at.z() >= options_.from && at.z() < options_.to && occupied)
+          paint(at, CostMap::kOccupied);
+        else if (occupied ? std::abs(at.z()) < options_.from
+                          : at.z() >= options_.from && at.z() < options_.from + kLow)
+          paint(at, CostMap::kFree);
+      });
+    });
+    grow_obstacles();
+    return std::move(map_);
+  }
+
+ private:
+  template <typename Function>
+  void for_each_leaf(Function&& function) const {
+    for (auto leaf = tree_.begin_leafs(); leaf != tree_.end_leafs(); ++leaf) {
+      const bool occupied = tree_.isNodeOccupied(*leaf);
+      const double high = occupied ? options_.to : options_.from + kLow;
+      const Eigen::Vector3d centre(leaf.getX(), leaf.getY(), leaf.getZ());
+      const double height = (map_.floor_from_world * centre).z();
+      if (height + leaf.getSize() > -options_.from && height - leaf.getSize() < high)
+        function(centre, leaf.getSize(), occupied);
+    }
+  }
+
+  void make_cells() {
+    Eigen::Vector2d low = Eigen::Vector2d::Constant(std::numeric_limits<double>::max());
+    Eigen::Vector2d high = -low;
+    for_each_leaf([&](const Eigen::Vector3d& centre, double edge, bool) {
+      const Eigen::Vector2d at = (map_.floor_from_world * centre).head<2>();
+      const double reach = 0.5 * std::sqrt(3) * edge;
+      low = low.cwiseMin(at - Eigen::Vector2d::Constant(reach));
+      high = high.cwiseMax(at + Eigen::Vector2d::Constant(reach));
+    });
+    if (low.x() > high.x()) low = high = Eigen::Vector2d::Zero();
+    const double margin = options_.robot_radius + map_.resolution;
+    map_.corner = ((low.array() - margin) / map_.resolution).floor() * map_.resolution;
+    const Eigen::Array2i size =
+        ((high.array() + margin - map_.corner.array()) / map_.resolution).ceil().cast<int>();
+    map_.cells = cv::Mat(size.y(), size.x(), CV_8UC1, cv::Scalar(CostMap::kUnknown));
+  }
+
+  void paint(const Eigen::Vector3d& at, std::uint8_t what) {
+    const auto column = static_cast<int>((at.x() - map_.corner.x()) / map_.resolution);
+    const auto row = static_cast<int>((at.y() - map_.corner.y()) / map_.resolution);
+    std::uint8_t& cell = map_.cells.at<std::uint8_t>(map_.cells.rows - 1 - row, column);
+    if (cell != CostMap::kOccupied) cell = what;  // in whatever order they come
+  }
+
+  void grow_obstacles() {
+    if (options_.robot_radius <= 0) return;
+    const cv::Mat elsewhere = map_.cells != CostMap::kOccupied;
+    cv::Mat distance;  // in cells, to the next obstacle
+    cv::distanceTransform(elsewhere, distance, cv::DIST_L2, cv::DIST_MASK_PRECISE);
+    map_.cells.setTo(CostMap::kOccupied, distance <= options_.robot_radius / map_.resolution);
+  }
+
+  const SemanticOctree& tree_;
+  const CostMapOptions& options_;
+  CostMap map_;
+};
+
+}  // namespace
+
+void CostMapOptions::visit(OptionVisitor& v) {
+  v("from", from,
+    {.min = 0, .max = 10, .unit = "m", .help = "above the floor; what is lower is no obstacle"});
+  v("to", to,
+    {.min = 0, .max = 10, .unit = "m", .help = "above the floor; what is higher is no obstacle"});
+  v("robot_radius", robot_radius,
+    {.min = 0, .max = 10, .unit = "m", .help = "obstacles grow by it"});
+  v("floor", floor,
+    {.help = "upward direction x, y, z in the world, and the floor's height along it in m; without "
+             "the height, or without all, it is found in the map"});
+  v.require(from < to, "from must be lower than to");
+  v.require(floor.empty() || ((floor.size() == 3 || floor.size() == 4) &&
+                              std::hypot(floor[0], floor[1], floor[2]) > 1e-6),
+            "floor takes x, y, z of a direction, then its height or nothing");
+}
+
+cv::Point CostMap::cell_of(const Eigen::Vector3d& point_in_world) const {
+  const Eigen::Vector3d at = floor_from_world * point_in_world;
+  return {static_cast<int>(std::floor((at.x() - corner.x()) / resolution)),
+          cells.rows - 1 - static_cast<int>(std::floor((at.y() - corner.y()) / resolution))};
+}
+
+std::optional<FloorPlane> floor_of(const SemanticOctree& tree, const CostMapOptions& options) {
+  const std::vector<double>& given = options.floor;
+  const Eigen::Vector3d up =
+      given.empty() ? Eigen::Vector3d(0, -1, 0) : Eigen::Vector3d(given[0], given[1], given[2]);
+  if (given.size() == 4) return FloorPlane{.up = up.normalized(), .height = given[3]};
+  std::vector<Eigen::Vector3f> points;
+  for_each_occupied_voxel(tree, [&](const Eigen::Vector3d& at, const SemanticVoxel&) {
+    points.push_back(at.cast<float>());
+  });
+  return given.empty() ? find_floor(points, up, tree.getResolution())
+                       : find_floor_below(points, up.normalized(), tree.getResolution());
+}
+
+CostMap project(const SemanticOctree& tree, const FloorPlane& floor,
+                const CostMapOptions& options) {
+  return Projection(tree, floor, options).run();
+}
+
+void write_cost_map(const CostMap& map, const std::filesystem::path& stem) {
+  const auto with = [&](const char* extension) {
+    return std::filesystem::path(stem.string() + extension);
+  };
+  AtomicFile image(with(".pgm")), description(with(".yaml"));
+  image.stream() << "P5\n" << map.cells.cols << ' ' << map.cells.rows << "\n255\n";
+  image.stream().write(reinterpret_cast<const char*>(map.cells.data),
+                       static_cast<std::streamsize>(map.cells.total()));
+  const Pose world_from_map = map.floor_from_world.inverse();
+  const Eigen::Vector3d t = world_from_map.translation();
+  const Eigen::Quaterniond q(world_from_map.linear());
+  description.stream() << "image: " << with(".pgm").filename().string()
+                       << "\nmode: trinary\nresolution: " << map.resolution << "\norigin: ["
+                       << map.corner.x() << ", " << map.corner.y() << ", 0]\n"
+                       << "negate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n"
+                       << "world_from_map: [" << t.x() << ", " << t.y() << ", " << t.z() << ", "
+                       << q.x() << ", " << q.y() << ", " << q.z() << ", " << q.w() << "]\n";
+  image.commit();
+  description.commit();
+}
+
+}  // namespace stillpoint

@@ -1,0 +1,27 @@
+// The floor that a map stands on.
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <span>
+
+namespace stillpoint {
+
+/// All points x with up · x = height are on the floor.
+struct FloorPlane {
+  Eigen::Vector3d up = Eigen::Vector3d::UnitZ();  ///< unit length, away from gravity
+  double height = 0;                              ///< metres
+};
+
+/// The lowest of the large horizontal surfaces among the points of a map, each of an area of about
+/// `spacing`². Horizontal is what has most points in one plane whose normal is within 50° of
+/// `up_hint`; the camera's own up at the first frame is good enough. The same points give the same
+/// plane. Empty when there is no such surface of half a square metre.
+std::optional<FloorPlane> find_floor(std::span<const Eigen::Vector3f> points,
+                                     const Eigen::Vector3d& up_hint, double spacing);
+
+/// Likewise with a direction that is known from gravity.
+std::optional<FloorPlane> find_floor_below(std::span<const Eigen::Vector3f> points,
+                                           const Eigen::Vector3d& up, double spacing);
+
+}  // namespace stillpoint

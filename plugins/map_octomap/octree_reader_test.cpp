@@ -1,0 +1,156 @@
+#include "map_octomap/octree_reader.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <octomap/ColorOcTree.h>
+#include <octomap/OcTree.h>
+
+#include <cmath>
+#include <fstream>
+#include <functional>
+#include <iterator>
+#include <sstream>
+
+#include "map_octomap/test_map.hpp"
+#include "stillpoint/error.hpp"
+
+namespace stillpoint {
+namespace {
+
+namespace fs = std::filesystem;
+
+class OctreeReader : public ::testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    map_ = map_of({});
+    folder_ = empty_folder("octree_reader_test");
+    map_->save(folder_);
+  }
+  static void TearDownTestSuite() {
+    fs::remove_all(folder_);
+    map_.reset();
+  }
+
+  static std::string contents(const fs::path& file) {
+    std::ifstream stream(file, std::ios::binary);
+    return {std::istreambuf_iterator<char>(stream), {}};
+  }
+  static fs::path written(const std::string& contents) {
+    const fs::path file = folder_ / "changed.ot";
+    std::ofstream(file, std::ios::binary) << contents;
+    return file;
+  }
+  static std::string message_for(const fs::path& file) {
+    try {
+      read_octree(file);
+    } catch (const Error& error) {
+      EXPECT_EQ(error.fault(), Fault::kData);
+      return error.what();
+    }
+    return "no error";
+  }
+
+  static inline std::unique_ptr<OctomapBackend> map_;
+  static inline fs::path folder_;
+};
+
+TEST_F(OctreeReader, AMapComesBackAsItWas) {
+  const SavedOctree saved = read_octree(folder_ / "map.ot");
+  EXPECT_TRUE(saved.has_colors);
+  EXPECT_EQ(saved.classes.names, named_classes("voc21"));
+  EXPECT_EQ(saved.classes.colors[9], color_of_class(9));
+  const SemanticOctree& tree = map_->tree();
+  ASSERT_EQ(saved.tree->size(), tree.size());
+  EXPECT_EQ(saved.tree->getResolution(), tree.getResolution());
+  auto read = saved.tree->begin_tree();
+  for (auto node = tree.begin_tree(); node != tree.end_tree(); ++node, ++read) {
+    ASSERT_EQ(read.getKey(), node.getKey());
+    ASSERT_EQ(read->getLogOdds(), node->getLogOdds());
+    ASSERT_EQ(read->getColor(), node->getColor());
+    if (tree.nodeHasChildren(&*node)) continue;
+    ASSERT_EQ(read->classes().best(), node->classes().best());
+    ASSERT_NEAR(read->classes().confidence(), node->classes().confidence(), 0.005);
+  }
+}
+
+TEST_F(OctreeReader, SavingItAgainGivesTheSameFile) {
+  const SavedOctree saved = read_octree(folder_ / "map.ot");
+  write_octree(*saved.tree, saved.classes, folder_ / "again.ot");
+  EXPECT_EQ(contents(folder_ / "again.ot"), contents(folder_ / "map.ot"));
+}
+
+TEST_F(OctreeReader, OccupancyAlone) {
+  const SavedOctree saved = read_octree(folder_ / "map.bt");
+  EXPECT_FALSE(saved.has_colors);
+  EXPECT_TRUE(saved.classes.names.empty());
+  octomap::OcTree reference((folder_ / "map.bt").string());
+  ASSERT_EQ(saved.tree->size(), reference.size());
+  for (auto leaf = reference.begin_leafs(); leaf != reference.end_leafs(); ++leaf) {
+    const SemanticVoxel* voxel = saved.tree->search(leaf.getKey());
+    ASSERT_TRUE(voxel);
+    ASSERT_EQ(saved.tree->isNodeOccupied(voxel), reference.isNodeOccupied(*leaf));
+  }
+}
+
+TEST_F(OctreeReader, TreesOfOtherPrograms) {
+  octomap::ColorOcTree colored(0.1);
+  colored.updateNode(octomap::point3d(1, 2, 3), true);
+  colored.setNodeColor(1, 2, 3, 10, 20, 30);
+  colored.updateInnerOccupancy();
+  octomap::OcTree plain(0.1);
+  plain.updateNode(octomap::point3d(1, 2, 3), true);
+  plain.updateNode(octomap::point3d(1, 2, -3), false);
+  colored.write((folder_ / "colored.ot").string());
+  plain.write((folder_ / "plain.ot").string());
+
+  const SavedOctree first = read_octree(folder_ / "colored.ot");
+  ASSERT_TRUE(first.tree->search(1.0, 2.0, 3.0));
+  EXPECT_EQ(first.tree->search(1.0, 2.0, 3.0)->getColor().g, 20);
+  EXPECT_TRUE(first.classes.names.empty());
+  const SavedOctree second = read_octree(folder_ / "plain.ot");
+  EXPECT_FALSE(second.has_colors);
+  ASSERT_TRUE(second.tree->search(1.0, 2.0, -3.0));
+  EXPECT_FALSE(second.tree->isNodeOccupied(second.tree->search(1.0, 2.0, -3.0)));
+}
+
+// Wherever a file ends too early, and whichever byte is wrong: a message or a map, nothing else.
+TEST_F(OctreeReader, TruncatedFilesAreRefused) {
+  for (const char* name : {"map.ot", "map.bt"}) {
+    const std::string whole = contents(folder_ / name);
+    for (std::size_t size = 0; size < whole.size(); size += 1 + whole.size() / 97)
+      EXPECT_THAT(message_for(written(whole.substr(0, size))),
+                  testing::ContainsRegex("ends within|no octree"))
+          << name << " of " << size;
+  }
+}
+
+TEST_F(OctreeReader, DamagedFilesDoNoHarm) {
+  std::uint32_t random = 1;
+  for (const char* name : {"map.ot", "map.bt"}) {
+    const std::string whole = contents(folder_ / name);
+    for (int i = 0; i < 60; ++i) {
+      std::string damaged = whole;
+      for (int k = 0; k < 20; ++k) {
+        random = random * 1664525U + 1013904223U;
+        damaged[100 + random % (damaged.size() - 100)] = static_cast<char>(random >> 24U);
+      }
+      message_for(written(damaged));
+    }
+  }
+}
+
+TEST_F(OctreeReader, WhatIsNoMapIsNamed) {
+  EXPECT_THAT(message_for(folder_ / "none.ot"), testing::HasSubstr("none.ot: cannot be read"));
+  EXPECT_THAT(message_for(folder_), testing::HasSubstr("cannot be read"));
+  EXPECT_THAT(message_for(folder_ / "map.ply"), testing::HasSubstr("is no octree of OctoMap"));
+  EXPECT_THAT(
+      message_for(written("# Octomap OcTree file\nid CountingOcTree\nsize 1\nres 0.1\ndata\n")),
+      testing::HasSubstr("type 'CountingOcTree'"));
+  EXPECT_THAT(message_for(written("# Octomap OcTree file\nid OcTree\nsize 1\nres x\ndata\n")),
+              testing::HasSubstr("no resolution"));
+  EXPECT_THAT(message_for(written("# Octomap OcTree file\nid OcTree\nsize 0\nres 0.1\ndata\n")),
+              testing::HasSubstr("holds no voxel"));
+}
+
+}  // namespace
+}  // namespace stillpoint
