@@ -10,7 +10,7 @@ namespace {
 
 constexpr float kMaxDepthStep = 0.04f;  // of the depth; more around a keypoint is an edge
 constexpr int kDepthWindow = 3;         // px around a keypoint
-constexpr double kNewcomer = 0.05;      // least weight of a landmark that is not proven yet
+constexpr double kNewcomer = 0.02;      // least weight of a landmark that is not proven yet
 
 // Depth of the surface a keypoint lies on; 0 beside a depth edge, where it may be that of the other
 // side. Such features made estimated motions 0.5 to 1 % too small, since errors of that kind go
@@ -43,13 +43,15 @@ ObservedFrame unmatched(FramePtr frame, FeaturesPtr features) {
   return observed;
 }
 
-// All that a person wears can become landmarks at once, and they agree with each other. A landmark
-// from another recording, saved with its map, may seem to lie in the future.
+// All that a person wears can become landmarks at once, hundreds in a few frames, and they agree
+// with each other. A landmark from another recording, saved with its map, may seem to lie in the
+// future.
 double proven(const Landmark& landmark, const SparseMap& map, double time, double proving_time) {
   const KeyFrame* creator = map.keyframe(landmark.created_by);
   if (!creator || time < creator->time) return 1;
   const double age = time - creator->time;
-  return age < proving_time ? std::max(age / proving_time, kNewcomer) : 1;
+  const double share = age / proving_time;
+  return age < proving_time ? std::max(share * share, kNewcomer) : 1;
 }
 
 }  // namespace

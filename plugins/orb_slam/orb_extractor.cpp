@@ -84,8 +84,7 @@ Features OrbExtractor::extract(const cv::Mat& gray, const cv::Mat& spare, double
   features.levels = options_.levels;
   build_pyramid(gray);
   for (std::size_t level = 0; level < pyramid_.size(); ++level) {
-    detect(pyramid_[level], spare,
-           static_cast<int>(std::lround(share * features_per_level_[level])));
+    detect(pyramid_[level], spare, features_per_level_[level], share);
     describe(pyramid_[level], static_cast<int>(level), gray.size(), features);
   }
   return features;
@@ -112,13 +111,13 @@ void OrbExtractor::build_pyramid(const cv::Mat& gray) {
   }
 }
 
-void OrbExtractor::detect(const cv::Mat& image, const cv::Mat& spare, int count) {
+void OrbExtractor::detect(const cv::Mat& image, const cv::Mat& spare, int count, double share) {
   fast_.detect(image, options_.fast_min_threshold, kPatchBorder, corners_);
   spare_corners_.clear();
   if (!spare.empty()) set_apart(corners_, spare, image.size(), spare_corners_);
-  keep_best(corners_, image.size(), count);
+  keep_best(corners_, image.size(), static_cast<int>(std::lround(share * count)));
   const int missing = count - static_cast<int>(corners_.size());
-  if (missing == 0 || spare_corners_.empty()) return;
+  if (missing <= 0 || spare_corners_.empty()) return;
   keep_best(spare_corners_, image.size(), missing);
   corners_.insert(corners_.end(), spare_corners_.begin(), spare_corners_.end());
 }

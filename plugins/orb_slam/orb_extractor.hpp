@@ -32,8 +32,9 @@ class OrbExtractor {
   /// Features of a CV_8UC1 image, level by level, strongest first; `depth` stays empty. `share`
   /// times as many as the options say; fewer where the image has too few corners, none where it is
   /// smaller than a patch. Where `spare` (CV_8U, the image's size; empty: nowhere) is not zero,
-  /// features are taken only when the rest of the image has too few. Keypoints are in px of `gray`
-  /// with pixel centres at whole numbers. Throws Error for another type of image.
+  /// features are taken only when the rest of the image has fewer than the options say. Keypoints
+  /// are in px of `gray` with pixel centres at whole numbers. Throws Error for another type of
+  /// image.
   Features extract(const cv::Mat& gray, const cv::Mat& spare = {}, double share = 1.0);
 
   /// Features wanted of each level: in proportion to the level's width.
@@ -41,7 +42,7 @@ class OrbExtractor {
 
  private:
   void build_pyramid(const cv::Mat& gray);
-  void detect(const cv::Mat& image, const cv::Mat& spare, int count);
+  void detect(const cv::Mat& image, const cv::Mat& spare, int count, double share);
   void keep_best(std::vector<Corner>& corners, cv::Size image, int count) const;
   void describe(const cv::Mat& image, int level, cv::Size full_size, Features& features);
 

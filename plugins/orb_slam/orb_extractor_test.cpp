@@ -248,6 +248,8 @@ TEST(OrbExtractor, TakesSpareFeaturesWhereOthersAreTooFew) {
   EXPECT_GT(static_cast<int>(features.size()) - inside(features, half), 3 * others / 2);
   EXPECT_EQ(extractor.extract(image, cv::Mat(image.size(), CV_8U, cv::Scalar(1))).keypoints.size(),
             without.keypoints.size());
+  // Asked for more, the spare area gives no more.
+  EXPECT_EQ(inside(extractor.extract(image, spare, 2.0), half), inside(features, half));
 }
 
 TEST(OrbExtractor, StaysInsideImagesOfAllSizes) {
