@@ -120,9 +120,13 @@ TEST_F(CostMapOfRoom, ObstaclesGrowByTheRobot) {
 }
 
 TEST_F(CostMapOfRoom, WhatIsAboveTheRobotIsNoObstacle) {
-  // The ceiling is at 2.57 m.
-  EXPECT_EQ(at(projected({}, {.to = 2.4}), 0, 0), CostMap::kFree);
-  EXPECT_EQ(at(projected({}, {.to = 2.9}), -1.65, 2.15), CostMap::kOccupied);
+  // The ceiling is at 2.57 m; of it, little was seen, in the corners.
+  const auto obstacles = [](const CostMap& map) {
+    return cv::countNonZero(map.cells == CostMap::kOccupied);
+  };
+  const CostMap below = projected({}, {.to = 2.4}), all = projected({}, {.to = 2.9});
+  EXPECT_GT(obstacles(all), obstacles(below) + 10);
+  EXPECT_EQ(at(below, -1.4, -0.4), CostMap::kFree);
 }
 
 TEST_F(CostMapOfRoom, FilesForMapServer) {

@@ -19,7 +19,10 @@ MapClasses with_colors(const ClassNames& names) {
 void write_octree(const SemanticOctree& tree, const MapClasses& classes,
                   const std::filesystem::path& file) {
   AtomicFile out(file);
-  tree.write(out.stream());
+  // OctoMap's write() says so on the standard error.
+  out.stream() << "# Octomap OcTree file\nid " << tree.getTreeType() << "\nsize " << tree.size()
+               << "\nres " << tree.getResolution() << "\ndata\n";
+  tree.writeData(out.stream());
   const nlohmann::json description = {{"names", classes.names}, {"colors", classes.colors}};
   std::string bytes = "# stillpoint classes 1\n" + description.dump() + '\n';
   for (auto leaf = tree.begin_leafs(); leaf != tree.end_leafs(); ++leaf) {

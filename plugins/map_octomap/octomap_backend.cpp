@@ -23,6 +23,7 @@ ScanOptions scan_options_of(const OctomapBackend::Options& options) {
   return {.resolution = options.resolution,
           .range = options.range,
           .carve = options.model == OctomapBackend::Options::Model::kRays,
+          .noise = options.noise,
           .min_weight = static_cast<std::uint8_t>(options.min_weight)};
 }
 
@@ -54,6 +55,11 @@ void OctomapBackend::Options::visit(OptionVisitor& v) {
   v("most", most, {.min = 0.51, .max = 0.999, .help = "probability, however often hit"});
   v("occupied_above", occupied_above,
     {.min = 0.01, .max = 0.99, .help = "probability from which a voxel is occupied"});
+  v("noise", noise,
+    {.min = 0,
+     .max = 0.1,
+     .unit = "m",
+     .help = "standard deviation of depth at 1 m; it grows with the square of the depth"});
   v("tolerance", tolerance,
     {.min = 0,
      .max = 10,
@@ -65,7 +71,7 @@ void OctomapBackend::Options::visit(OptionVisitor& v) {
      .unit = "px",
      .help = "between pixels that are used; 0: by the resolution"});
   v("min_weight", min_weight,
-    {.min = 1, .max = 255, .help = "of a pixel in the map: less is not mapped"});
+    {.min = 0, .max = 255, .help = "of a pixel in the map: less is not mapped; 0: all is"});
   v("cost_map", cost_map, {.help = "the map as a robot on the floor needs it, saved beside it"});
   v.require(range / resolution <= 500, "range is more than 500 voxels");
 }

@@ -28,12 +28,13 @@ class OctomapBackend final : public MapBackend {
     double resolution = 0.05;  ///< metres
     double range = 4.0;        ///< metres
     Model model = Model::kRays;
-    double hit = 0.7;             ///< probability that a voxel is occupied when it is hit
-    double miss = 0.4;            ///< likewise, when it is looked through
+    double hit = 0.65;            ///< probability that a voxel is occupied when it is hit
+    double miss = 0.3;            ///< likewise, when it is looked through
     double least = 0.12;          ///< probabilities are clamped, so that things may appear
     double most = 0.97;           ///< and disappear again
     double occupied_above = 0.5;  ///< probability
     double tolerance = 0.25;      ///< voxels that key frames may move before they are fused again
+    double noise = 0.002;         ///< metres at 1 m; of depth
     int stride = 0;               ///< px; 0 = by resolution and range
     int min_weight = 128;         ///< of StaticWeights::map
     CostMapOptions cost_map;

@@ -85,6 +85,7 @@ void ScanBricks::begin(const DenseKeyFrame& keyframe) {
   row_.right.resize(width);
   row_.reach.resize(width);
   row_.voxel.resize(width);
+  row_.front.resize(width);
   for (std::size_t u = 0; u < width; ++u)
     row_.right[u] =
         static_cast<float>((static_cast<double>(u) - camera_model.cx) / camera_model.fx);
@@ -93,7 +94,7 @@ void ScanBricks::begin(const DenseKeyFrame& keyframe) {
 void ScanBricks::find_ends(const DenseKeyFrame& keyframe) {
   const Frame& frame = *keyframe.frame;
   const cv::Mat labels = keyframe.labels(), weights = keyframe.map_weights();
-  VoxelBits::Index last = -1;  // neighbours share their voxel
+  VoxelBits::Index last = -1, last_front = -1;  // neighbours share their voxels
   Sum* sum = nullptr;
   for (int v = 0; v < frame.depth.rows; ++v) {
     find_voxels(keyframe.world_from_camera, frame, v);
@@ -107,7 +108,10 @@ void ScanBricks::find_ends(const DenseKeyFrame& keyframe) {
       if (voxel != last) {
         last = voxel;
         sum = nullptr;
-        if (!ended_.set(voxel)) ends_.push_back(voxel);
+      }
+      if (const VoxelBits::Index front = row_.front[u]; front != last_front) {
+        last_front = front;
+        if (!ended_.set(front)) ends_.push_back(front);
       }
       if (depth[u] > row_.reach[u] || (weight && weight[u] < options_.min_weight)) continue;
       if (!sum) sum = &sum_of(voxel);
@@ -124,6 +128,7 @@ void ScanBricks::find_voxels(const Pose& world_from_camera, const Frame& frame, 
   const Eigen::Vector3f right = turn.col(0);
   const Eigen::Vector3f origin = origin_;
   const auto range = static_cast<float>(options_.range);
+  const auto margin = static_cast<float>(2 * options_.noise);
   const float rest = down * down + 1;
   const int edge = ended_.edge();
   const auto* depth = frame.depth.ptr<float>(v);
@@ -131,11 +136,15 @@ void ScanBricks::find_voxels(const Pose& world_from_camera, const Frame& frame, 
     const float x = row_.right[u];
     const float reach = range / std::sqrt(x * x + rest);
     const float z = depth[u] < reach ? depth[u] : reach;
+    const auto voxel_at = [&](float along) {
+      const auto at_x = static_cast<std::int32_t>(origin.x() + along * (middle.x() + x * right.x()));
+      const auto at_y = static_cast<std::int32_t>(origin.y() + along * (middle.y() + x * right.y()));
+      const auto at_z = static_cast<std::int32_t>(origin.z() + along * (middle.z() + x * right.z()));
+      return (at_x * edge + at_y) * edge + at_z;
+    };
     row_.reach[u] = reach;
-    const auto at_x = static_cast<std::int32_t>(origin.x() + z * (middle.x() + x * right.x()));
-    const auto at_y = static_cast<std::int32_t>(origin.y() + z * (middle.y() + x * right.y()));
-    const auto at_z = static_cast<std::int32_t>(origin.z() + z * (middle.z() + x * right.z()));
-    row_.voxel[u] = (at_x * edge + at_y) * edge + at_z;
+    row_.voxel[u] = voxel_at(z);
+    row_.front[u] = voxel_at(z - std::min(margin * z * z, z));
   }
 }
 

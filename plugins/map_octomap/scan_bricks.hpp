@@ -41,6 +41,9 @@ struct ScanOptions {
   double resolution = 0.05;  ///< metres, edge of a voxel
   double range = 4.0;        ///< metres; farther, only free space is believed
   bool carve = true;         ///< whether rays are cast
+  /// Standard deviation of depth at 1 m, in metres; it grows with the square of the depth. Free space
+  /// ends two of them before what was measured.
+  double noise = 0.0;
   /// Pixels of a lower map weight hit nothing; what is before them is free all the same.
   std::uint8_t min_weight = 128;
 };
@@ -64,6 +67,7 @@ class ScanBricks {
     std::vector<float> right;             // metres per metre of depth
     std::vector<float> reach;             // depth at which they end, metres
     std::vector<VoxelBits::Index> voxel;  // in which they end
+    std::vector<VoxelBits::Index> front;  // before which they are believed
   };
   // Over the pixels of a voxel.
   struct Sum {

@@ -12,6 +12,7 @@ void add_ablate(CLI::App& app);
 void add_check(CLI::App& app);
 void add_evaluate(CLI::App& app);
 void add_inspect(CLI::App& app);
+void add_map(CLI::App& app);
 void add_plugins(CLI::App& app);
 void add_run(CLI::App& app);
 void add_simulate(CLI::App& app);

@@ -1,0 +1,260 @@
+// How right a dense map is, against the truth of the simulator.
+//   dense_map_accuracy TRUTH RUN...
+// TRUTH: the recording's twin without noise, `stillpoint simulate SCENE --set sensor.ideal=true`
+// with the same seeds, and with labels. RUN: folders of `stillpoint run` with map_backend octomap;
+// their maps are laid onto the truth by the best alignment of their trajectories. One line of JSON
+// each.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <iostream>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <opencv2/imgproc.hpp>
+#include <set>
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+#include "benchmarks/true_recording.hpp"
+#include "evaluation/evaluation.hpp"
+#include "map_octomap/cost_map.hpp"
+#include "map_octomap/octomap_backend.hpp"
+#include "map_octomap/octree_reader.hpp"
+#include "stillpoint/pose_math.hpp"
+
+namespace stillpoint {
+namespace {
+
+constexpr int kEvery = 5;       // frames of the truth
+constexpr double kRange = 4.0;  // metres
+constexpr std::uint8_t kPerson = 15;
+
+using Key = std::array<int, 3>;
+struct KeyHash {
+  std::size_t operator()(const Key& k) const {
+    return static_cast<std::size_t>(k[0]) * 73856093U ^ static_cast<std::size_t>(k[1]) * 19349663U ^
+           static_cast<std::size_t>(k[2]) * 83492791U;
+  }
+};
+
+/// What is where, in the frame of the map that is judged: of what stands still, pixels by class;
+/// and what people have been in.
+struct Truth {
+  std::unordered_map<Key, std::map<std::uint8_t, int>, KeyHash> still;
+  std::unordered_map<Key, int, KeyHash> people;
+  double seconds = 0;
+};
+
+struct LabelledFrame {
+  TrueFrame seen;
+  cv::Mat labels;
+};
+
+Key key_of(const Eigen::Vector3d& point, double edge) {
+  return {static_cast<int>(std::floor(point.x() / edge)),
+          static_cast<int>(std::floor(point.y() / edge)),
+          static_cast<int>(std::floor(point.z() / edge))};
+}
+
+template <class Map>
+const typename Map::value_type* near(const Map& voxels, const Key& key) {
+  if (const auto same = voxels.find(key); same != voxels.end()) return &*same;
+  for (int x = -1; x <= 1; ++x)
+    for (int y = -1; y <= 1; ++y)
+      for (int z = -1; z <= 1; ++z)
+        if (const auto found = voxels.find({key[0] + x, key[1] + y, key[2] + z});
+            found != voxels.end())
+          return &*found;
+  return nullptr;
+}
+
+std::vector<LabelledFrame> read_truth(const std::filesystem::path& folder) {
+  std::vector<LabelledFrame> frames;
+  for (TrueFrame& seen : read_true_frames(folder, kEvery)) {
+    cv::Mat labels = cv::imread(folder / "labels" / seen.name, cv::IMREAD_UNCHANGED);
+    frames.push_back({std::move(seen), std::move(labels)});
+  }
+  return frames;
+}
+
+Truth truth_in(const std::vector<LabelledFrame>& frames, const Pose& map_from_truth, double edge) {
+  Truth truth;
+  truth.seconds = frames.back().seen.frame->time - frames.front().seen.frame->time;
+  for (const auto& [seen, labels] : frames) {
+    const Pose map_from_camera = map_from_truth * seen.world_from_camera;
+    const cv::Mat& depth = seen.frame->depth;
+    for (int v = 0; v < depth.rows; ++v)
+      for (int u = 0; u < depth.cols; ++u) {
+        const Eigen::Vector3d point = seen.frame->camera->unproject(u, v, depth.at<float>(v, u));
+        if (point.z() <= 0 || point.norm() > kRange) continue;
+        const Key key = key_of(map_from_camera * point, edge);
+        const std::uint8_t label = labels.at<std::uint8_t>(v, u);
+        if (label == kPerson)
+          ++truth.people[key];
+        else
+          ++truth.still[key][label];
+      }
+  }
+  return truth;
+}
+
+std::uint8_t most_seen(const std::map<std::uint8_t, int>& counts) {
+  return std::ranges::max_element(counts, {}, [](const auto& c) { return c.second; })->first;
+}
+
+double ratio(double part, double whole) { return whole > 0 ? part / whole : 0; }
+
+nlohmann::json judge(const SemanticOctree& tree, const Truth& truth) {
+  std::unordered_map<Key, std::uint8_t, KeyHash> occupied;
+  std::map<int, std::array<int,3>> hist;
+  for_each_occupied_voxel(tree, [&](const Eigen::Vector3d& at, const SemanticVoxel& voxel) {
+    const Key key = key_of(at, tree.getResolution());
+    const bool real = near(truth.still, key), ghost = !real && near(truth.people, key);
+    auto& h = hist[int(voxel.getLogOdds() * 10)];
+    ++h[real ? 0 : ghost ? 1 : 2];
+  });
+  for (auto& [k, h] : hist) std::cerr << k / 10.0 << ": real " << h[0] << " ghost " << h[1] << " other " << h[2] << "\n";
+  for_each_occupied_voxel(tree, [&](const Eigen::Vector3d& at, const SemanticVoxel& voxel) {
+    occupied[key_of(at, tree.getResolution())] = voxel.classes().best();
+  });
+  std::size_t right = 0, ghosts = 0, found = 0, same_class = 0;
+  std::array<std::array<double, 3>, 256> classes{};  // in both, in the map, in truth
+  for (const auto& [key, label] : occupied) {
+    const auto* real = near(truth.still, key);
+    if (!real) {
+      ghosts += near(truth.people, key) != nullptr;
+      continue;
+    }
+    ++right;
+    const std::uint8_t expected = most_seen(real->second);
+    same_class += expected == label;
+    if (expected == label) ++classes[label][0];
+    ++classes[label][1];
+    ++classes[expected][2];
+  }
+  for (const auto& [key, counts] : truth.still) found += near(occupied, key) != nullptr;
+  double iou = 0;
+  int kinds = 0;
+  for (const auto& [both, mapped, real] : classes) {
+    if (real == 0) continue;
+    ++kinds;
+    iou += both / (mapped + real - both);
+  }
+  const double precision = ratio(right, occupied.size()), recall = ratio(found, truth.still.size());
+  return {{"occupied", occupied.size()},
+          {"precision", precision},
+          {"recall", recall},
+          {"f_score", ratio(2 * precision * recall, precision + recall)},
+          {"class_accuracy", ratio(same_class, right)},
+          {"mean_iou", ratio(iou, kinds)},
+          {"classes", kinds},
+          {"ghosts", ghosts},
+          {"ghosts_per_s", ratio(ghosts, truth.seconds)}};
+}
+
+// The map that exact images at exact poses give, without people.
+std::unique_ptr<OctomapBackend> exact_map(const std::vector<LabelledFrame>& frames,
+                                          const Pose& map_from_truth, double edge) {
+  auto map = std::make_unique<OctomapBackend>(
+      OctomapBackend::Options{.resolution = edge, .range = kRange}, StageContext{});
+  KeyFrameId id = 0;
+  for (const auto& [seen, labels] : frames) {
+    auto frame = std::make_shared<Frame>(*seen.frame);
+    cv::cvtColor(frame->gray, frame->bgr, cv::COLOR_GRAY2BGR);
+    auto weights = std::make_shared<StaticWeights>();
+    cv::dilate(labels == kPerson, weights->map, cv::Mat::ones(5, 5, CV_8U));
+    weights->map = 255 - weights->map;
+    map->integrate({.id = id++,
+                    .frame = frame,
+                    .weights = weights,
+                    .world_from_camera = map_from_truth * seen.world_from_camera});
+  }
+  return map;
+}
+
+// As a planner sees it: cells that are wrongly in its way, and things it would run into.
+nlohmann::json judge_cost_map(const SemanticOctree& tree, const SemanticOctree& exact,
+                              const Truth& truth) {
+  const auto floor = floor_of(exact, {});
+  if (!floor) return nullptr;
+  const CostMap ours = project(tree, *floor, {}), real = project(exact, *floor, {});
+  cv::Mat shown(real.cells.size(), CV_8U, cv::Scalar(CostMap::kUnknown));  // ours on its cells
+  const cv::Point shift(cvRound((ours.corner.x() - real.corner.x()) / real.resolution),
+                        cvRound((real.corner.y() - ours.corner.y()) / real.resolution) +
+                            real.cells.rows - ours.cells.rows);
+  for (int y = 0; y < shown.rows; ++y)
+    for (int x = 0; x < shown.cols; ++x) {
+      const cv::Point at = cv::Point(x, y) - shift;
+      if (cv::Rect({}, ours.cells.size()).contains(at))
+        shown.at<std::uint8_t>(y, x) = ours.cells.at<std::uint8_t>(at);
+    }
+  cv::Mat walked = cv::Mat::zeros(shown.size(), CV_8U), near_real, near_ours;
+  for (const auto& [key, count] : truth.people) {
+    const Eigen::Vector3d at =
+        real.resolution * (Eigen::Vector3d(key[0], key[1], key[2]).array() + 0.5).matrix();
+    const cv::Point cell = real.cell_of(at);
+    if (cv::Rect({}, walked.size()).contains(cell)) walked.at<std::uint8_t>(cell) = 255;
+  }
+  const cv::Mat window = cv::Mat::ones(3, 3, CV_8U);
+  cv::dilate(real.cells == CostMap::kOccupied, near_real, window);
+  cv::dilate(shown == CostMap::kOccupied, near_ours, window);
+  const cv::Mat obstacle = shown == CostMap::kOccupied, thing = real.cells == CostMap::kOccupied;
+  const cv::Mat false_obstacle = obstacle & ~near_real & (real.cells == CostMap::kFree);
+  return {
+      {"obstacles", cv::countNonZero(obstacle)},
+      {"false", cv::countNonZero(false_obstacle)},
+      {"false_where_people_walked", cv::countNonZero(false_obstacle & walked)},
+      {"things", cv::countNonZero(thing)},
+      {"missing", cv::countNonZero(thing & ~near_ours & (shown == CostMap::kFree))},
+      {"unseen", cv::countNonZero(thing & ~near_ours & (shown == CostMap::kUnknown))},
+      {"free", cv::countNonZero(real.cells == CostMap::kFree)},
+      {"free_found", cv::countNonZero((real.cells == CostMap::kFree) & (shown == CostMap::kFree))}};
+}
+
+// The mean over all poses: positions alone do not fix the rotation of a camera that hardly moves.
+Pose map_from_truth_of(const std::filesystem::path& truth, const std::filesystem::path& run) {
+  const auto result =
+      evaluation::evaluate(evaluation::read_trajectory(truth / "groundtruth.txt"),
+                           evaluation::read_trajectory(run / "trajectory.txt"), {}, {});
+  Pose mean = Pose::Identity();
+  mean.matrix().setZero();
+  for (const auto& [real, estimated] : result.pairs)
+    mean.matrix() += (result.estimate.poses[estimated].world_from_camera *
+                      result.reference.poses[real].world_from_camera.inverse())
+                         .matrix() /
+                     static_cast<double>(result.pairs.size());
+  return orthonormalised(mean);
+}
+
+void run(const std::vector<std::filesystem::path>& folders) {
+  const std::vector<LabelledFrame> frames = read_truth(folders[0]);
+  for (std::size_t i = 1; i < folders.size(); ++i) {
+    const SavedOctree saved = read_octree(folders[i] / "map" / "map.ot");
+    const Pose map_from_truth = map_from_truth_of(folders[0], folders[i]);
+    const double edge = saved.tree->getResolution();
+    const Truth truth = truth_in(frames, map_from_truth, edge);
+    nlohmann::json result = {{"run", folders[i].string()}};
+    result.update(judge(*saved.tree, truth));
+    result["cost_map"] =
+        judge_cost_map(*saved.tree, exact_map(frames, map_from_truth, edge)->tree(), truth);
+    std::cout << result.dump() << std::endl;
+  }
+}
+
+}  // namespace
+}  // namespace stillpoint
+
+int main(int argc, char** argv) {
+  if (argc < 3) {
+    std::cerr << "dense_map_accuracy TRUTH RUN...\n";
+    return 2;
+  }
+  try {
+    stillpoint::run({argv + 1, argv + argc});
+  } catch (const std::exception& error) {
+    std::cerr << "error: " << error.what() << '\n';
+    return 1;
+  }
+  return 0;
+}

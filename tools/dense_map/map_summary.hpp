@@ -1,0 +1,40 @@
+// What a saved dense map holds.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "map_octomap/floor_plane.hpp"
+#include "map_octomap/octree_reader.hpp"
+
+namespace stillpoint::dense_map {
+
+struct ClassShare {
+  std::string name;
+  std::size_t voxels = 0;  ///< occupied ones
+  double confidence = 0;   ///< mean over them
+};
+
+struct MapSummary {
+  double resolution = 0;                        ///< metres
+  std::size_t occupied = 0, free = 0;           ///< voxels
+  std::size_t nodes = 0, memory = 0;            ///< of the tree; bytes
+  Eigen::Vector3d low{0, 0, 0}, high{0, 0, 0};  ///< box around what is occupied, metres in world
+  bool has_colors = false;
+  std::optional<FloorPlane> floor;
+  std::vector<ClassShare> classes;  ///< those that occur, most voxels first; empty: unknown
+
+  /// Square metres of occupied voxels seen flat.
+  double surface() const { return static_cast<double>(occupied) * resolution * resolution; }
+};
+
+MapSummary summarise(const SavedOctree& map);
+
+std::string summary_table(const MapSummary& summary, const std::string& name);
+nlohmann::json summary_json(const MapSummary& summary);
+
+}  // namespace stillpoint::dense_map
