@@ -20,7 +20,7 @@ namespace {
 AtomicFile::AtomicFile(std::filesystem::path path)
     : path_(std::move(path)), temporary_(path_.string() + ".part") {
   std::error_code error;
-  std::filesystem::create_directories(path_.parent_path(), error);
+  if (path_.has_parent_path()) std::filesystem::create_directories(path_.parent_path(), error);
   if (error) fail(path_.parent_path(), error.value());
   stream_.open(temporary_, std::ios::binary | std::ios::trunc);
   if (!stream_) fail(temporary_, errno);

@@ -107,14 +107,6 @@ double ratio(double part, double whole) { return whole > 0 ? part / whole : 0; }
 
 nlohmann::json judge(const SemanticOctree& tree, const Truth& truth) {
   std::unordered_map<Key, std::uint8_t, KeyHash> occupied;
-  std::map<int, std::array<int,3>> hist;
-  for_each_occupied_voxel(tree, [&](const Eigen::Vector3d& at, const SemanticVoxel& voxel) {
-    const Key key = key_of(at, tree.getResolution());
-    const bool real = near(truth.still, key), ghost = !real && near(truth.people, key);
-    auto& h = hist[int(voxel.getLogOdds() * 10)];
-    ++h[real ? 0 : ghost ? 1 : 2];
-  });
-  for (auto& [k, h] : hist) std::cerr << k / 10.0 << ": real " << h[0] << " ghost " << h[1] << " other " << h[2] << "\n";
   for_each_occupied_voxel(tree, [&](const Eigen::Vector3d& at, const SemanticVoxel& voxel) {
     occupied[key_of(at, tree.getResolution())] = voxel.classes().best();
   });

@@ -1,8 +1,8 @@
 // The command line. Exit codes: 0 done, 1 a stage failed, 2 wrong usage or configuration,
 // 3 unusable data.
-#include <algorithm>
 #include <exception>
 #include <iostream>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -21,13 +21,18 @@ constexpr void (*kCommands[])(CLI::App&) = {
     stillpoint::add_run,     stillpoint::add_simulate,
 };
 
-/// CLI11 would only say that a subcommand is required.
-void check_command(const CLI::App& app, const std::string& word) {
+/// CLI11 would only say that a subcommand is required. `words` begins with what should be one.
+void check_command(const CLI::App& app, std::span<char*> words, const std::string& where) {
+  const std::vector<const CLI::App*> commands = app.get_subcommands({});
+  if (commands.empty() || words.empty() || words[0][0] == '-') return;
+  const std::string word = words[0];
   std::vector<std::string> names;
-  for (const CLI::App* command : app.get_subcommands({})) names.push_back(command->get_name());
-  if (word.starts_with('-') || std::ranges::find(names, word) != names.end()) return;
+  for (const CLI::App* command : commands) {
+    names.push_back(command->get_name());
+    if (names.back() == word) return check_command(*command, words.subspan(1), where + ' ' + word);
+  }
   throw Error(Fault::kUsage, "no command '" + word + "'" + stillpoint::did_you_mean(word, names),
-              "stillpoint", "there are: " + stillpoint::join(names));
+              where, "there are: " + stillpoint::join(names));
 }
 
 int run(int argc, char** argv) {
@@ -43,7 +48,7 @@ int run(int argc, char** argv) {
            " --help' for help.\n";
   });
   for (const auto add : kCommands) add(app);
-  if (argc > 1) check_command(app, argv[1]);
+  check_command(app, std::span(argv, static_cast<std::size_t>(argc)).subspan(1), "stillpoint");
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -78,7 +78,11 @@ void MappingSystem::end() {
 void MappingSystem::save(const std::filesystem::path& directory) {
   if (!map_backend_.present()) return;
   map_backend_.call_unmeasured({}, [&](MapBackend& backend) {
-    std::filesystem::create_directories(directory);
+    std::error_code error;
+    std::filesystem::create_directories(directory, error);
+    if (error)
+      throw Error(Fault::kUsage, "cannot be made: " + error.message(), directory.string(),
+                  "choose another folder for the run");
     backend.save(directory);
   });
 }

@@ -1,0 +1,119 @@
+#include "stillpoint/atomic_file.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+
+#include <csignal>
+#include <filesystem>
+#include <iterator>
+#include <string>
+
+#include "stillpoint/error.hpp"
+
+namespace stillpoint {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// While it lives, no file of this process can grow beyond a size: as on a full disk.
+class FullDisk {
+ public:
+  explicit FullDisk(rlim_t bytes) : handler_(std::signal(SIGXFSZ, SIG_IGN)) {
+    ::getrlimit(RLIMIT_FSIZE, &before_);
+    const rlimit limit{.rlim_cur = bytes, .rlim_max = before_.rlim_max};
+    ::setrlimit(RLIMIT_FSIZE, &limit);
+  }
+  ~FullDisk() {
+    ::setrlimit(RLIMIT_FSIZE, &before_);
+    std::signal(SIGXFSZ, handler_);
+  }
+
+ private:
+  rlimit before_{};
+  void (*handler_)(int);
+};
+
+class AtomicFileTest : public ::testing::Test {
+ protected:
+  AtomicFileTest() {
+    fs::remove_all(folder_);
+    fs::create_directories(folder_);
+  }
+  ~AtomicFileTest() override { fs::remove_all(folder_); }
+
+  static std::string contents(const fs::path& file) {
+    std::ifstream stream(file, std::ios::binary);
+    return {std::istreambuf_iterator<char>(stream), {}};
+  }
+  std::size_t files() const {
+    return static_cast<std::size_t>(
+        std::distance(fs::directory_iterator(folder_), fs::directory_iterator()));
+  }
+  static void write(const fs::path& file, const std::string& text) {
+    AtomicFile out(file);
+    out.stream() << text;
+    out.commit();
+  }
+
+  const fs::path folder_ = fs::temp_directory_path() / "stillpoint_atomic_file_test";
+};
+
+TEST_F(AtomicFileTest, IsThereOnceItIsCommitted) {
+  const fs::path file = folder_ / "new" / "folders" / "map";
+  {
+    AtomicFile out(file);
+    out.stream() << "text";
+    EXPECT_FALSE(fs::exists(file));
+    out.commit();
+  }
+  EXPECT_EQ(contents(file), "text");
+}
+
+TEST_F(AtomicFileTest, WithoutCommitNothingIsLeft) {
+  write(folder_ / "map", "old");
+  {
+    AtomicFile out(folder_ / "map");
+    out.stream() << "new";
+  }
+  EXPECT_EQ(contents(folder_ / "map"), "old");
+  EXPECT_EQ(files(), 1U);
+}
+
+TEST_F(AtomicFileTest, OnAFullDiskTheEarlierFileStaysWhole) {
+  write(folder_ / "map", "old");
+  {
+    const FullDisk full(65536);
+    AtomicFile out(folder_ / "map");
+    out.stream() << std::string(1 << 20, 'x');
+    try {
+      out.commit();
+      FAIL() << "a file that is not whole was put in its place";
+    } catch (const Error& error) {
+      EXPECT_EQ(error.fault(), Fault::kUsage);
+      EXPECT_THAT(error.what(), testing::HasSubstr("map.part: cannot write: "));
+      EXPECT_THAT(error.what(), testing::HasSubstr("free space"));
+    }
+  }
+  EXPECT_EQ(contents(folder_ / "map"), "old");
+  EXPECT_EQ(files(), 1U);
+}
+
+TEST_F(AtomicFileTest, InTheWorkingFolder) {
+  const fs::path before = fs::current_path();
+  fs::current_path(folder_);
+  write("map", "text");
+  fs::current_path(before);
+  EXPECT_EQ(contents(folder_ / "map"), "text");
+}
+
+TEST_F(AtomicFileTest, WhereNoFileCanBeIsAnError) {
+  write(folder_ / "map", "a file");
+  EXPECT_THROW(AtomicFile(folder_ / "map" / "file"), Error);
+  EXPECT_THROW(AtomicFile("/proc/no_such_folder/file"), Error);
+  fs::create_directories(folder_ / "folder" / "inside");
+  EXPECT_THROW(write(folder_ / "folder", "text"), Error);
+}
+
+}  // namespace
+}  // namespace stillpoint
