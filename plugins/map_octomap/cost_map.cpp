@@ -13,7 +13,8 @@
 namespace stillpoint {
 namespace {
 
-constexpr double kLow = 0.3;  // metres above `from`: no lower obstacle hides under free space there
+constexpr double kLow = 0.3;  // metres above `from`: no low obstacle hides under free space there
+constexpr double kSeenThrough = 0.5;  // of a column: what is free below a table top is not free
 
 Pose floor_from_world(const FloorPlane& floor) {
   Eigen::Vector3d ahead = Eigen::Vector3d::UnitZ() - floor.up.z() * floor.up;
@@ -43,7 +44,7 @@ void for_each_part(const Eigen::Vector3d& centre, double edge, double step, Func
 class Projection {
  public:
   Projection(const SemanticOctree& tree, const FloorPlane& floor, const CostMapOptions& options)
-      : tree_(tree), options_(options) {
+      : tree_(tree), options_(options), part_(0.5 * tree.getResolution()) {
     map_.resolution = tree.getResolution();
     map_.floor_from_world = floor_from_world(floor);
   }
@@ -51,29 +52,30 @@ class Projection {
   CostMap run() {
     make_cells();
     for_each_leaf([&](const Eigen::Vector3d& centre, double edge, bool occupied) {
-      for_each_part(centre, edge, 0.5 * map_.resolution, [&](const Eigen::Vector3d& part) {
-        const Eigen::Vector3d at = map_.floor_from_world * part;
-        if (at.z() >= options_.from && at.z() < options_.to && occupied)
-          paint(at, CostMap::kOccupied);
-        else if (occupied ? std::abs(at.z()) < options_.from
-                          : at.z() >= options_.from && at.z() < options_.from + kLow)
-          paint(at, CostMap::kFree);
+      for_each_part(centre, edge, part_, [&](const Eigen::Vector3d& part) {
+        add(map_.floor_from_world * part, occupied);
       });
     });
+    decide();
     grow_obstacles();
     return std::move(map_);
   }
 
  private:
+  // What is above a cell.
+  struct Column {
+    bool obstacle = false;
+    bool low = false;  // the floor was seen, or what is just above it looked through
+    int free = 0;      // parts
+  };
+
   template <typename Function>
   void for_each_leaf(Function&& function) const {
     for (auto leaf = tree_.begin_leafs(); leaf != tree_.end_leafs(); ++leaf) {
-      const bool occupied = tree_.isNodeOccupied(*leaf);
-      const double high = occupied ? options_.to : options_.from + kLow;
       const Eigen::Vector3d centre(leaf.getX(), leaf.getY(), leaf.getZ());
       const double height = (map_.floor_from_world * centre).z();
-      if (height + leaf.getSize() > -options_.from && height - leaf.getSize() < high)
-        function(centre, leaf.getSize(), occupied);
+      if (height + leaf.getSize() > -options_.from && height - leaf.getSize() < options_.to)
+        function(centre, leaf.getSize(), tree_.isNodeOccupied(*leaf));
     }
   }
 
@@ -92,13 +94,33 @@ class Projection {
     const Eigen::Array2i size =
         ((high.array() + margin - map_.corner.array()) / map_.resolution).ceil().cast<int>();
     map_.cells = cv::Mat(size.y(), size.x(), CV_8UC1, cv::Scalar(CostMap::kUnknown));
+    columns_.resize(map_.cells.total());
   }
 
-  void paint(const Eigen::Vector3d& at, std::uint8_t what) {
+  void add(const Eigen::Vector3d& at, bool occupied) {
     const auto column = static_cast<int>((at.x() - map_.corner.x()) / map_.resolution);
     const auto row = static_cast<int>((at.y() - map_.corner.y()) / map_.resolution);
-    std::uint8_t& cell = map_.cells.at<std::uint8_t>(map_.cells.rows - 1 - row, column);
-    if (cell != CostMap::kOccupied) cell = what;  // in whatever order they come
+    Column& cell =
+        columns_[static_cast<std::size_t>((map_.cells.rows - 1 - row) * map_.cells.cols + column)];
+    const bool inside = at.z() >= options_.from && at.z() < options_.to;
+    cell.obstacle |= occupied && inside;
+    cell.low |=
+        occupied ? std::abs(at.z()) < options_.from : inside && at.z() < options_.from + kLow;
+    cell.free += !occupied && inside;
+    carved_ |= !occupied;
+  }
+
+  void decide() {
+    const double parts_per_column = (options_.to - options_.from) / part_ *
+                                    (map_.resolution / part_) * (map_.resolution / part_);
+    std::uint8_t* cell = map_.cells.data;
+    for (const Column& column : columns_) {
+      if (column.obstacle)
+        *cell = CostMap::kOccupied;
+      else if (column.low && (!carved_ || column.free > kSeenThrough * parts_per_column))
+        *cell = CostMap::kFree;
+      ++cell;
+    }
   }
 
   void grow_obstacles() {
@@ -111,7 +133,10 @@ class Projection {
 
   const SemanticOctree& tree_;
   const CostMapOptions& options_;
+  double part_;  // metres
   CostMap map_;
+  std::vector<Column> columns_;  // of the cells, in their order
+  bool carved_ = false;          // whether the map knows free space at all
 };
 
 }  // namespace

@@ -45,9 +45,9 @@ struct CostMap {
 /// first camera, whose frame is the world, was held upright to within 50°.
 std::optional<FloorPlane> floor_of(const SemanticOctree& tree, const CostMapOptions& options);
 
-/// Occupied: a voxel between the two heights is. Free: none is, and just above `from` something was
-/// looked through, or the floor itself was seen. Only free space that low says that there is no low
-/// obstacle. All else is unknown.
+/// Occupied: a voxel between the two heights is. Free: none is, at least half of what is between
+/// them was looked through, and its lower end as well, or the floor itself was seen: no low
+/// obstacle is there. All else is unknown.
 CostMap project(const SemanticOctree& tree, const FloorPlane& floor, const CostMapOptions& options);
 
 /// `stem`.pgm and `stem`.yaml (mode trinary; besides map_server's keys `world_from_map`: position

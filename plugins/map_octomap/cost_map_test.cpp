@@ -129,6 +129,36 @@ TEST_F(CostMapOfRoom, WhatIsAboveTheRobotIsNoObstacle) {
   EXPECT_EQ(at(below, -1.4, -0.4), CostMap::kFree);
 }
 
+TEST_F(CostMapOfRoom, WithoutFreeSpaceTheFloorIsFree) {
+  CostMapOptions options;
+  options.floor = {0, 0, 1, 0.02};
+  const auto map = map_of({}, {.model = OctomapBackend::Options::Model::kHits});
+  const CostMap cells = project(map->tree(), *floor_of(map->tree(), options), options);
+  EXPECT_EQ(at(cells, -1.4, -0.4), CostMap::kFree);
+  EXPECT_EQ(at(cells, 1.93, -0.4), CostMap::kOccupied);
+}
+
+// A table top on nothing: below it, a robot could drive, or not; it was not looked through.
+TEST(CostMap, BelowATableIsNotFree) {
+  SemanticOctree tree(0.05);
+  const auto set = [&](double x, double y, double z, bool occupied) {
+    tree.updateNode(
+        octomap::point3d(static_cast<float>(x), static_cast<float>(y), static_cast<float>(z)),
+        occupied);
+  };
+  for (double x = -1; x < 2; x += 0.05)
+    for (double y = -1; y < 1; y += 0.05) {
+      set(x, y, -0.025, true);
+      for (double z = 0.025; z < 1.9; z += 0.05)
+        if (x < 1 || z < 0.7) set(x, y, z, false);  // beyond, the upper half is unknown
+    }
+  CostMapOptions options;
+  options.floor = {0, 0, 1, 0};
+  const CostMap map = project(tree, *floor_of(tree, options), options);
+  EXPECT_EQ(map.cells.at<std::uint8_t>(map.cell_of({0.02, 0.02, 0})), CostMap::kFree);
+  EXPECT_EQ(map.cells.at<std::uint8_t>(map.cell_of({1.52, 0.02, 0})), CostMap::kUnknown);
+}
+
 TEST_F(CostMapOfRoom, FilesForMapServer) {
   const auto folder = empty_folder("cost_map_test");
   const CostMap map = projected({});

@@ -6,17 +6,14 @@
 // each.
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <iostream>
-#include <map>
 #include <nlohmann/json.hpp>
 #include <opencv2/imgproc.hpp>
-#include <set>
 #include <string>
 #include <unordered_map>
 #include <vector>
 
-#include "benchmarks/true_recording.hpp"
+#include "benchmarks/voxel_truth.hpp"
 #include "evaluation/evaluation.hpp"
 #include "map_octomap/cost_map.hpp"
 #include "map_octomap/octomap_backend.hpp"
@@ -26,82 +23,7 @@
 namespace stillpoint {
 namespace {
 
-constexpr int kEvery = 5;       // frames of the truth
-constexpr double kRange = 4.0;  // metres
-constexpr std::uint8_t kPerson = 15;
-
-using Key = std::array<int, 3>;
-struct KeyHash {
-  std::size_t operator()(const Key& k) const {
-    return static_cast<std::size_t>(k[0]) * 73856093U ^ static_cast<std::size_t>(k[1]) * 19349663U ^
-           static_cast<std::size_t>(k[2]) * 83492791U;
-  }
-};
-
-/// What is where, in the frame of the map that is judged: of what stands still, pixels by class;
-/// and what people have been in.
-struct Truth {
-  std::unordered_map<Key, std::map<std::uint8_t, int>, KeyHash> still;
-  std::unordered_map<Key, int, KeyHash> people;
-  double seconds = 0;
-};
-
-struct LabelledFrame {
-  TrueFrame seen;
-  cv::Mat labels;
-};
-
-Key key_of(const Eigen::Vector3d& point, double edge) {
-  return {static_cast<int>(std::floor(point.x() / edge)),
-          static_cast<int>(std::floor(point.y() / edge)),
-          static_cast<int>(std::floor(point.z() / edge))};
-}
-
-template <class Map>
-const typename Map::value_type* near(const Map& voxels, const Key& key) {
-  if (const auto same = voxels.find(key); same != voxels.end()) return &*same;
-  for (int x = -1; x <= 1; ++x)
-    for (int y = -1; y <= 1; ++y)
-      for (int z = -1; z <= 1; ++z)
-        if (const auto found = voxels.find({key[0] + x, key[1] + y, key[2] + z});
-            found != voxels.end())
-          return &*found;
-  return nullptr;
-}
-
-std::vector<LabelledFrame> read_truth(const std::filesystem::path& folder) {
-  std::vector<LabelledFrame> frames;
-  for (TrueFrame& seen : read_true_frames(folder, kEvery)) {
-    cv::Mat labels = cv::imread(folder / "labels" / seen.name, cv::IMREAD_UNCHANGED);
-    frames.push_back({std::move(seen), std::move(labels)});
-  }
-  return frames;
-}
-
-Truth truth_in(const std::vector<LabelledFrame>& frames, const Pose& map_from_truth, double edge) {
-  Truth truth;
-  truth.seconds = frames.back().seen.frame->time - frames.front().seen.frame->time;
-  for (const auto& [seen, labels] : frames) {
-    const Pose map_from_camera = map_from_truth * seen.world_from_camera;
-    const cv::Mat& depth = seen.frame->depth;
-    for (int v = 0; v < depth.rows; ++v)
-      for (int u = 0; u < depth.cols; ++u) {
-        const Eigen::Vector3d point = seen.frame->camera->unproject(u, v, depth.at<float>(v, u));
-        if (point.z() <= 0 || point.norm() > kRange) continue;
-        const Key key = key_of(map_from_camera * point, edge);
-        const std::uint8_t label = labels.at<std::uint8_t>(v, u);
-        if (label == kPerson)
-          ++truth.people[key];
-        else
-          ++truth.still[key][label];
-      }
-  }
-  return truth;
-}
-
-std::uint8_t most_seen(const std::map<std::uint8_t, int>& counts) {
-  return std::ranges::max_element(counts, {}, [](const auto& c) { return c.second; })->first;
-}
+constexpr int kEvery = 5;  // frames of the truth
 
 double ratio(double part, double whole) { return whole > 0 ? part / whole : 0; }
 
@@ -199,6 +121,7 @@ nlohmann::json judge_cost_map(const SemanticOctree& tree, const SemanticOctree& 
       {"false_where_people_walked", cv::countNonZero(false_obstacle & walked)},
       {"things", cv::countNonZero(thing)},
       {"missing", cv::countNonZero(thing & ~near_ours & (shown == CostMap::kFree))},
+      {"holes", cv::countNonZero(thing & (shown == CostMap::kFree))},
       {"unseen", cv::countNonZero(thing & ~near_ours & (shown == CostMap::kUnknown))},
       {"free", cv::countNonZero(real.cells == CostMap::kFree)},
       {"free_found", cv::countNonZero((real.cells == CostMap::kFree) & (shown == CostMap::kFree))}};
@@ -220,7 +143,7 @@ Pose map_from_truth_of(const std::filesystem::path& truth, const std::filesystem
 }
 
 void run(const std::vector<std::filesystem::path>& folders) {
-  const std::vector<LabelledFrame> frames = read_truth(folders[0]);
+  const std::vector<LabelledFrame> frames = read_labelled_frames(folders[0], kEvery);
   for (std::size_t i = 1; i < folders.size(); ++i) {
     const SavedOctree saved = read_octree(folders[i] / "map" / "map.ot");
     const Pose map_from_truth = map_from_truth_of(folders[0], folders[i]);

@@ -1,13 +1,15 @@
 // Integration of key frames into the octree, beside OctoMap's own: every thirtieth frame of the
-// recordings in the folder STILLPOINT_RECORDINGS, all pixels, 4 m.
+// recordings in the folder STILLPOINT_RECORDINGS, all pixels, 4 m. And the correction after a loop:
+// a hundred key frames that have all moved.
 #include <benchmark/benchmark.h>
 #include <octomap/ColorOcTree.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <string>
 
 #include "benchmarks/true_recording.hpp"
-#include "map_octomap/semantic_octree.hpp"
+#include "map_octomap/octomap_backend.hpp"
 
 namespace stillpoint {
 namespace {
@@ -15,12 +17,13 @@ namespace {
 constexpr double kRange = 4.0;  // metres
 constexpr int kEvery = 30;
 
-std::vector<DenseKeyFrame> keyframes_of(const std::filesystem::path& folder) {
+std::vector<DenseKeyFrame> keyframes_of(const std::filesystem::path& folder, int every = kEvery) {
   std::vector<DenseKeyFrame> keyframes;
-  for (const TrueFrame& seen : read_true_frames(folder, kEvery)) {
+  for (const TrueFrame& seen : read_true_frames(folder, every)) {
     auto frame = std::make_shared<Frame>(*seen.frame);
     cv::cvtColor(frame->gray, frame->bgr, cv::COLOR_GRAY2BGR);
-    keyframes.push_back({.frame = frame, .world_from_camera = seen.world_from_camera});
+    keyframes.push_back(
+        {.id = frame->index, .frame = frame, .world_from_camera = seen.world_from_camera});
   }
   return keyframes;
 }
@@ -91,6 +94,27 @@ void octomaps(benchmark::State& state, const std::filesystem::path& folder, doub
       benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
 }
 
+// As the back end does it, with the pixels that it keeps.
+void correction(benchmark::State& state, const std::filesystem::path& folder, double resolution) {
+  constexpr std::size_t kKeyFrames = 100;
+  std::vector<DenseKeyFrame> keyframes = keyframes_of(folder, 7);
+  keyframes.resize(std::min(keyframes.size(), kKeyFrames));
+  OctomapBackend map({.resolution = resolution, .range = kRange}, StageContext{});
+  for (const DenseKeyFrame& keyframe : keyframes) map.integrate(keyframe);
+  double side = 1;
+  for (auto _ : state) {
+    std::vector<MovedKeyFrame> moved;
+    for (const DenseKeyFrame& keyframe : keyframes) {
+      Pose pose = keyframe.world_from_camera;
+      pose.translation().x() += side * 0.001 * keyframe.id;
+      moved.push_back({keyframe.id, pose});
+    }
+    map.move(moved);
+    side = -side;
+  }
+  state.counters["keyframes"] = static_cast<double>(keyframes.size());
+}
+
 [[maybe_unused]] const bool kRegistered = [] {
   for (const auto& folder : recordings_to_measure())
     for (const double resolution : {0.05, 0.02}) {
@@ -104,6 +128,7 @@ void octomaps(benchmark::State& state, const std::filesystem::path& folder, doub
       add("scan", scans_only);
       add("ours", ours);
       add("octomap", octomaps);
+      add("correction", correction);
     }
   return true;
 }();

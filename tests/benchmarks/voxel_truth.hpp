@@ -1,0 +1,96 @@
+// What is where in a simulated recording, voxel by voxel, for programs that judge dense maps.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <map>
+#include <opencv2/imgcodecs.hpp>
+#include <unordered_map>
+#include <utility>
+#include <vector>
+
+#include "benchmarks/true_recording.hpp"
+
+namespace stillpoint {
+
+inline constexpr double kRange = 4.0;  // metres
+inline constexpr std::uint8_t kPerson = 15;
+
+using Key = std::array<int, 3>;
+struct KeyHash {
+  std::size_t operator()(const Key& k) const {
+    return static_cast<std::size_t>(k[0]) * 73856093U ^ static_cast<std::size_t>(k[1]) * 19349663U ^
+           static_cast<std::size_t>(k[2]) * 83492791U;
+  }
+};
+
+/// What is where, in the frame of the map that is judged: of what stands still, pixels by class;
+/// and what people have been in.
+struct Truth {
+  std::unordered_map<Key, std::map<std::uint8_t, int>, KeyHash> still;
+  std::unordered_map<Key, int, KeyHash> people;
+  double seconds = 0;
+};
+
+struct LabelledFrame {
+  TrueFrame seen;
+  cv::Mat labels;
+};
+
+inline Key key_of(const Eigen::Vector3d& point, double edge) {
+  return {static_cast<int>(std::floor(point.x() / edge)),
+          static_cast<int>(std::floor(point.y() / edge)),
+          static_cast<int>(std::floor(point.z() / edge))};
+}
+
+template <class Map>
+const typename Map::value_type* near(const Map& voxels, const Key& key) {
+  if (const auto same = voxels.find(key); same != voxels.end()) return &*same;
+  for (int x = -1; x <= 1; ++x)
+    for (int y = -1; y <= 1; ++y)
+      for (int z = -1; z <= 1; ++z)
+        if (const auto found = voxels.find({key[0] + x, key[1] + y, key[2] + z});
+            found != voxels.end())
+          return &*found;
+  return nullptr;
+}
+
+inline std::vector<LabelledFrame> read_labelled_frames(const std::filesystem::path& folder,
+                                                       int every) {
+  std::vector<LabelledFrame> frames;
+  for (TrueFrame& seen : read_true_frames(folder, every)) {
+    cv::Mat labels = cv::imread(folder / "labels" / seen.name, cv::IMREAD_UNCHANGED);
+    frames.push_back({std::move(seen), std::move(labels)});
+  }
+  return frames;
+}
+
+inline Truth truth_in(const std::vector<LabelledFrame>& frames, const Pose& map_from_truth,
+                      double edge) {
+  Truth truth;
+  truth.seconds = frames.back().seen.frame->time - frames.front().seen.frame->time;
+  for (const auto& [seen, labels] : frames) {
+    const Pose map_from_camera = map_from_truth * seen.world_from_camera;
+    const cv::Mat& depth = seen.frame->depth;
+    for (int v = 0; v < depth.rows; ++v)
+      for (int u = 0; u < depth.cols; ++u) {
+        const Eigen::Vector3d point = seen.frame->camera->unproject(u, v, depth.at<float>(v, u));
+        if (point.z() <= 0 || point.norm() > kRange) continue;
+        const Key key = key_of(map_from_camera * point, edge);
+        const std::uint8_t label = labels.at<std::uint8_t>(v, u);
+        if (label == kPerson)
+          ++truth.people[key];
+        else
+          ++truth.still[key][label];
+      }
+  }
+  return truth;
+}
+
+inline std::uint8_t most_seen(const std::map<std::uint8_t, int>& counts) {
+  return std::ranges::max_element(counts, {}, [](const auto& c) { return c.second; })->first;
+}
+
+}  // namespace stillpoint
