@@ -8,6 +8,7 @@
 #include <random>
 
 #include "map_octomap/test_map.hpp"
+#include "support/recording_writer.hpp"
 
 namespace stillpoint {
 namespace {
@@ -160,10 +161,10 @@ TEST(CostMap, BelowATableIsNotFree) {
 }
 
 TEST_F(CostMapOfRoom, FilesForMapServer) {
-  const auto folder = empty_folder("cost_map_test");
+  const testing::TemporaryFolder folder;
   const CostMap map = projected({});
-  write_cost_map(map, folder / "room");
-  std::ifstream image(folder / "room.pgm", std::ios::binary);
+  write_cost_map(map, folder.path() / "room");
+  std::ifstream image(folder.path() / "room.pgm", std::ios::binary);
   const std::string pgm(std::istreambuf_iterator<char>(image), {});
   const std::string header =
       "P5\n" + std::to_string(map.cells.cols) + ' ' + std::to_string(map.cells.rows) + "\n255\n";
@@ -172,13 +173,12 @@ TEST_F(CostMapOfRoom, FilesForMapServer) {
   // The first row is the one of largest y: below the wall at y = 2.41 in the world's frame, whose
   // z axis, along which no direction on the floor lies, leaves x to be x.
   EXPECT_EQ(map.cell_of({0, -5, 0}).y - map.cell_of({0, 5, 0}).y, 200);
-  std::ifstream description(folder / "room.yaml");
+  std::ifstream description(folder.path() / "room.yaml");
   const std::string yaml(std::istreambuf_iterator<char>(description), {});
-  EXPECT_THAT(yaml, testing::HasSubstr("image: room.pgm\n"));
-  EXPECT_THAT(yaml, testing::HasSubstr("resolution: 0.05\n"));
-  EXPECT_THAT(yaml, testing::ContainsRegex("origin: \\[-[0-9.]+, -[0-9.]+, 0\\]\n"));
-  EXPECT_THAT(yaml, testing::HasSubstr("occupied_thresh: 0.65\nfree_thresh: 0.196\n"));
-  std::filesystem::remove_all(folder);
+  EXPECT_THAT(yaml, ::testing::HasSubstr("image: room.pgm\n"));
+  EXPECT_THAT(yaml, ::testing::HasSubstr("resolution: 0.05\n"));
+  EXPECT_THAT(yaml, ::testing::ContainsRegex("origin: \\[-[0-9.]+, -[0-9.]+, 0\\]\n"));
+  EXPECT_THAT(yaml, ::testing::HasSubstr("occupied_thresh: 0.65\nfree_thresh: 0.196\n"));
 }
 
 TEST_F(CostMapOfRoom, AFolderThatCannotBeMadeIsAnError) {

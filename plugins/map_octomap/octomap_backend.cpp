@@ -131,8 +131,8 @@ void OctomapBackend::save_cost_map(const std::filesystem::path& directory) const
          "is");
 }
 
-// Neighbouring pixels are less than a third of a voxel apart everywhere: a surface that is seen at a
-// grazing angle would be looked through between them.
+// Neighbouring pixels are less than a third of a voxel apart everywhere: a surface that is seen at
+// a grazing angle would be looked through between them.
 int OctomapBackend::stride_for(const Camera& camera) const {
   if (options_.stride > 0) return options_.stride;
   const double pixel = options_.range / std::min(camera.fx, camera.fy);  // metres, at the end

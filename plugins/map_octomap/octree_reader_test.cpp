@@ -13,6 +13,7 @@
 
 #include "map_octomap/test_map.hpp"
 #include "stillpoint/error.hpp"
+#include "support/recording_writer.hpp"
 
 namespace stillpoint {
 namespace {
@@ -23,11 +24,11 @@ class OctreeReader : public ::testing::Test {
  protected:
   static void SetUpTestSuite() {
     map_ = map_of({});
-    folder_ = empty_folder("octree_reader_test");
-    map_->save(folder_);
+    folder_ = std::make_unique<testing::TemporaryFolder>();
+    map_->save(folder());
   }
   static void TearDownTestSuite() {
-    fs::remove_all(folder_);
+    folder_.reset();
     map_.reset();
   }
 
@@ -36,7 +37,7 @@ class OctreeReader : public ::testing::Test {
     return {std::istreambuf_iterator<char>(stream), {}};
   }
   static fs::path written(const std::string& contents) {
-    const fs::path file = folder_ / "changed.ot";
+    const fs::path file = folder() / "changed.ot";
     std::ofstream(file, std::ios::binary) << contents;
     return file;
   }
@@ -51,11 +52,13 @@ class OctreeReader : public ::testing::Test {
   }
 
   static inline std::unique_ptr<OctomapBackend> map_;
-  static inline fs::path folder_;
+  static fs::path folder() { return folder_->path(); }
+
+  static inline std::unique_ptr<testing::TemporaryFolder> folder_;
 };
 
 TEST_F(OctreeReader, AMapComesBackAsItWas) {
-  const SavedOctree saved = read_octree(folder_ / "map.ot");
+  const SavedOctree saved = read_octree(folder() / "map.ot");
   EXPECT_TRUE(saved.has_colors);
   EXPECT_EQ(saved.classes.names, named_classes("voc21"));
   EXPECT_EQ(saved.classes.colors[9], color_of_class(9));
@@ -74,16 +77,16 @@ TEST_F(OctreeReader, AMapComesBackAsItWas) {
 }
 
 TEST_F(OctreeReader, SavingItAgainGivesTheSameFile) {
-  const SavedOctree saved = read_octree(folder_ / "map.ot");
-  write_octree(*saved.tree, saved.classes, folder_ / "again.ot");
-  EXPECT_EQ(contents(folder_ / "again.ot"), contents(folder_ / "map.ot"));
+  const SavedOctree saved = read_octree(folder() / "map.ot");
+  write_octree(*saved.tree, saved.classes, folder() / "again.ot");
+  EXPECT_EQ(contents(folder() / "again.ot"), contents(folder() / "map.ot"));
 }
 
 TEST_F(OctreeReader, OccupancyAlone) {
-  const SavedOctree saved = read_octree(folder_ / "map.bt");
+  const SavedOctree saved = read_octree(folder() / "map.bt");
   EXPECT_FALSE(saved.has_colors);
   EXPECT_TRUE(saved.classes.names.empty());
-  octomap::OcTree reference((folder_ / "map.bt").string());
+  octomap::OcTree reference((folder() / "map.bt").string());
   ASSERT_EQ(saved.tree->size(), reference.size());
   for (auto leaf = reference.begin_leafs(); leaf != reference.end_leafs(); ++leaf) {
     const SemanticVoxel* voxel = saved.tree->search(leaf.getKey());
@@ -100,14 +103,14 @@ TEST_F(OctreeReader, TreesOfOtherPrograms) {
   octomap::OcTree plain(0.1);
   plain.updateNode(octomap::point3d(1, 2, 3), true);
   plain.updateNode(octomap::point3d(1, 2, -3), false);
-  colored.write((folder_ / "colored.ot").string());
-  plain.write((folder_ / "plain.ot").string());
+  colored.write((folder() / "colored.ot").string());
+  plain.write((folder() / "plain.ot").string());
 
-  const SavedOctree first = read_octree(folder_ / "colored.ot");
+  const SavedOctree first = read_octree(folder() / "colored.ot");
   ASSERT_TRUE(first.tree->search(1.0, 2.0, 3.0));
   EXPECT_EQ(first.tree->search(1.0, 2.0, 3.0)->getColor().g, 20);
   EXPECT_TRUE(first.classes.names.empty());
-  const SavedOctree second = read_octree(folder_ / "plain.ot");
+  const SavedOctree second = read_octree(folder() / "plain.ot");
   EXPECT_FALSE(second.has_colors);
   ASSERT_TRUE(second.tree->search(1.0, 2.0, -3.0));
   EXPECT_FALSE(second.tree->isNodeOccupied(second.tree->search(1.0, 2.0, -3.0)));
@@ -116,10 +119,10 @@ TEST_F(OctreeReader, TreesOfOtherPrograms) {
 // Wherever a file ends too early, and whichever byte is wrong: a message or a map, nothing else.
 TEST_F(OctreeReader, TruncatedFilesAreRefused) {
   for (const char* name : {"map.ot", "map.bt"}) {
-    const std::string whole = contents(folder_ / name);
+    const std::string whole = contents(folder() / name);
     for (std::size_t size = 0; size < whole.size(); size += 1 + whole.size() / 97)
       EXPECT_THAT(message_for(written(whole.substr(0, size))),
-                  testing::ContainsRegex("ends within|no octree"))
+                  ::testing::ContainsRegex("ends within|no octree"))
           << name << " of " << size;
   }
 }
@@ -127,7 +130,7 @@ TEST_F(OctreeReader, TruncatedFilesAreRefused) {
 TEST_F(OctreeReader, DamagedFilesDoNoHarm) {
   std::uint32_t random = 1;
   for (const char* name : {"map.ot", "map.bt"}) {
-    const std::string whole = contents(folder_ / name);
+    const std::string whole = contents(folder() / name);
     for (int i = 0; i < 60; ++i) {
       std::string damaged = whole;
       for (int k = 0; k < 20; ++k) {
@@ -140,16 +143,16 @@ TEST_F(OctreeReader, DamagedFilesDoNoHarm) {
 }
 
 TEST_F(OctreeReader, WhatIsNoMapIsNamed) {
-  EXPECT_THAT(message_for(folder_ / "none.ot"), testing::HasSubstr("none.ot: cannot be read"));
-  EXPECT_THAT(message_for(folder_), testing::HasSubstr("cannot be read"));
-  EXPECT_THAT(message_for(folder_ / "map.ply"), testing::HasSubstr("is no octree of OctoMap"));
+  EXPECT_THAT(message_for(folder() / "none.ot"), ::testing::HasSubstr("none.ot: cannot be read"));
+  EXPECT_THAT(message_for(folder()), ::testing::HasSubstr("cannot be read"));
+  EXPECT_THAT(message_for(folder() / "map.ply"), ::testing::HasSubstr("is no octree of OctoMap"));
   EXPECT_THAT(
       message_for(written("# Octomap OcTree file\nid CountingOcTree\nsize 1\nres 0.1\ndata\n")),
-      testing::HasSubstr("type 'CountingOcTree'"));
+      ::testing::HasSubstr("type 'CountingOcTree'"));
   EXPECT_THAT(message_for(written("# Octomap OcTree file\nid OcTree\nsize 1\nres x\ndata\n")),
-              testing::HasSubstr("no resolution"));
+              ::testing::HasSubstr("no resolution"));
   EXPECT_THAT(message_for(written("# Octomap OcTree file\nid OcTree\nsize 0\nres 0.1\ndata\n")),
-              testing::HasSubstr("holds no voxel"));
+              ::testing::HasSubstr("holds no voxel"));
 }
 
 }  // namespace

@@ -137,9 +137,12 @@ void ScanBricks::find_voxels(const Pose& world_from_camera, const Frame& frame, 
     const float reach = range / std::sqrt(x * x + rest);
     const float z = depth[u] < reach ? depth[u] : reach;
     const auto voxel_at = [&](float along) {
-      const auto at_x = static_cast<std::int32_t>(origin.x() + along * (middle.x() + x * right.x()));
-      const auto at_y = static_cast<std::int32_t>(origin.y() + along * (middle.y() + x * right.y()));
-      const auto at_z = static_cast<std::int32_t>(origin.z() + along * (middle.z() + x * right.z()));
+      const auto at_x =
+          static_cast<std::int32_t>(origin.x() + along * (middle.x() + x * right.x()));
+      const auto at_y =
+          static_cast<std::int32_t>(origin.y() + along * (middle.y() + x * right.y()));
+      const auto at_z =
+          static_cast<std::int32_t>(origin.z() + along * (middle.z() + x * right.z()));
       return (at_x * edge + at_y) * edge + at_z;
     };
     row_.reach[u] = reach;

@@ -1,9 +1,7 @@
 // A saved map of the test room.
 #pragma once
 
-#include <filesystem>
 #include <memory>
-#include <string>
 
 #include "map_octomap/octomap_backend.hpp"
 #include "map_octomap/test_room.hpp"
@@ -22,14 +20,6 @@ inline std::unique_ptr<OctomapBackend> map_of(const TestRoom& room,
     map->integrate(room.see(pose, id));
   }
   return map;
-}
-
-/// An empty folder of its own.
-inline std::filesystem::path empty_folder(const std::string& name) {
-  const auto folder = std::filesystem::temp_directory_path() / ("stillpoint_" + name);
-  std::filesystem::remove_all(folder);
-  std::filesystem::create_directories(folder);
-  return folder;
 }
 
 }  // namespace stillpoint

@@ -10,6 +10,7 @@
 #include <string>
 
 #include "stillpoint/error.hpp"
+#include "support/recording_writer.hpp"
 
 namespace stillpoint {
 namespace {
@@ -36,12 +37,6 @@ class FullDisk {
 
 class AtomicFileTest : public ::testing::Test {
  protected:
-  AtomicFileTest() {
-    fs::remove_all(folder_);
-    fs::create_directories(folder_);
-  }
-  ~AtomicFileTest() override { fs::remove_all(folder_); }
-
   static std::string contents(const fs::path& file) {
     std::ifstream stream(file, std::ios::binary);
     return {std::istreambuf_iterator<char>(stream), {}};
@@ -56,7 +51,8 @@ class AtomicFileTest : public ::testing::Test {
     out.commit();
   }
 
-  const fs::path folder_ = fs::temp_directory_path() / "stillpoint_atomic_file_test";
+  const testing::TemporaryFolder temporary_;
+  const fs::path folder_ = temporary_.path();
 };
 
 TEST_F(AtomicFileTest, IsThereOnceItIsCommitted) {
@@ -91,8 +87,8 @@ TEST_F(AtomicFileTest, OnAFullDiskTheEarlierFileStaysWhole) {
       FAIL() << "a file that is not whole was put in its place";
     } catch (const Error& error) {
       EXPECT_EQ(error.fault(), Fault::kUsage);
-      EXPECT_THAT(error.what(), testing::HasSubstr("map.part: cannot write: "));
-      EXPECT_THAT(error.what(), testing::HasSubstr("free space"));
+      EXPECT_THAT(error.what(), ::testing::HasSubstr("map.part: cannot write: "));
+      EXPECT_THAT(error.what(), ::testing::HasSubstr("free space"));
     }
   }
   EXPECT_EQ(contents(folder_ / "map"), "old");

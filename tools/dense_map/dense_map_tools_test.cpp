@@ -9,6 +9,7 @@
 #include "dense_map/map_summary.hpp"
 #include "map_octomap/test_map.hpp"
 #include "stillpoint/error.hpp"
+#include "support/recording_writer.hpp"
 
 namespace stillpoint::dense_map {
 namespace {
@@ -19,7 +20,7 @@ namespace fs = std::filesystem;
 class SavedMaps : public ::testing::Test {
  protected:
   static void SetUpTestSuite() {
-    folder_ = empty_folder("dense_map_tools_test");
+    folder_ = std::make_unique<testing::TemporaryFolder>();
     TestRoom room;
     save(room, "with", {});
     save(room, "coarse", {.resolution = 0.1});
@@ -27,18 +28,20 @@ class SavedMaps : public ::testing::Test {
     room.pillar = false;
     save(room, "without", {});
   }
-  static void TearDownTestSuite() { fs::remove_all(folder_); }
+  static void TearDownTestSuite() { folder_.reset(); }
 
   static void save(const TestRoom& room, const std::string& name,
                    const OctomapBackend::Options& options) {
-    fs::create_directories(folder_ / name);
-    map_of(room, options)->save(folder_ / name);
+    fs::create_directories(folder() / name);
+    map_of(room, options)->save(folder() / name);
   }
   static SavedOctree saved(const std::string& name) {
-    return read_octree(folder_ / name / "map.ot");
+    return read_octree(folder() / name / "map.ot");
   }
 
-  static inline fs::path folder_;
+  static fs::path folder() { return folder_->path(); }
+
+  static inline std::unique_ptr<testing::TemporaryFolder> folder_;
 };
 
 TEST_F(SavedMaps, SummaryOfARoom) {
@@ -59,8 +62,8 @@ TEST_F(SavedMaps, SummaryOfARoom) {
   EXPECT_EQ(summary.classes[0].voxels + summary.classes[1].voxels, summary.occupied);
   EXPECT_GT(summary.classes[1].confidence, 0.9);
   const std::string table = summary_table(summary, "room.ot");
-  EXPECT_THAT(table, testing::HasSubstr("5 cm, colours and classes"));
-  EXPECT_THAT(table, testing::ContainsRegex("chair +[0-9,]+ +[0-9.]+ %"));
+  EXPECT_THAT(table, ::testing::HasSubstr("5 cm, colours and classes"));
+  EXPECT_THAT(table, ::testing::ContainsRegex("chair +[0-9,]+ +[0-9.]+ %"));
   EXPECT_EQ(summary_json(summary)["occupied_voxels"], summary.occupied);
 }
 
@@ -90,7 +93,7 @@ TEST_F(SavedMaps, WhatHasGone) {
   const MapDifference back = compare(saved("without"), saved("with"));
   EXPECT_EQ(back.only_second, difference.only_first);
   EXPECT_EQ(back.appeared, difference.gone);
-  EXPECT_THAT(difference_table(difference, "a", "b"), testing::HasSubstr("of another class"));
+  EXPECT_THAT(difference_table(difference, "a", "b"), ::testing::HasSubstr("of another class"));
 }
 
 TEST_F(SavedMaps, DifferentResolutionsAreRefused) {
@@ -149,7 +152,7 @@ TEST_F(SavedMaps, ClassesHaveTheirColours) {
 }
 
 TEST_F(SavedMaps, WhatCannotBeDrawnIsSaid) {
-  const SavedOctree occupancy = read_octree(folder_ / "with" / "map.bt");
+  const SavedOctree occupancy = read_octree(folder() / "with" / "map.bt");
   EXPECT_THROW(picture_of(occupancy, {}), Error);
   EXPECT_THROW(picture_of(occupancy, {.mode = PictureOptions::Mode::kClass}), Error);
   PictureOptions options;
