@@ -32,8 +32,9 @@ class ClassBelief {
 
   /// One that has this best class and, but for rounding, its probability in 1/255: what files keep.
   static ClassBelief of(std::uint8_t label, std::uint8_t confidence) {
-    const int rest = confidence > 0 ? 255 - confidence : 0;
     ClassBelief belief;
+    if (confidence == 0) return belief;
+    const int rest = 255 - confidence;
     belief.labels_[0] = label;
     belief.counts_ = {std::min(confidence, static_cast<std::uint8_t>(kFull - 1)),
                       static_cast<std::uint8_t>(rest - rest / 2),

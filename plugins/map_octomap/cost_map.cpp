@@ -9,17 +9,17 @@
 
 #include "map_octomap/map_files.hpp"
 #include "stillpoint/atomic_file.hpp"
+#include "stillpoint/error.hpp"
 
 namespace stillpoint {
 namespace {
 
 constexpr double kLow = 0.3;  // metres above `from`: no low obstacle hides under free space there
+constexpr double kMostCells = 1e8;
 constexpr double kSeenThrough = 0.5;  // of a column: what is free below a table top is not free
 
 Pose floor_from_world(const FloorPlane& floor) {
-  Eigen::Vector3d ahead = Eigen::Vector3d::UnitZ() - floor.up.z() * floor.up;
-  if (ahead.norm() < 0.1) ahead = Eigen::Vector3d::UnitX() - floor.up.x() * floor.up;
-  ahead.normalize();
+  const Eigen::Vector3d ahead = ahead_on_floor(floor.up);
   Pose pose = Pose::Identity();
   pose.linear().row(0) = ahead;
   pose.linear().row(1) = floor.up.cross(ahead);
@@ -46,6 +46,8 @@ class Projection {
   Projection(const SemanticOctree& tree, const FloorPlane& floor, const CostMapOptions& options)
       : tree_(tree), options_(options), part_(0.5 * tree.getResolution()) {
     map_.resolution = tree.getResolution();
+    // The floor's own voxels reach as high.
+    options_.from = std::max(options_.from, map_.resolution);
     map_.floor_from_world = floor_from_world(floor);
   }
 
@@ -91,8 +93,11 @@ class Projection {
     if (low.x() > high.x()) low = high = Eigen::Vector2d::Zero();
     const double margin = options_.robot_radius + map_.resolution;
     map_.corner = ((low.array() - margin) / map_.resolution).floor() * map_.resolution;
-    const Eigen::Array2i size =
-        ((high.array() + margin - map_.corner.array()) / map_.resolution).ceil().cast<int>();
+    const Eigen::Array2d extent =
+        ((high.array() + margin - map_.corner.array()) / map_.resolution).ceil();
+    if (!(extent.prod() <= kMostCells))
+      throw Error(Fault::kData, "the map is too wide for a cost map", {}, "use larger voxels");
+    const Eigen::Array2i size = extent.cast<int>();
     map_.cells = cv::Mat(size.y(), size.x(), CV_8UC1, cv::Scalar(CostMap::kUnknown));
     columns_.resize(map_.cells.total());
   }
@@ -132,7 +137,7 @@ class Projection {
   }
 
   const SemanticOctree& tree_;
-  const CostMapOptions& options_;
+  CostMapOptions options_;
   double part_;  // metres
   CostMap map_;
   std::vector<Column> columns_;  // of the cells, in their order
@@ -140,6 +145,13 @@ class Projection {
 };
 
 }  // namespace
+
+bool CostMapOptions::is_floor(const std::vector<double>& numbers) {
+  if (numbers.empty()) return true;
+  if (numbers.size() != 3 && numbers.size() != 4) return false;
+  const double length = std::hypot(numbers[0], numbers[1], numbers[2]);
+  return length > 1e-6 && length < 1e6 && std::abs(numbers.back()) < 1e6;
+}
 
 void CostMapOptions::visit(OptionVisitor& v) {
   v("from", from,
@@ -152,9 +164,7 @@ void CostMapOptions::visit(OptionVisitor& v) {
     {.help = "upward direction x, y, z in the world, and the floor's height along it in m; without "
              "the height, or without all, it is found in the map"});
   v.require(from < to, "from must be lower than to");
-  v.require(floor.empty() || ((floor.size() == 3 || floor.size() == 4) &&
-                              std::hypot(floor[0], floor[1], floor[2]) > 1e-6),
-            "floor takes x, y, z of a direction, then its height or nothing");
+  v.require(is_floor(floor), "floor takes x, y, z of a direction, then its height or nothing");
 }
 
 cv::Point CostMap::cell_of(const Eigen::Vector3d& point_in_world) const {
@@ -192,7 +202,7 @@ void write_cost_map(const CostMap& map, const std::filesystem::path& stem) {
   const Pose world_from_map = map.floor_from_world.inverse();
   const Eigen::Vector3d t = world_from_map.translation();
   const Eigen::Quaterniond q(world_from_map.linear());
-  description.stream() << "image: " << with(".pgm").filename().string()
+  description.stream() << "image: " << with(".pgm").filename()  // in quotation marks
                        << "\nmode: trinary\nresolution: " << map.resolution << "\norigin: ["
                        << map.corner.x() << ", " << map.corner.y() << ", 0]\n"
                        << "negate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n"

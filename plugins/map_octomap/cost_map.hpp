@@ -16,14 +16,16 @@
 namespace stillpoint {
 
 struct CostMapOptions {
-  double from = 0.1;          ///< metres above the floor: what is lower is driven over
-  double to = 1.8;            ///< metres above the floor: what is higher is driven under
+  double from = 0.1;  ///< metres above the floor: what is lower is driven over; at least a voxel
+  double to = 1.8;    ///< metres above the floor: what is higher is driven under
   double robot_radius = 0.0;  ///< metres by which obstacles grow
   /// Nothing: the floor is found. Three numbers: x, y, z of the upward direction in the world, from
   /// gravity; only the floor's height is found. Four: its height along that direction as well.
   std::vector<double> floor;
 
   void visit(OptionVisitor& visitor);
+  /// Whether these numbers can be `floor`.
+  static bool is_floor(const std::vector<double>& numbers);
 };
 
 /// Cells of the tree's resolution in the floor's frame: x and y on the floor, z up, the origin
@@ -48,6 +50,7 @@ std::optional<FloorPlane> floor_of(const SemanticOctree& tree, const CostMapOpti
 /// Occupied: a voxel between the two heights is. Free: none is, at least half of what is between
 /// them was looked through, and its lower end as well, or the floor itself was seen: no low
 /// obstacle is there. All else is unknown.
+/// Throws Error(kData) for a map so wide that it would have more than 10⁸ cells.
 CostMap project(const SemanticOctree& tree, const FloorPlane& floor, const CostMapOptions& options);
 
 /// `stem`.pgm and `stem`.yaml (mode trinary; besides map_server's keys `world_from_map`: position

@@ -72,6 +72,12 @@ TEST(FloorPlane, WhereNoneWasSeenThereIsNone) {
   for (double x = 0; x < 3; x += 0.05)
     for (double z = 0; z < 2; z += 0.05) wall.emplace_back(x, 0.0F, z);
   EXPECT_FALSE(find_floor(wall, kUp, 0.05));
+  // Four walls that are 3 m long, without floor and ceiling.
+  std::vector<Eigen::Vector3f> walls;
+  for (const Eigen::Vector3f& p : box_surface({-1.5, -1.5, -1}, {1.5, 1.5, 1}))
+    if (std::abs(p.x()) > 1.4F || std::abs(p.y()) > 1.4F) walls.push_back(p);
+  EXPECT_FALSE(find_floor(walls, kUp, 0.05));
+  EXPECT_FALSE(find_floor_below(walls, kUp, 0.05));
   EXPECT_FALSE(find_floor({}, kUp, 0.05));
   EXPECT_FALSE(find_floor_below({}, kUp, 0.05));
 }
@@ -139,8 +145,7 @@ TEST_F(CostMapOfRoom, WithoutFreeSpaceTheFloorIsFree) {
   EXPECT_EQ(at(cells, 1.93, -0.4), CostMap::kOccupied);
 }
 
-// A table top on nothing: below it, a robot could drive, or not; it was not looked through.
-TEST(CostMap, BelowATableIsNotFree) {
+TEST(CostMap, WhatWasOnlyLookedUnderIsNotFree) {
   SemanticOctree tree(0.05);
   const auto set = [&](double x, double y, double z, bool occupied) {
     tree.updateNode(
@@ -175,7 +180,7 @@ TEST_F(CostMapOfRoom, FilesForMapServer) {
   EXPECT_EQ(map.cell_of({0, -5, 0}).y - map.cell_of({0, 5, 0}).y, 200);
   std::ifstream description(folder.path() / "room.yaml");
   const std::string yaml(std::istreambuf_iterator<char>(description), {});
-  EXPECT_THAT(yaml, ::testing::HasSubstr("image: room.pgm\n"));
+  EXPECT_THAT(yaml, ::testing::HasSubstr("image: \"room.pgm\"\n"));
   EXPECT_THAT(yaml, ::testing::HasSubstr("resolution: 0.05\n"));
   EXPECT_THAT(yaml, ::testing::ContainsRegex("origin: \\[-[0-9.]+, -[0-9.]+, 0\\]\n"));
   EXPECT_THAT(yaml, ::testing::HasSubstr("occupied_thresh: 0.65\nfree_thresh: 0.196\n"));

@@ -9,6 +9,16 @@
 
 namespace stillpoint {
 
+namespace {
+
+// OctoMap's own functions print a line whenever they have written one.
+void write_header(const SemanticOctree& tree, const char* first_line, std::ostream& out) {
+  out << first_line << "\nid " << tree.getTreeType() << "\nsize " << tree.size() << "\nres "
+      << tree.getResolution() << "\ndata\n";
+}
+
+}  // namespace
+
 MapClasses with_colors(const ClassNames& names) {
   MapClasses classes{.names = names, .colors = {}};
   for (std::size_t label = 0; label < names.size(); ++label)
@@ -19,11 +29,11 @@ MapClasses with_colors(const ClassNames& names) {
 void write_octree(const SemanticOctree& tree, const MapClasses& classes,
                   const std::filesystem::path& file) {
   AtomicFile out(file);
-  // OctoMap's write() says so on the standard error.
-  out.stream() << "# Octomap OcTree file\nid " << tree.getTreeType() << "\nsize " << tree.size()
-               << "\nres " << tree.getResolution() << "\ndata\n";
+  write_header(tree, "# Octomap OcTree file", out.stream());
   tree.writeData(out.stream());
-  const nlohmann::json description = {{"names", classes.names}, {"colors", classes.colors}};
+  const nlohmann::json description = {{"names", classes.names},
+                                      {"colors", classes.colors},
+                                      {"occupied_above", tree.getOccupancyThres()}};
   std::string bytes = "# stillpoint classes 1\n" + description.dump() + '\n';
   for (auto leaf = tree.begin_leafs(); leaf != tree.end_leafs(); ++leaf) {
     bytes.push_back(static_cast<char>(leaf->classes().best()));
@@ -35,7 +45,8 @@ void write_octree(const SemanticOctree& tree, const MapClasses& classes,
 
 void write_occupancy(const SemanticOctree& tree, const std::filesystem::path& file) {
   AtomicFile out(file);
-  tree.writeBinaryConst(out.stream());
+  write_header(tree, "# Octomap OcTree binary file", out.stream());
+  tree.writeBinaryData(out.stream());
   out.commit();
 }
 

@@ -39,8 +39,8 @@ void for_each_occupied_voxel(const SemanticOctree& tree, Function&& function) {
 
 /// OctoMap's .ot file of a ColorOcTree, which octovis shows and every program with OctoMap reads.
 /// Behind the tree follow the classes, which those pass over: a line `# stillpoint classes 1`, a
-/// line of JSON ({"names": [...], "colors": [[r, g, b], ...]}), and for each leaf, in the order of
-/// the tree, its class and the confidence in 1/255, a byte each.
+/// line of JSON ({"names": [...], "colors": [[r, g, b], ...], "occupied_above": p}), and for each
+/// leaf, in the order of the tree, its class and the confidence in 1/255, a byte each.
 void write_octree(const SemanticOctree& tree, const MapClasses& classes,
                   const std::filesystem::path& file);
 /// OctoMap's .bt file: occupied or free.

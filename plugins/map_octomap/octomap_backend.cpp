@@ -123,16 +123,18 @@ void OctomapBackend::save(const std::filesystem::path& directory) {
 }
 
 void OctomapBackend::save_cost_map(const std::filesystem::path& directory) const {
-  if (const auto floor = floor_of(tree_, options_.cost_map))
+  if (const auto floor = floor_of(tree_, options_.cost_map)) {
     write_cost_map(project(tree_, *floor, options_.cost_map), directory / "map");
-  else
-    log_(LogLevel::kWarning,
-         "no floor was seen, so there is no cost map; map_backend.cost_map.floor can say where it "
-         "is");
+    return;
+  }
+  for (const char* earlier : {"map.pgm", "map.yaml"}) std::filesystem::remove(directory / earlier);
+  log_(LogLevel::kWarning,
+       "no floor was seen, so there is no cost map; map_backend.cost_map.floor can say where it "
+       "is");
 }
 
-// Neighbouring pixels are less than a third of a voxel apart everywhere: a surface that is seen at
-// a grazing angle would be looked through between them.
+// Neighbouring pixels are about a third of a voxel apart at the end of the range, or each is used:
+// a surface that is seen at a grazing angle would be looked through between them.
 int OctomapBackend::stride_for(const Camera& camera) const {
   if (options_.stride > 0) return options_.stride;
   const double pixel = options_.range / std::min(camera.fx, camera.fy);  // metres, at the end

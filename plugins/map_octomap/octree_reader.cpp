@@ -1,6 +1,6 @@
 #include "map_octomap/octree_reader.hpp"
 
-#include <bit>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <cstring>
@@ -10,7 +10,6 @@
 #include <string>
 #include <string_view>
 #include <utility>
-#include <vector>
 
 #include "stillpoint/error.hpp"
 
@@ -18,6 +17,9 @@ namespace stillpoint {
 namespace {
 
 constexpr unsigned kTreeDepth = 16;
+constexpr unsigned kLeastDepth = 7;             // of a leaf: it stands for 512³ voxels
+constexpr std::size_t kMostOccupied = 1 << 28;  // voxels
+constexpr double kMinResolution = 1e-3, kMaxResolution = 10;  // metres
 
 /// What is left of a file.
 class Bytes {
@@ -25,7 +27,7 @@ class Bytes {
   Bytes(std::string_view rest, std::string where) : rest_(rest), where_(std::move(where)) {}
 
   [[noreturn]] void fail(const std::string& problem) const {
-    throw Error(Fault::kData, problem, where_, "save the map again");
+    throw Error(Fault::kData, problem, where_);
   }
   bool empty() const { return rest_.empty(); }
   std::string_view take(std::size_t count) {
@@ -61,6 +63,7 @@ struct Header {
   bool binary = false;
   std::string_view id;
   double resolution = 0;
+  double nodes = -1;
 };
 
 double number_from(std::string_view text) {
@@ -77,10 +80,11 @@ Header read_header(Bytes& bytes) {
     bytes.fail("is no octree of OctoMap (.ot or .bt)");
   for (std::string_view line = bytes.line(); line != "data"; line = bytes.line()) {
     if (line.starts_with("id ")) header.id = line.substr(3);
+    if (line.starts_with("size ")) header.nodes = number_from(line.substr(5));
     if (line.starts_with("res ")) header.resolution = number_from(line.substr(4));
   }
-  if (!(header.resolution > 0) || !std::isfinite(header.resolution))
-    bytes.fail("has no resolution in its header");
+  if (!(header.resolution >= kMinResolution && header.resolution <= kMaxResolution))
+    bytes.fail("has no resolution from 1 mm to 10 m in its header");
   if (header.id != "OcTree" && header.id != "ColorOcTree")
     bytes.fail("is a tree of type '" + std::string(header.id) +
                "'; OcTree and ColorOcTree are known");
@@ -146,6 +150,9 @@ MapClasses read_classes(SemanticOctree& tree, Bytes& bytes) {
     const auto description = nlohmann::json::parse(bytes.line());
     description.at("names").get_to(classes.names);
     description.at("colors").get_to(classes.colors);
+    const auto threshold = description.value("occupied_above", 0.5);
+    if (!(threshold > 0 && threshold < 1)) bytes.fail("is damaged: occupied above no probability");
+    tree.setOccupancyThres(threshold);
   } catch (const nlohmann::json::exception&) {
     bytes.fail("is damaged: the names of its classes cannot be read");
   }
@@ -159,6 +166,21 @@ MapClasses read_classes(SemanticOctree& tree, Bytes& bytes) {
     leaf->set_classes(ClassBelief::of(label, confidence));
   }
   return classes;
+}
+
+// What works on maps goes through all of their voxels.
+void check_leaves(SavedOctree& saved, const Bytes& bytes) {
+  const SemanticOctree& tree = *saved.tree;
+  std::size_t occupied = 0;
+  bool colored = false;
+  for (auto leaf = tree.begin_leafs(); leaf != tree.end_leafs(); ++leaf) {
+    if (leaf.getDepth() < kLeastDepth) bytes.fail("is damaged: a leaf of 1000 voxels or more");
+    if (tree.isNodeOccupied(*leaf))
+      occupied += std::size_t{1} << (3 * (kTreeDepth - leaf.getDepth()));
+    colored |= leaf->isColorSet();
+  }
+  if (occupied > kMostOccupied) bytes.fail("has too many occupied voxels");
+  saved.has_colors &= colored;
 }
 
 std::string contents_of(const std::filesystem::path& file) {
@@ -181,14 +203,17 @@ SavedOctree read_octree(const std::filesystem::path& file) {
   SavedOctree saved{.tree = std::make_unique<SemanticOctree>(header.resolution),
                     .classes = {},
                     .has_colors = !header.binary && header.id == "ColorOcTree"};
-  if (bytes.empty()) bytes.fail("holds no voxel");
+  if (header.nodes == 0) bytes.fail("holds no voxel");
   SemanticVoxel& root = saved.tree->plant();
   if (header.binary)
     BinaryNodeReader(*saved.tree, bytes).read(root, 0);
   else
     NodeReader(*saved.tree, bytes, saved.has_colors).read(root, 0);
-  if (!saved.tree->nodeHasChildren(&root)) bytes.fail("holds no voxel");
+  if (static_cast<double>(saved.tree->size()) != header.nodes)
+    bytes.fail("is damaged: it holds " + std::to_string(saved.tree->size()) + " nodes");
   if (bytes.skip("# stillpoint classes ")) saved.classes = read_classes(*saved.tree, bytes);
+  if (!bytes.empty()) bytes.fail("is damaged: more follows the map");
+  check_leaves(saved, bytes);
   return saved;
 }
 

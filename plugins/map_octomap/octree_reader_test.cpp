@@ -5,11 +5,8 @@
 #include <octomap/ColorOcTree.h>
 #include <octomap/OcTree.h>
 
-#include <cmath>
 #include <fstream>
-#include <functional>
 #include <iterator>
-#include <sstream>
 
 #include "map_octomap/test_map.hpp"
 #include "stillpoint/error.hpp"
@@ -82,6 +79,35 @@ TEST_F(OctreeReader, SavingItAgainGivesTheSameFile) {
   EXPECT_EQ(contents(folder() / "again.ot"), contents(folder() / "map.ot"));
 }
 
+TEST_F(OctreeReader, TheThresholdComesBack) {
+  const testing::TemporaryFolder files;
+  const auto strict = map_of({}, {.occupied_above = 0.9});
+  strict->save(files.path());
+  const SavedOctree saved = read_octree(files.path() / "map.ot");
+  for (auto leaf = strict->tree().begin_leafs(); leaf != strict->tree().end_leafs(); ++leaf)
+    ASSERT_EQ(saved.tree->isNodeOccupied(saved.tree->search(leaf.getKey(), leaf.getDepth())),
+              strict->tree().isNodeOccupied(*leaf));
+  write_octree(*saved.tree, saved.classes, files.path() / "again.ot");
+  EXPECT_EQ(contents(files.path() / "again.ot"), contents(files.path() / "map.ot"));
+}
+
+TEST_F(OctreeReader, AnEmptyMapIsSaid) {
+  const SemanticOctree empty(0.05);
+  write_octree(empty, {}, folder() / "empty.ot");
+  EXPECT_THAT(message_for(folder() / "empty.ot"), ::testing::HasSubstr("holds no voxel"));
+}
+
+// A leaf high up in the tree stands for more voxels than there is memory.
+TEST_F(OctreeReader, HugeLeavesAreRefused) {
+  std::string file = "# Octomap OcTree file\nid OcTree\nsize 2\nres 0.05\ndata\n";
+  const float log_odds = 1;
+  for (const char children : {'\1', '\0'}) {
+    file.append(reinterpret_cast<const char*>(&log_odds), sizeof log_odds);
+    file.push_back(children);
+  }
+  EXPECT_THAT(message_for(written(file)), ::testing::HasSubstr("a leaf of"));
+}
+
 TEST_F(OctreeReader, OccupancyAlone) {
   const SavedOctree saved = read_octree(folder() / "map.bt");
   EXPECT_FALSE(saved.has_colors);
@@ -137,7 +163,13 @@ TEST_F(OctreeReader, DamagedFilesDoNoHarm) {
         random = random * 1664525U + 1013904223U;
         damaged[100 + random % (damaged.size() - 100)] = static_cast<char>(random >> 24U);
       }
-      message_for(written(damaged));
+      try {
+        const SavedOctree saved = read_octree(written(damaged));
+        const auto floor = floor_of(*saved.tree, {});
+        if (floor) project(*saved.tree, *floor, {});
+      } catch (const Error& error) {
+        EXPECT_EQ(error.fault(), Fault::kData);
+      }
     }
   }
 }
@@ -151,8 +183,8 @@ TEST_F(OctreeReader, WhatIsNoMapIsNamed) {
       ::testing::HasSubstr("type 'CountingOcTree'"));
   EXPECT_THAT(message_for(written("# Octomap OcTree file\nid OcTree\nsize 1\nres x\ndata\n")),
               ::testing::HasSubstr("no resolution"));
-  EXPECT_THAT(message_for(written("# Octomap OcTree file\nid OcTree\nsize 0\nres 0.1\ndata\n")),
-              ::testing::HasSubstr("holds no voxel"));
+  EXPECT_THAT(message_for(written(contents(folder() / "map.ot") + "x")),
+              ::testing::HasSubstr("more follows the map"));
 }
 
 }  // namespace

@@ -147,7 +147,8 @@ void ScanBricks::find_voxels(const Pose& world_from_camera, const Frame& frame, 
     };
     row_.reach[u] = reach;
     row_.voxel[u] = voxel_at(z);
-    row_.front[u] = voxel_at(z - std::min(margin * z * z, z));
+    const float before = depth[u] - std::min(margin * depth[u] * depth[u], depth[u]);
+    row_.front[u] = voxel_at(before < reach ? before : reach);
   }
 }
 

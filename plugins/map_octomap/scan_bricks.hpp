@@ -90,7 +90,7 @@ class ScanBricks {
 
   ScanOptions options_;
   int half_;                     // voxels, of the box around everything within range
-  VoxelBits ended_;              // voxels in which a ray ends
+  VoxelBits ended_;              // voxels before which a ray ends
   VoxelBits passed_;             // voxels through which a ray goes
   std::array<int, 3> corner_{};  // OctoMap's key of the box's first voxel
   Eigen::Vector3f origin_;       // camera, in voxels from the corner

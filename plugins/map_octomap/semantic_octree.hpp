@@ -63,6 +63,11 @@ class SemanticOctree : public octomap::OccupancyOcTreeBase<SemanticVoxel> {
   /// their order.
   void add(const ScanBricks& scan, std::span<const ScanBrick* const> bricks,
            const OccupancyModel& model);
+  /// Whether something is known to be there.
+  bool is_occupied(const octomap::OcTreeKey& key) const {
+    const SemanticVoxel* voxel = search(key);
+    return voxel && isNodeOccupied(voxel);
+  }
   /// The root, made when there is none.
   SemanticVoxel& plant();
   /// Forgets all that is known within some bricks.

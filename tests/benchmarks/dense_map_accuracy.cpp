@@ -1,9 +1,9 @@
 // How right a dense map is, against the truth of the simulator.
 //   dense_map_accuracy TRUTH RUN...
-// TRUTH: the recording's twin without noise, `stillpoint simulate SCENE --set sensor.ideal=true`
-// with the same seeds, and with labels. RUN: folders of `stillpoint run` with map_backend octomap;
-// their maps are laid onto the truth by the best alignment of their trajectories. One line of JSON
-// each.
+// TRUTH: the recording's twin without noise, `stillpoint simulate SCENE --set
+// source.sensor.ideal=true` with the same seeds, and with labels. RUN: folders of `stillpoint run`
+// with map_backend octomap; their maps are laid onto the truth by the best alignment of their
+// trajectories. One line of JSON each.
 #include <algorithm>
 #include <array>
 #include <iostream>

@@ -4,9 +4,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <filesystem>
 #include <map>
 #include <opencv2/imgcodecs.hpp>
+#include <stdexcept>
 #include <unordered_map>
 #include <utility>
 #include <vector>
@@ -62,8 +64,10 @@ inline std::vector<LabelledFrame> read_labelled_frames(const std::filesystem::pa
   std::vector<LabelledFrame> frames;
   for (TrueFrame& seen : read_true_frames(folder, every)) {
     cv::Mat labels = cv::imread(folder / "labels" / seen.name, cv::IMREAD_UNCHANGED);
+    if (labels.empty()) throw std::runtime_error(folder.string() + " has no labels");
     frames.push_back({std::move(seen), std::move(labels)});
   }
+  if (frames.empty()) throw std::runtime_error(folder.string() + " has no frames");
   return frames;
 }
 

@@ -19,9 +19,9 @@ namespace fs = std::filesystem;
 class DenseMap : public ::testing::Test {
  protected:
   fs::path run(const std::string& name, const std::string& mode) const {
-    const Outcome outcome = call({"run", "stillpoint", "--dataset", simulated_recording().string(),
-                                  "-o", (folder_.path() / name).string(), "--set",
-                                  "map_backend.type=octomap", "--set", "runtime.mode=" + mode});
+    const Outcome outcome =
+        call({"run", "stillpoint", "--dataset", simulated_recording().string(), "-o",
+              (folder_.path() / name).string(), "--set", "runtime.mode=" + mode});
     EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
     return folder_.path() / name / "map";
   }
@@ -45,7 +45,7 @@ TEST_P(DenseMapInBothModes, IsWrittenInAllForms) {
   EXPECT_THAT(bytes_of(map / "map.ply"), ::testing::HasSubstr("property uchar label"));
   EXPECT_GT(fs::file_size(map / "map.ply"), 16U * 2000U);  // voxels
   EXPECT_THAT(bytes_of(map / "map.pgm"), ::testing::StartsWith("P5\n"));
-  EXPECT_THAT(bytes_of(map / "map.yaml"), ::testing::HasSubstr("image: map.pgm\n"));
+  EXPECT_THAT(bytes_of(map / "map.yaml"), ::testing::HasSubstr("image: \"map.pgm\"\n"));
 }
 
 TEST_F(DenseMap, IsTheSameAgainInline) {
@@ -58,8 +58,8 @@ TEST_F(DenseMap, ThatCannotBeWrittenTakesNothingElseWithIt) {
   const fs::path out = folder_.path() / "out";
   fs::create_directories(out);
   std::ofstream(out / "map") << "in the way";
-  const Outcome outcome = call({"run", "stillpoint", "--dataset", simulated_recording().string(),
-                                "-o", out.string(), "--set", "map_backend.type=octomap"});
+  const Outcome outcome =
+      call({"run", "stillpoint", "--dataset", simulated_recording().string(), "-o", out.string()});
   EXPECT_EQ(outcome.exit_code, 1);
   EXPECT_THAT(outcome.err, ::testing::HasSubstr((out / "map").string() + ": cannot be made"));
   EXPECT_GT(fs::file_size(out / "trajectory.txt"), 1000U);
@@ -70,9 +70,8 @@ class MapCommands : public DenseMap {
  protected:
   static void SetUpTestSuite() {
     folder_of_map_ = new TemporaryFolder;
-    const Outcome outcome =
-        call({"run", "stillpoint", "--dataset", simulated_recording().string(), "-o",
-              folder_of_map_->path().string(), "--set", "map_backend.type=octomap"});
+    const Outcome outcome = call({"run", "stillpoint", "--dataset", simulated_recording().string(),
+                                  "-o", folder_of_map_->path().string()});
     ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   }
   static void TearDownTestSuite() { delete folder_of_map_; }
@@ -93,7 +92,7 @@ TEST_F(MapCommands, InfoSaysWhatItHolds) {
   const Outcome table = map({"info", file("map.ot")});
   EXPECT_EQ(table.exit_code, 0) << table.err;
   EXPECT_THAT(table.out, ::testing::HasSubstr("5 cm, colours and classes"));
-  EXPECT_THAT(table.out, ::testing::HasSubstr("below the first camera"));
+  EXPECT_THAT(table.out, ::testing::HasSubstr("below the origin"));
   const auto json = nlohmann::json::parse(map({"info", "--json", file("map.ot")}).out);
   EXPECT_GT(json["occupied_voxels"], 2000);
   // The simulated camera is 1.0 to 1.6 m above the floor.
@@ -156,7 +155,29 @@ TEST_F(MapCommands, BadInputIsNamed) {
          "--eye and --look-at belong together");
   expect(map({"inof", file("map.ot")}), 2,
          "stillpoint map: no command 'inof'; did you mean 'info'?");
+  expect(map({"render", "--eye", "1,2,nan", "--look-at", "0,0,0", file("map.ot"), "-o",
+              new_file("map.png")}),
+         2, "'1,2,nan' should be numbers");
+  expect(map({"render", "--elevation", "nan", file("map.ot"), "-o", new_file("map.png")}), 2,
+         "nan");
+  expect(map({"render", file("map.ot"), "-o", new_file("map.jpg")}), 2, "pictures are PNG files");
+  expect(map({"project", file("map.ot"), "--robot-radius", "nan"}), 2, "nan");
+  expect(map({"project", file("map.ot"), "--floor", "0,0,0"}), 2, "'0,0,0' is no direction");
+  expect(map({"project", file("map.ot"), "--floor", "0,0"}), 2, "'0,0' should be numbers");
   EXPECT_FALSE(fs::exists(new_file("map.png")));
+}
+
+TEST_F(MapCommands, AFloorMayBeGiven) {
+  const Outcome outcome =
+      map({"project", "--floor", "0,-1,0,-1.2", file("map.ot"), "-o", new_file("map")});
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  // On the floor, 1.2 m below the origin; its z axis is the world's -y, its x axis the world's z.
+  EXPECT_THAT(bytes_of(new_file("map.yaml")),
+              ::testing::ContainsRegex("world_from_map: \\[-?0, 1.2, -?0, -?0.5, "));
+  EXPECT_EQ(map({"render", file("map.ot"), "-o", new_file("map.png"), "--floor=0,-1,0,-1.2",
+                 "--below=1.5", "--size=320x240"})
+                .exit_code,
+            0);
 }
 
 }  // namespace

@@ -9,18 +9,13 @@
 namespace stillpoint::dense_map {
 namespace {
 
-bool is_occupied(const SemanticOctree& tree, const octomap::OcTreeKey& key) {
-  const SemanticVoxel* voxel = tree.search(key);
-  return voxel && tree.isNodeOccupied(voxel);
-}
-
 bool is_near(const SemanticOctree& tree, const octomap::OcTreeKey& key) {
   for (int x = -1; x <= 1; ++x)
     for (int y = -1; y <= 1; ++y)
       for (int z = -1; z <= 1; ++z)
-        if (is_occupied(tree, octomap::OcTreeKey(static_cast<octomap::key_type>(key[0] + x),
-                                                 static_cast<octomap::key_type>(key[1] + y),
-                                                 static_cast<octomap::key_type>(key[2] + z))))
+        if (tree.is_occupied(octomap::OcTreeKey(static_cast<octomap::key_type>(key[0] + x),
+                                                static_cast<octomap::key_type>(key[1] + y),
+                                                static_cast<octomap::key_type>(key[2] + z))))
           return true;
   return false;
 }

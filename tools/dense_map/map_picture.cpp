@@ -4,11 +4,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <limits>
-#include <map>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
-#include <string>
+#include <set>
 #include <vector>
 
 #include "map_octomap/cost_map.hpp"
@@ -21,6 +21,7 @@ namespace {
 constexpr int kOversampling = 2;       // drawn larger and scaled down
 constexpr double kFieldOfView = 35.0;  // degrees, of the shorter side
 constexpr double kNear = 0.05;         // metres
+constexpr double kWide = 3;            // tangent of the direction beyond which nothing is drawn
 constexpr int kShift = 4;              // fractional bits of pixels
 const cv::Scalar kPaper(255, 255, 255), kInk(60, 52, 45);
 constexpr std::array<std::uint8_t, 3> kBackground = {190, 190, 186};  // class 0; black hides shape
@@ -55,11 +56,6 @@ bool is_free(const SemanticOctree& tree, const octomap::OcTreeKey& key) {
   return voxel && !tree.isNodeOccupied(voxel);
 }
 
-bool is_occupied(const SemanticOctree& tree, const octomap::OcTreeKey& key) {
-  const SemanticVoxel* voxel = tree.search(key);
-  return voxel && tree.isNodeOccupied(voxel);
-}
-
 octomap::OcTreeKey neighbour(octomap::OcTreeKey key, int axis, int step) {
   key[axis] = static_cast<octomap::key_type>(key[axis] + step);
   return key;
@@ -88,30 +84,33 @@ double sky_light(const SemanticOctree& tree, const octomap::OcTreeKey& before, i
     for (int b = -1; b <= 1; ++b)
       if (a != 0 || b != 0)
         empty +=
-            !is_occupied(tree, neighbour(neighbour(before, (axis + 1) % 3, a), (axis + 2) % 3, b));
+            !tree.is_occupied(neighbour(neighbour(before, (axis + 1) % 3, a), (axis + 2) % 3, b));
   return 0.6 + 0.05 * empty;
 }
 
 Scene scene_of(const SavedOctree& map, const PictureOptions& options) {
   const SemanticOctree& tree = *map.tree;
-  const auto found = floor_of(tree, {});
-  const FloorPlane floor = found.value_or(FloorPlane{.up = {0, -1, 0}, .height = -1e9});
-  Scene scene{.faces = {}, .edge = tree.getResolution(), .up = floor.up, .ahead = {}};
-  scene.ahead = Eigen::Vector3d::UnitZ() - floor.up.z() * floor.up;
-  if (scene.ahead.norm() < 0.1) scene.ahead = Eigen::Vector3d::UnitX() - floor.up.x() * floor.up;
-  scene.ahead.normalize();
+  const auto floor = floor_of(tree, {.floor = options.floor});
+  if (!floor && options.highest < PictureOptions{}.highest)
+    throw Error(Fault::kUsage, "no floor is in the map, above which something could be left out",
+                {}, "say where it is: --floor=X,Y,Z,HEIGHT");
+  Scene scene{.faces = {},
+              .edge = tree.getResolution(),
+              .up = floor ? floor->up : Eigen::Vector3d(0, -1, 0),
+              .ahead = {}};
+  scene.ahead = ahead_on_floor(scene.up);
+  // The sun stands high to the right, so that the sides of things differ.
+  const Eigen::Vector3d sun =
+      (scene.up + 0.45 * scene.ahead.cross(scene.up) - 0.25 * scene.ahead).normalized();
 
   const bool carved = has_free_space(tree);
   for_each_occupied_voxel(tree, [&](const Eigen::Vector3d& at, const SemanticVoxel& voxel) {
-    if (found && floor.up.dot(at) - floor.height > options.highest) return;
+    if (floor && floor->up.dot(at) - floor->height > options.highest) return;
     const octomap::OcTreeKey key = tree.coordToKey(at.x(), at.y(), at.z());
     for (int axis = 0; axis < 3; ++axis)
       for (const int side : {-1, 1}) {
         const octomap::OcTreeKey before = neighbour(key, axis, side);
-        if (carved ? !is_free(tree, before) : is_occupied(tree, before)) continue;
-        // The sun stands high to the right, so that the sides of things differ.
-        const Eigen::Vector3d sun =
-            (scene.up + 0.45 * scene.ahead.cross(scene.up) - 0.25 * scene.ahead).normalized();
+        if (carved ? !is_free(tree, before) : tree.is_occupied(before)) continue;
         const double light = sky_light(tree, before, axis) * (0.8 + 0.2 * side * sun[axis]);
         scene.faces.push_back({.centre = at + 0.5 * scene.edge * side * Eigen::Vector3d::Unit(axis),
                                .axis = axis,
@@ -122,9 +121,11 @@ Scene scene_of(const SavedOctree& map, const PictureOptions& options) {
   return scene;
 }
 
-Eigen::Matrix3d looking_along(const Eigen::Vector3d& forward, const Scene& scene) {
-  Eigen::Vector3d right = forward.cross(scene.up);
-  if (right.norm() < 1e-3) right = scene.ahead.cross(scene.up);  // straight down: ahead is up
+// `ahead` is up in the picture of one who looks straight down.
+Eigen::Matrix3d looking_along(const Eigen::Vector3d& forward, const Eigen::Vector3d& up,
+                              const Eigen::Vector3d& ahead) {
+  Eigen::Vector3d right = forward.cross(up);
+  if (right.norm() < 1e-3) right = ahead.cross(up);
   right.normalize();
   Eigen::Matrix3d view_from_world;
   view_from_world.row(0) = right;
@@ -169,17 +170,13 @@ View view_of(const Scene& scene, const PictureOptions& options) {
     const Eigen::Vector3d forward = *options.target - *options.eye;
     if (forward.norm() < 1e-9)
       throw Error(Fault::kUsage, "cannot look from a point at the same point");
-    view.view_from_world = looking_along(forward.normalized(), scene);
+    view.view_from_world = looking_along(forward.normalized(), scene.up, scene.ahead);
     return view;
   }
   const double down = options.elevation * M_PI / 180, turn = options.azimuth * M_PI / 180;
   const Eigen::Vector3d along = Eigen::AngleAxisd(-turn, scene.up) * scene.ahead;
-  view.view_from_world = looking_along(std::cos(down) * along - std::sin(down) * scene.up, scene);
-  // From straight above, `along` says what is up in the picture.
-  if (std::cos(down) < 1e-3) view.view_from_world.row(0) = along.cross(scene.up);
-  if (std::cos(down) < 1e-3)
-    view.view_from_world.row(1) =
-        Eigen::Vector3d(view.view_from_world.row(2)).cross(along.cross(scene.up));
+  view.view_from_world =
+      looking_along(std::cos(down) * along - std::sin(down) * scene.up, scene.up, along);
   fit(view, scene);
   return view;
 }
@@ -201,7 +198,7 @@ cv::Mat drawn(Scene& scene, const View& view) {
     for (int i = 0; i < 4; ++i) {
       const Eigen::Vector3d at =
           view.from_eye(face.centre + (i == 0 || i == 3 ? -a : a) + (i < 2 ? -b : b));
-      visible = visible && at.z() > kNear;
+      visible = at.z() > kNear && at.head<2>().cwiseAbs().maxCoeff() < kWide * at.z();
       if (!visible) break;
       const auto pixel = [&](double place, int size) {
         return cvRound((view.focal * place / at.z() + 0.5 * size) * (1 << kShift));
@@ -215,14 +212,14 @@ cv::Mat drawn(Scene& scene, const View& view) {
 
 // Names of the classes that are in the map, below one another.
 void add_legend(cv::Mat& picture, const SavedOctree& map) {
-  std::map<std::uint8_t, int> voxels;
+  std::set<std::uint8_t> labels;
   for_each_occupied_voxel(*map.tree, [&](const Eigen::Vector3d&, const SemanticVoxel& voxel) {
-    ++voxels[voxel.classes().best()];
+    labels.insert(voxel.classes().best());
   });
   const double scale = 0.55 * kOversampling;
   const int line = 24 * kOversampling, box = 14 * kOversampling;
   int y = line;
-  for (const auto& [label, count] : voxels) {
+  for (const std::uint8_t label : labels) {
     if (label >= map.classes.names.size()) continue;
     const auto rgb = label > 0 ? map.classes.colors[label] : kBackground;
     cv::rectangle(picture, cv::Rect(line / 2, y - box / 2, box, box),

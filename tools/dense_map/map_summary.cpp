@@ -2,12 +2,12 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <functional>
 #include <limits>
 #include <nlohmann/json.hpp>
 
 #include "dense_map/text.hpp"
-#include "map_octomap/cost_map.hpp"
 
 namespace stillpoint::dense_map {
 namespace {
@@ -26,19 +26,19 @@ std::string row(const std::string& name, const std::string& value) {
 
 std::string floor_text(const std::optional<FloorPlane>& floor) {
   if (!floor) return "not found";
-  return text("%.2f m below the first camera, up is (%.3f, %.3f, %.3f)", -floor->height,
-              floor->up.x(), floor->up.y(), floor->up.z());
+  return text("%.2f m %s the origin, up is (%.3f, %.3f, %.3f)", std::abs(floor->height),
+              floor->height > 0 ? "above" : "below", floor->up.x(), floor->up.y(), floor->up.z());
 }
 
 }  // namespace
 
-MapSummary summarise(const SavedOctree& map) {
+MapSummary summarise(const SavedOctree& map, const CostMapOptions& options) {
   const SemanticOctree& tree = *map.tree;
   MapSummary summary{.resolution = tree.getResolution(),
                      .nodes = tree.size(),
                      .memory = tree.memoryUsage(),
                      .has_colors = map.has_colors,
-                     .floor = floor_of(tree, {})};
+                     .floor = floor_of(tree, options)};
   for (auto leaf = tree.begin_leafs(); leaf != tree.end_leafs(); ++leaf) {
     const auto voxels = std::size_t{1} << (3 * (tree.getTreeDepth() - leaf.getDepth()));
     (tree.isNodeOccupied(*leaf) ? summary.occupied : summary.free) += voxels;

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "map_octomap/floor_plane.hpp"
+#include "map_octomap/cost_map.hpp"
 #include "map_octomap/octree_reader.hpp"
 
 namespace stillpoint::dense_map {
@@ -32,7 +32,8 @@ struct MapSummary {
   double surface() const { return static_cast<double>(occupied) * resolution * resolution; }
 };
 
-MapSummary summarise(const SavedOctree& map);
+/// The floor is that of the options, or found.
+MapSummary summarise(const SavedOctree& map, const CostMapOptions& options = {});
 
 std::string summary_table(const MapSummary& summary, const std::string& name);
 nlohmann::json summary_json(const MapSummary& summary);

@@ -1,11 +1,13 @@
 // stillpoint map: what to do with a saved dense map.
 #include <algorithm>
+#include <charconv>
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
-#include <optional>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -30,18 +32,59 @@ void add_map_argument(CLI::App& command, const char* name, std::string& file) {
   add_file(command, name, file, "Saved map: .ot or .bt")->required();
 }
 
+/// "1,2,3" as numbers, of which there must be so many.
+std::vector<double> numbers_from(const std::string& text, const std::string& option,
+                                 std::size_t least, std::size_t most) {
+  std::vector<double> numbers;
+  std::istringstream parts(text);
+  bool good = !text.empty() && text.back() != ',';
+  for (std::string part; good && std::getline(parts, part, ',');) {
+    double value = 0;
+    const auto [end, error] = std::from_chars(part.data(), part.data() + part.size(), value);
+    good = error == std::errc() && end == part.data() + part.size() && std::isfinite(value);
+    numbers.push_back(value);
+  }
+  if (!good || numbers.size() < least || numbers.size() > most)
+    throw Error(Fault::kUsage, "'" + text + "' should be numbers with commas between them", option);
+  return numbers;
+}
+
+void add_floor(CLI::App& command, std::string& floor) {
+  command
+      .add_option("--floor", floor,
+                  "Which way is up in the map, and the floor's height that way, m; without the "
+                  "height, or without all, it is found, up being about -y")
+      ->type_name("X,Y,Z[,H]");
+}
+
+std::vector<double> floor_from(const std::string& text) {
+  if (text.empty()) return {};
+  const std::vector<double> floor = numbers_from(text, "--floor", 3, 4);
+  if (!CostMapOptions::is_floor(floor))
+    throw Error(Fault::kUsage, "'" + text + "' is no direction", "--floor");
+  return floor;
+}
+
+/// CLI11's ranges let "nan" through.
+void require_numbers(std::initializer_list<double> values) {
+  for (const double value : values)
+    if (std::isnan(value)) throw Error(Fault::kUsage, "'nan' is not a value of an option");
+}
+
 void add_info(CLI::App& map) {
   struct Arguments {
-    std::string file;
+    std::string file, floor;
     bool json = false;
   };
   auto arguments = std::make_shared<Arguments>();
   CLI::App* command =
       map.add_subcommand("info", "Resolution, size, classes, floor and memory of a map");
   add_map_argument(*command, "map", arguments->file);
+  add_floor(*command, arguments->floor);
   command->add_flag("--json", arguments->json, "Print JSON instead of a table");
   command->callback([arguments] {
-    const MapSummary summary = summarise(read_octree(arguments->file));
+    const MapSummary summary =
+        summarise(read_octree(arguments->file), {.floor = floor_from(arguments->floor)});
     if (arguments->json)
       std::cout << summary_json(summary).dump(2) << '\n';
     else
@@ -76,7 +119,7 @@ void add_convert(CLI::App& map) {
 
 void add_project(CLI::App& map) {
   struct Arguments {
-    std::string map, output;
+    std::string map, output, floor;
     CostMapOptions options;
   };
   auto arguments = std::make_shared<Arguments>();
@@ -95,18 +138,12 @@ void add_project(CLI::App& map) {
   number("--from", options.from, "Height above the floor, m; what is lower is no obstacle");
   number("--to", options.to, "Height above the floor, m; what is higher is no obstacle");
   number("--robot-radius", options.robot_radius, "Obstacles grow by it, m");
-  command
-      ->add_option("--floor", options.floor,
-                   "X,Y,Z upwards in the world, and the floor's height along it, m; without the "
-                   "height, or without all, it is found in the map")
-      ->delimiter(',')
-      ->expected(3, 4)
-      ->type_name("X,Y,Z[,H]");
+  add_floor(*command, arguments->floor);
   command->callback([arguments] {
-    const CostMapOptions& chosen = arguments->options;
-    if (!(chosen.from < chosen.to)) throw Error(Fault::kUsage, "--from must be lower than --to");
-    if (!chosen.floor.empty() && !(Eigen::Vector3d(chosen.floor.data()).norm() > 1e-6))
-      throw Error(Fault::kUsage, "--floor needs a direction");
+    CostMapOptions chosen = arguments->options;
+    require_numbers({chosen.from, chosen.to, chosen.robot_radius});
+    if (chosen.from >= chosen.to) throw Error(Fault::kUsage, "--from must be lower than --to");
+    chosen.floor = floor_from(arguments->floor);
     const SavedOctree saved = read_octree(arguments->map);
     const auto floor = floor_of(*saved.tree, chosen);
     if (!floor)
@@ -143,8 +180,7 @@ void add_diff(CLI::App& map) {
 }
 
 struct RenderArguments {
-  std::string map, output, mode = "color", size = "1280x960";
-  std::vector<double> eye, target;
+  std::string map, output, floor, eye, target, mode = "color", size = "1280x960";
   PictureOptions options;
 };
 
@@ -163,12 +199,16 @@ void render(const RenderArguments& arguments) {
   PictureOptions options = arguments.options;
   options.size = size_from(arguments.size);
   if (arguments.mode == "class") options.mode = PictureOptions::Mode::kClass;
+  require_numbers({options.azimuth, options.elevation, options.highest});
+  options.floor = floor_from(arguments.floor);
   if (arguments.eye.empty() != arguments.target.empty())
     throw Error(Fault::kUsage, "--eye and --look-at belong together");
   if (!arguments.eye.empty()) {
-    options.eye = Eigen::Vector3d(arguments.eye.data());
-    options.target = Eigen::Vector3d(arguments.target.data());
+    options.eye = Eigen::Vector3d(numbers_from(arguments.eye, "--eye", 3, 3).data());
+    options.target = Eigen::Vector3d(numbers_from(arguments.target, "--look-at", 3, 3).data());
   }
+  if (fs::path(arguments.output).extension() != ".png")
+    throw Error(Fault::kUsage, "pictures are PNG files", arguments.output, "call it .png");
   write_picture(picture_of(read_octree(arguments.map), options), arguments.output);
 }
 
@@ -187,16 +227,17 @@ void add_render(CLI::App& map) {
   };
   PictureOptions& options = arguments->options;
   number("--azimuth", options.azimuth, -360, 360,
-         "Degrees to the left of where the first camera looks")
+         "Degrees around the map; 0: from behind the first camera, 90: from its left")
       ->capture_default_str();
   number("--elevation", options.elevation, -90, 90, "Degrees above the floor; 90: from above")
       ->capture_default_str();
   number("--below", options.highest, -100, 100, "Leave out what is higher above the floor, m");
-  const auto point = [&](const char* name, std::vector<double>& value, const char* help) {
-    command->add_option(name, value, help)->delimiter(',')->expected(3)->type_name("X,Y,Z");
+  const auto point = [&](const char* name, std::string& value, const char* help) {
+    command->add_option(name, value, help)->type_name("X,Y,Z");
   };
-  point("--eye", arguments->eye, "Look from this point of the world, m, instead of at all");
-  point("--look-at", arguments->target, "Look at this point of the world, m");
+  point("--eye", arguments->eye, "Look from this point of the map, m, not at the whole of it");
+  point("--look-at", arguments->target, "Look at this point of the map, m");
+  add_floor(*command, arguments->floor);
   command->add_option("--size", arguments->size, "Of the picture, px")
       ->capture_default_str()
       ->type_name("WxH");
