@@ -48,6 +48,7 @@ class Projection {
     map_.resolution = tree.getResolution();
     // The floor's own voxels reach as high.
     options_.from = std::max(options_.from, map_.resolution);
+    options_.to = std::max(options_.to, options_.from + map_.resolution);
     map_.floor_from_world = floor_from_world(floor);
   }
 

@@ -14,14 +14,13 @@ namespace {
 constexpr double kMinArea = 0.5;         // m², of a floor
 constexpr double kShareOfLargest = 0.2;  // of the largest horizontal surface: less is furniture
 constexpr double kMaxTilt = 50.0;        // degrees, between the hint and the normal
-constexpr int kTrials =
-    5000;  // of three points: a plane with a tenth of all is found in 99 % of maps
-constexpr std::size_t kSample = 10000;  // points that the trials are judged by
+constexpr int kTrials = 5000;            // of three points; with a tenth of all, 5 are of the plane
+constexpr std::size_t kSample = 10000;   // points that the trials are judged by
 
 using Points = std::vector<Eigen::Vector3d>;
 
 Points thinned(std::span<const Eigen::Vector3f> points, std::size_t most) {
-  const std::size_t step = points.size() / std::max<std::size_t>(most + 1, 1) + 1;
+  const std::size_t step = points.size() / (most + 1) + 1;
   Points some;
   for (std::size_t i = 0; i < points.size(); i += step) some.push_back(points[i].cast<double>());
   return some;
