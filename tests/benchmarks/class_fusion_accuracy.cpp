@@ -129,15 +129,6 @@ void run(const std::vector<std::filesystem::path>& folders) {
 }  // namespace stillpoint
 
 int main(int argc, char** argv) {
-  if (argc < 3) {
-    std::cerr << "class_fusion_accuracy TRUTH RECORDING...\n";
-    return 2;
-  }
-  try {
-    stillpoint::run({argv + 1, argv + argc});
-  } catch (const std::exception& error) {
-    std::cerr << "error: " << error.what() << '\n';
-    return 1;
-  }
-  return 0;
+  return stillpoint::run_on_folders(argc, argv, "class_fusion_accuracy TRUTH RECORDING...",
+                                    stillpoint::run);
 }

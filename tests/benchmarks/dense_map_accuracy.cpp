@@ -161,15 +161,5 @@ void run(const std::vector<std::filesystem::path>& folders) {
 }  // namespace stillpoint
 
 int main(int argc, char** argv) {
-  if (argc < 3) {
-    std::cerr << "dense_map_accuracy TRUTH RUN...\n";
-    return 2;
-  }
-  try {
-    stillpoint::run({argv + 1, argv + argc});
-  } catch (const std::exception& error) {
-    std::cerr << "error: " << error.what() << '\n';
-    return 1;
-  }
-  return 0;
+  return stillpoint::run_on_folders(argc, argv, "dense_map_accuracy TRUTH RUN...", stillpoint::run);
 }

@@ -5,7 +5,9 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <exception>
 #include <filesystem>
+#include <iostream>
 #include <map>
 #include <opencv2/imgcodecs.hpp>
 #include <stdexcept>
@@ -95,6 +97,22 @@ inline Truth truth_in(const std::vector<LabelledFrame>& frames, const Pose& map_
 
 inline std::uint8_t most_seen(const std::map<std::uint8_t, int>& counts) {
   return std::ranges::max_element(counts, {}, [](const auto& c) { return c.second; })->first;
+}
+
+/// What a program's main() does that judges folders against the truth in the first of them.
+inline int run_on_folders(int argc, char** argv, const char* usage,
+                          void (*run)(const std::vector<std::filesystem::path>&)) {
+  if (argc < 3) {
+    std::cerr << usage << '\n';
+    return 2;
+  }
+  try {
+    run({argv + 1, argv + argc});
+  } catch (const std::exception& error) {
+    std::cerr << "error: " << error.what() << '\n';
+    return 1;
+  }
+  return 0;
 }
 
 }  // namespace stillpoint
