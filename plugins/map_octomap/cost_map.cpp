@@ -15,6 +15,7 @@ namespace stillpoint {
 namespace {
 
 constexpr double kLow = 0.3;  // metres above `from`: no low obstacle hides under free space there
+constexpr double kLeastObstacle = 0.02;  // m² of surface: less is left of a shoe or a hand
 constexpr double kMostCells = 1e8;
 constexpr double kSeenThrough = 0.5;  // of a column: what is free below a table top is not free
 
@@ -59,6 +60,7 @@ class Projection {
         add(map_.floor_from_world * part, occupied);
       });
     });
+    drop_specks();
     decide();
     grow_obstacles();
     return std::move(map_);
@@ -67,9 +69,9 @@ class Projection {
  private:
   // What is above a cell.
   struct Column {
-    bool obstacle = false;
-    bool low = false;  // the floor was seen, or what is just above it looked through
+    int obstacle = 0;  // parts
     int free = 0;      // parts
+    bool low = false;  // the floor was seen, or what is just above it looked through
   };
 
   template <typename Function>
@@ -109,11 +111,24 @@ class Projection {
     Column& cell =
         columns_[static_cast<std::size_t>((map_.cells.rows - 1 - row) * map_.cells.cols + column)];
     const bool inside = at.z() >= options_.from && at.z() < options_.to;
-    cell.obstacle |= occupied && inside;
+    cell.obstacle += occupied && inside;
     cell.low |=
         occupied ? std::abs(at.z()) < options_.from : inside && at.z() < options_.from + kLow;
     cell.free += !occupied && inside;
     carved_ |= !occupied;
+  }
+
+  // What touches no other obstacle and is too small for one.
+  void drop_specks() {
+    cv::Mat obstacles(map_.cells.size(), CV_8UC1), labels;
+    for (std::size_t i = 0; i < columns_.size(); ++i) obstacles.data[i] = columns_[i].obstacle > 0;
+    const int count = cv::connectedComponents(obstacles, labels, 8, CV_32S);
+    const auto* label = labels.ptr<int>();
+    std::vector<int> parts(static_cast<std::size_t>(count));
+    for (std::size_t i = 0; i < columns_.size(); ++i) parts[label[i]] += columns_[i].obstacle;
+    const double least = 8 * kLeastObstacle / (map_.resolution * map_.resolution);
+    for (std::size_t i = 0; i < columns_.size(); ++i)
+      if (parts[label[i]] < least) columns_[i].obstacle = 0;
   }
 
   void decide() {
@@ -121,7 +136,7 @@ class Projection {
                                     (map_.resolution / part_) * (map_.resolution / part_);
     std::uint8_t* cell = map_.cells.data;
     for (const Column& column : columns_) {
-      if (column.obstacle)
+      if (column.obstacle > 0)
         *cell = CostMap::kOccupied;
       else if (column.low && (!carved_ || column.free > kSeenThrough * parts_per_column))
         *cell = CostMap::kFree;

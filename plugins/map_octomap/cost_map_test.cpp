@@ -165,6 +165,26 @@ TEST(CostMap, WhatWasOnlyLookedUnderIsNotFree) {
   EXPECT_EQ(map.cells.at<std::uint8_t>(map.cell_of({1.52, 0.02, 0})), CostMap::kUnknown);
 }
 
+TEST(CostMap, SpecksAreNoObstacles) {
+  SemanticOctree tree(0.05);
+  const auto occupied = [](double x, double y, double z) {
+    const bool speck = x > 0.5 && x < 0.6 && y > 0 && y < 0.1 && z > 0.5 && z < 0.55;
+    const bool bottle = x > -0.6 && x < -0.5 && y > 0 && y < 0.1 && z > 0 && z < 0.3;
+    return z < 0 || speck || bottle;
+  };
+  for (double x = -0.975; x < 1; x += 0.05)
+    for (double y = -0.975; y < 1; y += 0.05)
+      for (double z = -0.025; z < 1.9; z += 0.05)
+        tree.updateNode(
+            octomap::point3d(static_cast<float>(x), static_cast<float>(y), static_cast<float>(z)),
+            occupied(x, y, z));
+  CostMapOptions options;
+  options.floor = {0, 0, 1, 0};
+  const CostMap map = project(tree, *floor_of(tree, options), options);
+  EXPECT_EQ(map.cells.at<std::uint8_t>(map.cell_of({0.525, 0.025, 0})), CostMap::kFree);
+  EXPECT_EQ(map.cells.at<std::uint8_t>(map.cell_of({-0.525, 0.025, 0})), CostMap::kOccupied);
+}
+
 TEST_F(CostMapOfRoom, FilesForMapServer) {
   const testing::TemporaryFolder folder;
   const CostMap map = projected({});
