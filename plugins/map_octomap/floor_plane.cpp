@@ -17,13 +17,13 @@ constexpr double kMaxTilt = 50.0;        // degrees, between the hint and the no
 constexpr int kTrials = 5000;            // of three points; with a tenth of all, 5 are of the plane
 constexpr std::size_t kSample = 10000;   // points that the trials are judged by
 
-using Points = std::vector<Eigen::Vector3d>;
+using Points = std::span<const Eigen::Vector3f>;
 
-Points thinned(std::span<const Eigen::Vector3f> points, std::size_t most) {
-  const std::size_t step = points.size() / (most + 1) + 1;
-  Points some;
-  for (std::size_t i = 0; i < points.size(); i += step) some.push_back(points[i].cast<double>());
-  return some;
+std::vector<Eigen::Vector3f> sample_of(Points points) {
+  const std::size_t step = points.size() / (kSample + 1) + 1;
+  std::vector<Eigen::Vector3f> sample;
+  for (std::size_t i = 0; i < points.size(); i += step) sample.push_back(points[i]);
+  return sample;
 }
 
 /// Columns and layers along a direction.
@@ -74,16 +74,17 @@ class Layers {
   std::unordered_set<Key, Hash> taken_;
 };
 
-bool is_on(const Eigen::Vector3d& point, const FloorPlane& plane, double tolerance) {
-  return std::abs(plane.up.dot(point) - plane.height) < tolerance;
+bool is_on(const Eigen::Vector3f& point, const FloorPlane& plane, double tolerance) {
+  return std::abs(plane.up.dot(point.cast<double>()) - plane.height) < tolerance;
 }
 
-FloorPlane fitted(const Points& points, const FloorPlane& plane, double tolerance) {
+FloorPlane fitted(Points points, const FloorPlane& plane, double tolerance) {
   Eigen::Vector3d mean = Eigen::Vector3d::Zero();
   Eigen::Matrix3d squares = Eigen::Matrix3d::Zero();
   double count = 0;
-  for (const Eigen::Vector3d& point : points) {
-    if (!is_on(point, plane, tolerance)) continue;
+  for (const Eigen::Vector3f& measured : points) {
+    if (!is_on(measured, plane, tolerance)) continue;
+    const Eigen::Vector3d point = measured.cast<double>();
     mean += point;
     squares += point * point.transpose();
     ++count;
@@ -97,7 +98,7 @@ FloorPlane fitted(const Points& points, const FloorPlane& plane, double toleranc
 }
 
 // RANSAC; its generator is fixed, so that a map always has the same floor.
-std::optional<FloorPlane> largest_horizontal(const Points& points, const Eigen::Vector3d& up_hint,
+std::optional<FloorPlane> largest_horizontal(Points points, const Eigen::Vector3d& up_hint,
                                              double tolerance) {
   if (points.size() < 3) return std::nullopt;
   std::mt19937 random(1);
@@ -105,9 +106,10 @@ std::optional<FloorPlane> largest_horizontal(const Points& points, const Eigen::
   std::optional<FloorPlane> best;
   std::ptrdiff_t most = 0;
   for (int trial = 0; trial < kTrials; ++trial) {
-    const auto& a = points[random() % points.size()];
-    const auto& b = points[random() % points.size()];
-    const auto& c = points[random() % points.size()];
+    const auto draw = [&] {
+      return Eigen::Vector3d(points[random() % points.size()].cast<double>());
+    };
+    const Eigen::Vector3d a = draw(), b = draw(), c = draw();
     Eigen::Vector3d up = (b - a).cross(c - a);
     if (up.norm() < tolerance * tolerance) continue;
     up.normalize();
@@ -157,13 +159,12 @@ std::optional<FloorPlane> find_floor_below(std::span<const Eigen::Vector3f> poin
 
 std::optional<FloorPlane> find_floor(std::span<const Eigen::Vector3f> points,
                                      const Eigen::Vector3d& up_hint, double spacing) {
-  const Points some = thinned(points, kSample), all = thinned(points, points.size());
-  const auto horizontal = largest_horizontal(some, up_hint.normalized(), spacing);
+  const auto horizontal = largest_horizontal(sample_of(points), up_hint.normalized(), spacing);
   if (!horizontal) return std::nullopt;
   const auto floor = find_floor_below(points, horizontal->up, spacing);
   if (!floor) return std::nullopt;
   // Heights of voxels say little of a direction, unless the surface is large.
-  const FloorPlane fit = fitted(all, *floor, spacing);
+  const FloorPlane fit = fitted(points, *floor, spacing);
   const double change = std::acos(std::clamp(fit.up.dot(floor->up), -1.0, 1.0));
   return change < 5 * M_PI / 180 ? fit : *floor;
 }

@@ -91,7 +91,7 @@ double sky_light(const SemanticOctree& tree, const octomap::OcTreeKey& before, i
 Scene scene_of(const SavedOctree& map, const PictureOptions& options) {
   const SemanticOctree& tree = *map.tree;
   const auto floor = floor_of(tree, {.floor = options.floor});
-  if (!floor && options.highest < PictureOptions{}.highest)
+  if (!floor && options.highest)
     throw Error(Fault::kUsage, "no floor is in the map, above which something could be left out",
                 {}, "say where it is: --floor=X,Y,Z,HEIGHT");
   Scene scene{.faces = {},
@@ -105,7 +105,7 @@ Scene scene_of(const SavedOctree& map, const PictureOptions& options) {
 
   const bool carved = has_free_space(tree);
   for_each_occupied_voxel(tree, [&](const Eigen::Vector3d& at, const SemanticVoxel& voxel) {
-    if (floor && floor->up.dot(at) - floor->height > options.highest) return;
+    if (options.highest && floor->up.dot(at) - floor->height > *options.highest) return;
     const octomap::OcTreeKey key = tree.coordToKey(at.x(), at.y(), at.z());
     for (int axis = 0; axis < 3; ++axis)
       for (const int side : {-1, 1}) {

@@ -13,10 +13,10 @@ namespace stillpoint::dense_map {
 
 struct PictureOptions {
   enum class Mode { kColor, kClass } mode = Mode::kColor;
-  cv::Size size{1280, 960};  ///< px
-  double azimuth = 30;       ///< degrees; 0: from behind the first camera, 90: from its left
-  double elevation = 50;     ///< degrees above the floor; 90: from above
-  double highest = 1e9;      ///< metres above the floor; what is higher is left out
+  cv::Size size{1280, 960};       ///< px
+  double azimuth = 30;            ///< degrees; 0: from behind the first camera, 90: from its left
+  double elevation = 50;          ///< degrees above the floor; 90: from above
+  std::optional<double> highest;  ///< metres above the floor; what is higher is left out
   /// Where to look from and at, in world, metres: instead of azimuth and elevation, from which all
   /// of the map is seen.
   std::optional<Eigen::Vector3d> eye, target;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <initializer_list>
 
 #include "stillpoint/runtime/pipeline_config.hpp"
 
@@ -19,5 +20,8 @@ void add_simulate(CLI::App& app);
 
 /// PIPELINE, --dataset, --camera and --set, for every subcommand that reads a pipeline file.
 void add_pipeline_options(CLI::App& command, PipelineRequest& request);
+
+/// For values with a range, through which CLI11 lets "nan". Throws Error(kUsage).
+void require_numbers(std::initializer_list<double> values);
 
 }  // namespace stillpoint

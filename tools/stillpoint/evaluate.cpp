@@ -1,5 +1,4 @@
 // stillpoint evaluate: how far an estimated trajectory is from the true one.
-#include <cmath>
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -25,9 +24,7 @@ struct Arguments {
 void run(const Arguments& arguments) {
   using namespace evaluation;
   EvaluationOptions options = arguments.options;
-  // The range check lets "nan" through.
-  for (double value : {options.max_difference, options.offset, options.delta.length})
-    if (std::isnan(value)) throw Error(Fault::kUsage, "'nan' is not a value of an option");
+  require_numbers({options.max_difference, options.offset, options.delta.length});
   options.delta.unit = arguments.delta_unit == "s" ? DeltaUnit::kSeconds : DeltaUnit::kFrames;
   Trajectory reference = read_trajectory(arguments.reference);
   Trajectory estimate = read_trajectory(arguments.estimate);

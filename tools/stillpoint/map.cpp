@@ -65,12 +65,6 @@ std::vector<double> floor_from(const std::string& text) {
   return floor;
 }
 
-/// CLI11's ranges let "nan" through.
-void require_numbers(std::initializer_list<double> values) {
-  for (const double value : values)
-    if (std::isnan(value)) throw Error(Fault::kUsage, "'nan' is not a value of an option");
-}
-
 void add_info(CLI::App& map) {
   struct Arguments {
     std::string file, floor;
@@ -199,7 +193,7 @@ void render(const RenderArguments& arguments) {
   PictureOptions options = arguments.options;
   options.size = size_from(arguments.size);
   if (arguments.mode == "class") options.mode = PictureOptions::Mode::kClass;
-  require_numbers({options.azimuth, options.elevation, options.highest});
+  require_numbers({options.azimuth, options.elevation, options.highest.value_or(0)});
   options.floor = floor_from(arguments.floor);
   if (arguments.eye.empty() != arguments.target.empty())
     throw Error(Fault::kUsage, "--eye and --look-at belong together");
@@ -231,7 +225,9 @@ void add_render(CLI::App& map) {
       ->capture_default_str();
   number("--elevation", options.elevation, -90, 90, "Degrees above the floor; 90: from above")
       ->capture_default_str();
-  number("--below", options.highest, -100, 100, "Leave out what is higher above the floor, m");
+  command->add_option("--below", options.highest, "Leave out what is higher above the floor, m")
+      ->check(CLI::Range(-100.0, 100.0))
+      ->type_name("NUMBER");
   const auto point = [&](const char* name, std::string& value, const char* help) {
     command->add_option(name, value, help)->type_name("X,Y,Z");
   };
