@@ -43,8 +43,8 @@ ObservedFrame unmatched(FramePtr frame, FeaturesPtr features) {
   return observed;
 }
 
-// All that a person wears can become landmarks at once, hundreds in a few frames, and they agree
-// with each other. A landmark from another recording, saved with its map, may seem to lie in the
+// What a person wears becomes landmarks by the hundred in a few frames, and they agree with each
+// other. A landmark from another recording, saved with its map, may seem to lie in the
 // future.
 double proven(const Landmark& landmark, const SparseMap& map, double time, double proving_time) {
   const KeyFrame* creator = map.keyframe(landmark.created_by);

@@ -13,6 +13,7 @@ namespace {
 constexpr int kMinMotionMatches = 20;  // fewer: search again in a wider window
 constexpr int kMinMotionInliers = 20;  // fewer, or a smaller share: do not trust the prediction
 constexpr double kMinMotionShare = 0.5;
+constexpr double kCompany = 5.0;  // seconds: who has left the image may be back
 
 std::vector<TrackedFeature> describe(const ObservedFrame& frame) {
   std::vector<TrackedFeature> tracked(frame.features->size());
@@ -65,7 +66,8 @@ void OrbTracker::Options::visit(OptionVisitor& v) {
     {.min = 0,
      .max = 60,
      .unit = "s",
-     .help = "until a new landmark counts in full for the pose; 0: at once"});
+     .help = "until a new landmark counts in full for the pose, where something about may move; 0: "
+             "at once"});
   v("most_features", most_features,
     {.min = 1,
      .max = 4,
@@ -88,10 +90,17 @@ double OrbTracker::feature_share() const {
   return std::min(1 / ((1 - hidden) * (1 - hidden)), options_.most_features);
 }
 
+// All that is worn by somebody whom nobody recognised can become landmarks at once. Where nobody
+// is, new landmarks are as good as others.
+double OrbTracker::proving_time() const {
+  return current_.frame->time - last_company_ < kCompany ? options_.proving_time : 0.0;
+}
+
 TrackResult OrbTracker::track(FramePtr, const StaticWeights& weights, const SparseMap& map,
                               TrackHints hints) {
   current_.set_weights(weights);
   unmapped_ = unmapped_area(weights);
+  if (!unmapped_.empty() && cv::countNonZero(unmapped_) > 0) last_company_ = current_.frame->time;
   visible_.clear();
   if (map.empty())
     return !hints.localise_only && start() ? tracked(map, hints)
@@ -140,7 +149,7 @@ bool OrbTracker::track_with_motion(const SparseMap& map) {
   int matches = match_projected(current_, targets, prediction, options_.motion_window, 1);
   if (matches < kMinMotionMatches)
     matches = match_projected(current_, targets, prediction, 2 * options_.motion_window, 1);
-  const int inliers = solve_pose(current_, map, options_.proving_time);
+  const int inliers = solve_pose(current_, map, proving_time());
   current_.drop_outliers();
   return inliers >= kMinMotionInliers && inliers >= kMinMotionShare * matches;
 }
@@ -159,7 +168,7 @@ bool OrbTracker::track_local_map(const SparseMap& map) {
   const Pose prior = current_.world_from_camera;
   const auto temporary =
       std::exchange(current_.temporary, decltype(current_.temporary)(current_.features->size()));
-  inliers_ = solve_pose(current_, map, options_.proving_time);
+  inliers_ = solve_pose(current_, map, proving_time());
   bridged_ = inliers_ < options_.min_inliers;
   if (!bridged_) return true;
   // A view that the map hardly knows: carried by what the last frame measured, it becomes a key
@@ -167,7 +176,7 @@ bool OrbTracker::track_local_map(const SparseMap& map) {
   current_.temporary = temporary;
   current_.world_from_camera = prior;
   return current_.reference != kNoId &&
-         solve_pose(current_, map, options_.proving_time) >= options_.min_bridge_points;
+         solve_pose(current_, map, proving_time()) >= options_.min_bridge_points;
 }
 
 void OrbTracker::search_local_map(const SparseMap& map) {

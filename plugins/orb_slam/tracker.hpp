@@ -38,6 +38,7 @@ class OrbTracker final : public Tracker {
 
  private:
   double feature_share() const;
+  double proving_time() const;
   bool start();
   void follow_map(const SparseMap& map);
   bool track_with_motion(const SparseMap& map);
@@ -53,6 +54,7 @@ class OrbTracker final : public Tracker {
   OrbExtractor extractor_;
   Relocaliser relocaliser_;
   cv::Mat unmapped_;  // where the last frame's features could have no landmark: not 0, CV_8U
+  double last_company_ = -1e300;  // seconds: time of the last frame with something in `unmapped_`
 
   ObservedFrame current_;
   ObservedFrame last_;                // the last one with a pose

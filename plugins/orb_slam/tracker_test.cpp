@@ -43,6 +43,16 @@ class TrackerTest : public testing::Test {
       expect_at(step(path(static_cast<double>(i) / (frames - 1))), path(1.0 * i / (frames - 1)));
     }
   }
+  std::vector<Pose> anew(OrbTracker::Options options, const StaticWeights& weights = {}) {
+    tracker_ = OrbTracker{options};
+    mapper_ = OrbLocalMapper{OrbLocalMapper::Options{}, StageContext{}};
+    map_ = {};
+    next_ = 0;
+    std::vector<Pose> poses;
+    for (int i = 0; i < 8; ++i)
+      poses.push_back(step(pose_at({0.05 * i, 0, 0}), weights).world_from_camera);
+    return poses;
+  }
 
   TestScene scene_;
   OrbTracker tracker_{OrbTracker::Options{}};
@@ -263,17 +273,21 @@ TEST_F(TrackerTest, CountsOnAnExistingMap) {
 }
 
 TEST_F(TrackerTest, SameFramesSameBits) {
-  const auto run = [this] {
-    std::vector<Pose> poses;
-    tracker_ = OrbTracker{OrbTracker::Options{}};
-    mapper_ = OrbLocalMapper{OrbLocalMapper::Options{}, StageContext{}};
-    map_ = {};
-    next_ = 0;
-    for (int i = 0; i < 8; ++i) poses.push_back(step(pose_at({0.05 * i, 0, 0})).world_from_camera);
-    return poses;
-  };
-  const auto first = run(), second = run();
+  const auto first = anew({}), second = anew({});
   for (std::size_t i = 0; i < first.size(); ++i) EXPECT_EQ(first[i].matrix(), second[i].matrix());
+}
+
+TEST_F(TrackerTest, NewLandmarksProveThemselvesOnlyWhereSomethingMayMove) {
+  OrbTracker::Options proving;
+  proving.proving_time = 10;
+  StaticWeights company;
+  company.map = cv::Mat(480, 640, CV_8UC1, cv::Scalar(255));
+  const auto alone = anew({}, company), proving_alone = anew(proving, company);
+  EXPECT_EQ(alone.back().matrix(), proving_alone.back().matrix());
+  company.map(cv::Rect(0, 0, 160, 480)) = 0;
+  const auto believing = anew({}, company), doubting = anew(proving, company);
+  EXPECT_EQ(believing.front().matrix(), doubting.front().matrix());
+  EXPECT_NE(believing.back().matrix(), doubting.back().matrix());
 }
 
 }  // namespace
