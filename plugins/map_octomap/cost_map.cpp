@@ -16,6 +16,7 @@ namespace {
 
 constexpr double kLow = 0.3;  // metres above `from`: no low obstacle hides under free space there
 constexpr double kLeastObstacle = 0.02;  // m² of surface: less is left of a shoe or a hand
+constexpr float kSure = 0.75F;  // log-odds; with the map's own defaults, more than one key frame's
 constexpr double kMostCells = 1e8;
 constexpr double kSeenThrough = 0.5;  // of a column: what is free below a table top is not free
 
@@ -55,12 +56,12 @@ class Projection {
 
   CostMap run() {
     make_cells();
-    for_each_leaf([&](const Eigen::Vector3d& centre, double edge, bool occupied) {
+    for_each_leaf([&](const Eigen::Vector3d& centre, double edge, float log_odds) {
       for_each_part(centre, edge, part_, [&](const Eigen::Vector3d& part) {
-        add(map_.floor_from_world * part, occupied);
+        add(map_.floor_from_world * part, log_odds);
       });
     });
-    drop_specks();
+    doubt_obstacles();
     decide();
     grow_obstacles();
     return std::move(map_);
@@ -69,9 +70,11 @@ class Projection {
  private:
   // What is above a cell.
   struct Column {
-    int obstacle = 0;  // parts
-    int free = 0;      // parts
-    bool low = false;  // the floor was seen, or what is just above it looked through
+    int obstacle = 0;       // parts
+    int sure = 0;           // of them
+    int free = 0;           // parts
+    bool low = false;       // the floor was seen, or what is just above it looked through
+    bool doubtful = false;  // an obstacle, but nobody is sure
   };
 
   template <typename Function>
@@ -80,14 +83,14 @@ class Projection {
       const Eigen::Vector3d centre(leaf.getX(), leaf.getY(), leaf.getZ());
       const double height = (map_.floor_from_world * centre).z();
       if (height + leaf.getSize() > -options_.from && height - leaf.getSize() < options_.to)
-        function(centre, leaf.getSize(), tree_.isNodeOccupied(*leaf));
+        function(centre, leaf.getSize(), leaf->getLogOdds());
     }
   }
 
   void make_cells() {
     Eigen::Vector2d low = Eigen::Vector2d::Constant(std::numeric_limits<double>::max());
     Eigen::Vector2d high = -low;
-    for_each_leaf([&](const Eigen::Vector3d& centre, double edge, bool) {
+    for_each_leaf([&](const Eigen::Vector3d& centre, double edge, float) {
       const Eigen::Vector2d at = (map_.floor_from_world * centre).head<2>();
       const double reach = 0.5 * std::sqrt(3) * edge;
       low = low.cwiseMin(at - Eigen::Vector2d::Constant(reach));
@@ -105,30 +108,39 @@ class Projection {
     columns_.resize(map_.cells.total());
   }
 
-  void add(const Eigen::Vector3d& at, bool occupied) {
+  void add(const Eigen::Vector3d& at, float log_odds) {
+    const bool occupied = log_odds >= tree_.getOccupancyThresLog();
     const auto column = static_cast<int>((at.x() - map_.corner.x()) / map_.resolution);
     const auto row = static_cast<int>((at.y() - map_.corner.y()) / map_.resolution);
     Column& cell =
         columns_[static_cast<std::size_t>((map_.cells.rows - 1 - row) * map_.cells.cols + column)];
     const bool inside = at.z() >= options_.from && at.z() < options_.to;
     cell.obstacle += occupied && inside;
+    cell.sure += occupied && inside && log_odds > kSure;
     cell.low |=
         occupied ? std::abs(at.z()) < options_.from : inside && at.z() < options_.from + kLow;
     cell.free += !occupied && inside;
     carved_ |= !occupied;
   }
 
-  // What touches no other obstacle and is too small for one.
-  void drop_specks() {
+  // Of obstacles that touch each other: what is too small is none, and of what was seen but once it
+  // is not known: somebody may have stood there whom nobody recognised.
+  void doubt_obstacles() {
     cv::Mat obstacles(map_.cells.size(), CV_8UC1), labels;
     for (std::size_t i = 0; i < columns_.size(); ++i) obstacles.data[i] = columns_[i].obstacle > 0;
     const int count = cv::connectedComponents(obstacles, labels, 8, CV_32S);
     const auto* label = labels.ptr<int>();
-    std::vector<int> parts(static_cast<std::size_t>(count));
-    for (std::size_t i = 0; i < columns_.size(); ++i) parts[label[i]] += columns_[i].obstacle;
+    std::vector<int> parts(static_cast<std::size_t>(count)), sure(parts);
+    for (std::size_t i = 0; i < columns_.size(); ++i) {
+      parts[label[i]] += columns_[i].obstacle;
+      sure[label[i]] += columns_[i].sure;
+    }
     const double least = 8 * kLeastObstacle / (map_.resolution * map_.resolution);
-    for (std::size_t i = 0; i < columns_.size(); ++i)
-      if (parts[label[i]] < least) columns_[i].obstacle = 0;
+    for (std::size_t i = 0; i < columns_.size(); ++i) {
+      Column& column = columns_[i];
+      column.doubtful = column.obstacle > 0 && parts[label[i]] >= least;
+      if (sure[label[i]] < least) column.obstacle = 0;
+    }
   }
 
   void decide() {
@@ -138,7 +150,8 @@ class Projection {
     for (const Column& column : columns_) {
       if (column.obstacle > 0)
         *cell = CostMap::kOccupied;
-      else if (column.low && (!carved_ || column.free > kSeenThrough * parts_per_column))
+      else if (!column.doubtful && column.low &&
+               (!carved_ || column.free > kSeenThrough * parts_per_column))
         *cell = CostMap::kFree;
       ++cell;
     }

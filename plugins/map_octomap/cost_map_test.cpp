@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <fstream>
+#include <functional>
 #include <iterator>
 #include <random>
 
@@ -165,24 +166,50 @@ TEST(CostMap, WhatWasOnlyLookedUnderIsNotFree) {
   EXPECT_EQ(map.cells.at<std::uint8_t>(map.cell_of({1.52, 0.02, 0})), CostMap::kUnknown);
 }
 
-TEST(CostMap, SpecksAreNoObstacles) {
+// A floor that was looked at from above, and what stands on it; each voxel's log-odds.
+SemanticOctree floor_with(const std::function<float(double x, double y, double z)>& things) {
   SemanticOctree tree(0.05);
-  const auto occupied = [](double x, double y, double z) {
-    const bool speck = x > 0.5 && x < 0.6 && y > 0 && y < 0.1 && z > 0.5 && z < 0.55;
-    const bool bottle = x > -0.6 && x < -0.5 && y > 0 && y < 0.1 && z > 0 && z < 0.3;
-    return z < 0 || speck || bottle;
-  };
   for (double x = -0.975; x < 1; x += 0.05)
     for (double y = -0.975; y < 1; y += 0.05)
-      for (double z = -0.025; z < 1.9; z += 0.05)
+      for (double z = -0.025; z < 1.9; z += 0.05) {
+        const float thing = z < 0 ? 2.0F : things(x, y, z);
         tree.updateNode(
             octomap::point3d(static_cast<float>(x), static_cast<float>(y), static_cast<float>(z)),
-            occupied(x, y, z));
+            thing > 0 ? thing : -0.4F);
+      }
+  return tree;
+}
+
+int cell_at(const SemanticOctree& tree, double x, double y) {
   CostMapOptions options;
   options.floor = {0, 0, 1, 0};
   const CostMap map = project(tree, *floor_of(tree, options), options);
-  EXPECT_EQ(map.cells.at<std::uint8_t>(map.cell_of({0.525, 0.025, 0})), CostMap::kFree);
-  EXPECT_EQ(map.cells.at<std::uint8_t>(map.cell_of({-0.525, 0.025, 0})), CostMap::kOccupied);
+  return map.cells.at<std::uint8_t>(map.cell_of({x, y, 0}));
+}
+
+TEST(CostMap, SpecksAreNoObstacles) {
+  const SemanticOctree tree = floor_with([](double x, double y, double z) {
+    const bool speck = x > 0.5 && x < 0.6 && y > 0 && y < 0.1 && z > 0.5 && z < 0.55;
+    const bool bottle = x > -0.6 && x < -0.5 && y > 0 && y < 0.1 && z < 0.3;
+    return speck || bottle ? 2.0F : 0.0F;
+  });
+  EXPECT_EQ(cell_at(tree, 0.525, 0.025), CostMap::kFree);
+  EXPECT_EQ(cell_at(tree, -0.525, 0.025), CostMap::kOccupied);
+}
+
+TEST(CostMap, WhatWasSeenButOnceIsNotKnown) {
+  constexpr float kOnce = 0.62F;
+  const SemanticOctree tree = floor_with([](double x, double y, double z) {
+    const bool post = x > 0.5 && x < 0.6 && y > 0 && y < 0.1 && z < 1;
+    const bool cupboard = x < -0.5 && y > 0;
+    return post || (cupboard && z < 1) ? kOnce : cupboard ? 2 * kOnce : 0.0F;
+  });
+  EXPECT_EQ(cell_at(tree, 0.525, 0.025), CostMap::kUnknown);
+  EXPECT_EQ(cell_at(tree, -0.525, 0.025), CostMap::kOccupied);
+  const SemanticOctree seen_again = floor_with([](double x, double y, double z) {
+    return x > 0.5 && x < 0.6 && y > 0 && y < 0.1 && z < 1 ? 2 * kOnce : 0.0F;
+  });
+  EXPECT_EQ(cell_at(seen_again, 0.525, 0.025), CostMap::kOccupied);
 }
 
 TEST_F(CostMapOfRoom, FilesForMapServer) {
