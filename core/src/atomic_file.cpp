@@ -32,6 +32,10 @@ AtomicFile::~AtomicFile() {
   std::filesystem::remove(temporary_, ignored);
 }
 
+void AtomicFile::flush() {
+  if (!stream_.flush()) fail(temporary_, errno);
+}
+
 void AtomicFile::commit() {
   stream_.close();
   if (!stream_) fail(temporary_, errno);

@@ -18,7 +18,8 @@ void ObjectMotionOptions::visit(OptionVisitor& v) {
   v("range", range,
     {.min = 0, .max = 20, .unit = "log-odds", .help = "by which evidence can outweigh the prior"});
   v("min_points", min_points, {.min = 1, .help = "on an object, to learn from them"});
-  v("moves_above", moves_above, {.min = 0, .max = 1, .help = "probability: not used from here on"});
+  v("moves_above", moves_above,
+    {.min = 0.2, .max = 1, .help = "probability: not used from here on"});
   v("static_below", static_below,
     {.min = 0, .max = 1, .help = "probability: used again below; weighted in between"});
   v.require(static_below <= moves_above, "static_below is greater than moves_above");

@@ -8,17 +8,14 @@ ObjectMask mask_of(const Segmentation& segmentation, std::size_t index, int marg
   const cv::Mat& instances = segmentation.instances;
   const cv::Rect image({0, 0}, instances.size());
   const cv::Rect& box = segmentation.objects[index].box;
-  const int grow = std::max(margin, 0);
   const cv::Rect grown =
-      cv::Rect(box.x - grow, box.y - grow, box.width + 2 * grow, box.height + 2 * grow) & image;
+      cv::Rect(box.x - margin, box.y - margin, box.width + 2 * margin, box.height + 2 * margin) &
+      image;
   if (grown.empty()) return {};
   ObjectMask object{grown, instances(grown) == static_cast<int>(index) + 1};
   if (margin == 0) return object;
-  const int side = 2 * std::abs(margin) + 1;
-  const cv::Mat square = cv::Mat::ones(side, side, CV_8U);
-  cv::morphologyEx(object.mask, object.mask, margin > 0 ? cv::MORPH_DILATE : cv::MORPH_ERODE,
-                   square, {-1, -1}, 1, cv::BORDER_CONSTANT,
-                   margin > 0 ? cv::Scalar(0) : cv::Scalar(255));
+  const int side = 2 * margin + 1;
+  cv::dilate(object.mask, object.mask, cv::Mat::ones(side, side, CV_8U));
   return object;
 }
 

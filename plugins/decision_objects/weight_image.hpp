@@ -14,7 +14,7 @@ struct ObjectMask {
 };
 
 /// The object's pixels and those up to `margin` px away: outlines are not exact, and a feature's
-/// surroundings count as well. `margin` < 0 gives the object without its rim.
+/// surroundings count as well.
 ObjectMask mask_of(const Segmentation& segmentation, std::size_t index, int margin);
 
 /// Lowers the weights under the mask to at most `weight`. An empty image is full of 255.

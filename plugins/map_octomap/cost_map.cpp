@@ -102,7 +102,7 @@ class Projection {
     const Eigen::Array2d extent =
         ((high.array() + margin - map_.corner.array()) / map_.resolution).ceil();
     if (!(extent.prod() <= kMostCells))
-      throw Error(Fault::kData, "the map is too wide for a cost map", {}, "use larger voxels");
+      throw Error(Fault::kData, "the map is too wide for a cost map", {}, "map with larger voxels");
     const Eigen::Array2i size = extent.cast<int>();
     map_.cells = cv::Mat(size.y(), size.x(), CV_8UC1, cv::Scalar(CostMap::kUnknown));
     columns_.resize(map_.cells.total());
@@ -237,6 +237,8 @@ void write_cost_map(const CostMap& map, const std::filesystem::path& stem) {
                        << "negate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n"
                        << "world_from_map: [" << t.x() << ", " << t.y() << ", " << t.z() << ", "
                        << q.x() << ", " << q.y() << ", " << q.z() << ", " << q.w() << "]\n";
+  image.flush();
+  description.flush();
   image.commit();
   description.commit();
 }

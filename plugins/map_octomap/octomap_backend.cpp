@@ -52,7 +52,7 @@ void OctomapBackend::Options::visit(OptionVisitor& v) {
   v("miss", miss, {.min = 0.01, .max = 0.49, .help = "probability of one that a ray goes through"});
   v("least", least,
     {.min = 0.001, .max = 0.49, .help = "probability, however often looked through"});
-  v("most", most, {.min = 0.51, .max = 0.999, .help = "probability, however often hit"});
+  v("most", most, {.min = 0.7, .max = 0.999, .help = "probability, however often hit"});
   v("occupied_above", occupied_above,
     {.min = 0.01, .max = 0.99, .help = "probability from which a voxel is occupied"});
   v("noise", noise,
@@ -74,6 +74,8 @@ void OctomapBackend::Options::visit(OptionVisitor& v) {
     {.min = 0, .max = 255, .help = "of a pixel in the map: less is not mapped; 0: all is"});
   v("cost_map", cost_map, {.help = "the map as a robot on the floor needs it, saved beside it"});
   v.require(range / resolution <= 500, "range is more than 500 voxels");
+  v.require(least < occupied_above && occupied_above < most,
+            "occupied_above must lie between least and most");
 }
 
 OctomapBackend::OctomapBackend(const Options& options, const StageContext& context)
@@ -84,10 +86,6 @@ OctomapBackend::OctomapBackend(const Options& options, const StageContext& conte
       tree_(options.resolution),
       scan_(scan_options_of(options)) {
   tree_.setOccupancyThres(options.occupied_above);
-  tree_.setProbHit(options.hit);
-  tree_.setProbMiss(options.miss);
-  tree_.setClampingThresMin(options.least);
-  tree_.setClampingThresMax(options.most);
 }
 
 void OctomapBackend::integrate(const DenseKeyFrame& keyframe) {
@@ -107,14 +105,20 @@ void OctomapBackend::move(std::span<const MovedKeyFrame> moved) {
       entries_[found->second].world_from_camera = keyframe.world_from_camera;
   std::vector<std::size_t> far;
   for (std::size_t i = 0; i < entries_.size(); ++i)
-    if (moved_by(entries_[i]) > options_.tolerance * options_.resolution) far.push_back(i);
+    if (!is_up_to_date(entries_[i]) &&
+        moved_by(entries_[i]) > options_.tolerance * options_.resolution)
+      far.push_back(i);
   fuse_again(far);
 }
 
 void OctomapBackend::save(const std::filesystem::path& directory) {
+  if (entries_.empty()) {
+    log_(LogLevel::kWarning, "no key frame was mapped, so there is no dense map");
+    return;
+  }
   std::vector<std::size_t> moved;
   for (std::size_t i = 0; i < entries_.size(); ++i)
-    if (moved_by(entries_[i]) > 0) moved.push_back(i);
+    if (!is_up_to_date(entries_[i])) moved.push_back(i);
   fuse_again(moved);
   write_octree(tree_, classes_, directory / "map.ot");
   write_occupancy(tree_, directory / "map.bt");
@@ -123,14 +127,21 @@ void OctomapBackend::save(const std::filesystem::path& directory) {
 }
 
 void OctomapBackend::save_cost_map(const std::filesystem::path& directory) const {
-  if (const auto floor = floor_of(tree_, options_.cost_map)) {
-    write_cost_map(project(tree_, *floor, options_.cost_map), directory / "map");
+  const auto floor = floor_of(tree_, options_.cost_map);
+  if (!floor) {
+    log_(LogLevel::kWarning,
+         "no floor was seen, so there is no cost map; map_backend.cost_map.floor can say where it "
+         "is");
     return;
   }
-  for (const char* earlier : {"map.pgm", "map.yaml"}) std::filesystem::remove(directory / earlier);
-  log_(LogLevel::kWarning,
-       "no floor was seen, so there is no cost map; map_backend.cost_map.floor can say where it "
-       "is");
+  std::optional<CostMap> map;
+  try {
+    map = project(tree_, *floor, options_.cost_map);
+  } catch (const Error& error) {  // all else is worth having
+    log_(LogLevel::kWarning, error.what());
+    return;
+  }
+  write_cost_map(*map, directory / "map");
 }
 
 // Neighbouring pixels are about a third of a voxel apart at the end of the range, or each is used:
@@ -148,6 +159,10 @@ void OctomapBackend::scan(Entry& entry) {
   entry.bricks.clear();
   for (const ScanBrick* brick : scan_.bricks()) entry.bricks.push_back(brick->key);
   std::sort(entry.bricks.begin(), entry.bricks.end());
+}
+
+bool OctomapBackend::is_up_to_date(const Entry& entry) {
+  return entry.fused_at.matrix() == entry.world_from_camera.matrix();
 }
 
 // What the farthest surface moved at most, in metres.

@@ -61,6 +61,7 @@ class OctomapBackend final : public MapBackend {
 
   int stride_for(const Camera& camera) const;
   void scan(Entry& entry);
+  static bool is_up_to_date(const Entry& entry);
   double moved_by(const Entry& entry) const;
   void fuse_again(std::span<const std::size_t> entries);
   void save_cost_map(const std::filesystem::path& directory) const;

@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "map_octomap/test_room.hpp"
+#include "support/recording_writer.hpp"
 
 namespace stillpoint {
 namespace {
@@ -199,8 +200,8 @@ TEST_F(OctomapBackendTest, FilesHoldTheMap) {
 
   std::ifstream ply(files / "map.ply", std::ios::binary);
   const std::string cloud(std::istreambuf_iterator<char>(ply), {});
-  EXPECT_THAT(cloud, testing::HasSubstr("element vertex " + std::to_string(occupied) + "\n"));
-  EXPECT_THAT(cloud, testing::HasSubstr("comment label 9 chair\n"));
+  EXPECT_THAT(cloud, ::testing::HasSubstr("element vertex " + std::to_string(occupied) + "\n"));
+  EXPECT_THAT(cloud, ::testing::HasSubstr("comment label 9 chair\n"));
   const std::size_t header = cloud.find("end_header\n") + 11;
   EXPECT_EQ(cloud.size(), header + 16 * occupied);
   float first[3];
@@ -213,6 +214,55 @@ TEST_F(OctomapBackendTest, FilesHoldTheMap) {
 TEST_F(OctomapBackendTest, AFolderThatIsNoneIsAnError) {
   OctomapBackend map = map_at(pose_of);
   EXPECT_THROW(map.save("/proc/no_such_folder"), Error);
+}
+
+TEST_F(OctomapBackendTest, KeyFramesWithoutLabelsHaveNoSayInTheClass) {
+  OctomapBackend labelled({}, {}), mixed({}, {});
+  for (KeyFrameId id = 0; id < 4; ++id) {
+    DenseKeyFrame keyframe = TestRoom().see(pose_of(0), id);
+    if (id == 0) labelled.integrate(keyframe);
+    if (id > 0) keyframe.segmentation = nullptr;
+    mixed.integrate(keyframe);
+  }
+  int classes = 0;
+  for (auto leaf = labelled.tree().begin_leafs(); leaf != labelled.tree().end_leafs(); ++leaf) {
+    if (!leaf->classes().known()) continue;
+    const SemanticVoxel* same = mixed.tree().search(leaf.getKey());
+    ASSERT_TRUE(same);
+    EXPECT_EQ(same->classes(), leaf->classes());
+    classes += leaf->classes().best() > 0;
+  }
+  EXPECT_GT(classes, 100);
+}
+
+TEST_F(OctomapBackendTest, WithoutKeyFramesThereIsNoMap) {
+  std::vector<std::string> warnings;
+  StageContext context;
+  context.log = [&](LogLevel, std::string_view text) { warnings.emplace_back(text); };
+  const testing::TemporaryFolder folder;
+  OctomapBackend({}, context).save(folder.path());
+  EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
+  EXPECT_THAT(warnings, ::testing::ElementsAre(::testing::HasSubstr("no key frame")));
+}
+
+TEST_F(OctomapBackendTest, ATooWideCostMapIsLeftOut) {
+  std::vector<std::string> warnings;
+  StageContext context;
+  context.log = [&](LogLevel, std::string_view text) { warnings.emplace_back(text); };
+  OctomapBackend::Options options;
+  options.cost_map.floor = {0, 0, 1, 0};
+  OctomapBackend map(options, context);
+  Pose far_away = pose_of(0);
+  far_away.translation() += Eigen::Vector3d(900, 900, 0);
+  map.integrate(TestRoom().see(pose_of(0), 0));
+  DenseKeyFrame lost = TestRoom().see(pose_of(0), 1);
+  lost.world_from_camera = far_away;
+  map.integrate(lost);
+  const testing::TemporaryFolder folder;
+  map.save(folder.path());
+  EXPECT_TRUE(std::filesystem::exists(folder.path() / "map.ot"));
+  EXPECT_FALSE(std::filesystem::exists(folder.path() / "map.pgm"));
+  EXPECT_THAT(warnings, ::testing::ElementsAre(::testing::HasSubstr("too wide")));
 }
 
 TEST(StoredKeyFrame, ComesBackAsItWas) {
@@ -240,6 +290,8 @@ TEST(StoredKeyFrame, ComesBackAsItWas) {
       }
     EXPECT_LT(stored.bytes(), 320U * 240U * 2U / (stride * stride));
   }
+  keyframe.segmentation = nullptr;
+  EXPECT_TRUE(StoredKeyFrame(keyframe, 1).unpack(pose_of(2)).labels().empty());
 }
 
 TEST(ClassBelief, TheMostFrequentClassWins) {

@@ -79,6 +79,7 @@ void ScanBricks::begin(const DenseKeyFrame& keyframe) {
   sums_.clear();
   sorted_.clear();
   looks_.clear();
+  labelled_ = !keyframe.labels().empty();
 
   const Camera& camera_model = *keyframe.frame->camera;
   const auto width = static_cast<std::size_t>(keyframe.frame->depth.cols);
@@ -173,8 +174,8 @@ void ScanBricks::Sum::add(const std::uint8_t* bgr, std::uint8_t seen) {
   label.add(seen);
 }
 
-VoxelLook ScanBricks::Sum::look() const {
-  VoxelLook look{.label = label.winner};
+VoxelLook ScanBricks::Sum::look(bool labelled) const {
+  VoxelLook look{.label = label.winner, .labelled = labelled};
   for (int i = 0; i < 3; ++i) look.rgb[i] = static_cast<std::uint8_t>(rgb[i] / pixels);
   return look;
 }
@@ -217,7 +218,7 @@ void ScanBricks::finish() {
     for (unsigned word = 0; word < brick.hit.size(); ++word) {
       brick.passed[word] &= ~brick.hit[word];
       for (std::uint64_t left = brick.hit[word]; left != 0; left &= left - 1)
-        looks_.push_back(sums_[brick.sums][64 * word + std::countr_zero(left)].look());
+        looks_.push_back(sums_[brick.sums][64 * word + std::countr_zero(left)].look(labelled_));
     }
     order.emplace_back(morton_code(brick.key), &brick);
   }

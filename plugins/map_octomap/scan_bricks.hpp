@@ -17,6 +17,7 @@ namespace stillpoint {
 struct VoxelLook {
   std::array<std::uint8_t, 3> rgb{};
   std::uint8_t label = 0;  ///< class id of most of its pixels
+  bool labelled = true;    ///< whether the class is known
 };
 
 /// OctoMap's keys of the voxels in a brick, shifted right by 3.
@@ -76,7 +77,7 @@ class ScanBricks {
     MajorityVote label;
 
     void add(const std::uint8_t* bgr, std::uint8_t seen);
-    VoxelLook look() const;
+    VoxelLook look(bool labelled) const;
   };
   using Sums = std::array<Sum, ScanBrick::kVoxels>;
 
@@ -98,6 +99,7 @@ class ScanBricks {
   std::vector<std::int32_t> directory_;  // of the bricks of the box: index into bricks_, or -1
   std::vector<ScanBrick> bricks_;
   std::vector<Sums> sums_;
+  bool labelled_ = false;  // whether the key frame is
   Row row_;
   std::vector<const ScanBrick*> sorted_;
   std::vector<VoxelLook> looks_;

@@ -44,7 +44,7 @@ void SemanticVoxel::hit(const VoxelLook& look, const OccupancyModel& model) {
     return static_cast<std::uint8_t>((old * (colors_ - 1) + seen + colors_ / 2) / colors_);
   };
   color = Color(mean(color.r, look.rgb[0]), mean(color.g, look.rgb[1]), mean(color.b, look.rgb[2]));
-  classes_.add(look.label);
+  if (look.labelled) classes_.add(look.label);
 }
 
 // What was there is gone once nothing more can be taken away: its looks must not come back.

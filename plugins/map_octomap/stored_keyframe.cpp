@@ -33,6 +33,7 @@ StoredKeyFrame::StoredKeyFrame(const DenseKeyFrame& keyframe, int stride)
     : id_(keyframe.id),
       frame_(keyframe.frame->index),
       time_(keyframe.frame->time),
+      labelled_(!keyframe.labels().empty()),
       camera_(reduced(*keyframe.frame->camera, stride)) {
   const Frame& frame = *keyframe.frame;
   const cv::Mat labels = keyframe.labels(), weights = keyframe.map_weights();
@@ -105,7 +106,7 @@ DenseKeyFrame StoredKeyFrame::unpack(const Pose& world_from_camera) const {
   }
   return {.id = id_,
           .frame = std::move(frame),
-          .segmentation = std::move(segmentation),
+          .segmentation = labelled_ ? std::move(segmentation) : nullptr,
           .weights = std::move(weights),
           .world_from_camera = world_from_camera};
 }

@@ -14,7 +14,6 @@ class StoredKeyFrame {
  public:
   StoredKeyFrame(const DenseKeyFrame& keyframe, int stride);
 
-  KeyFrameId id() const { return id_; }
   std::size_t bytes() const { return packed_.size(); }
   /// With a camera of as many pixels. The pose is the caller's.
   DenseKeyFrame unpack(const Pose& world_from_camera) const;
@@ -23,6 +22,7 @@ class StoredKeyFrame {
   KeyFrameId id_;
   std::uint32_t frame_;
   double time_;
+  bool labelled_;
   std::shared_ptr<const Camera> camera_;  // of the pixels kept
   std::string packed_;
 };

@@ -10,9 +10,9 @@ constexpr float kReach = 1U << (kBits - 1);  // voxels
 
 }  // namespace
 
-void VoxelCloud::add(const LabelledPoint& point, std::uint32_t count) {
+void VoxelCloud::add(const LabelledPoint& point, std::uint32_t count, bool labelled) {
   const Eigen::Vector3f voxel = (per_metre_ * point.position).array().floor();
-  if (!(voxel.cwiseAbs().maxCoeff() < kReach)) return;
+  if (!(voxel.array().abs() < kReach).all()) return;
   std::uint64_t key = 0;
   for (int axis = 0; axis < 3; ++axis)
     key = key << kBits | static_cast<std::uint64_t>(voxel[axis] + kReach);
@@ -22,7 +22,8 @@ void VoxelCloud::add(const LabelledPoint& point, std::uint32_t count) {
   sum.position += count * point.position.cast<double>();
   sum.rgb += count * Eigen::Vector3d(point.rgb[0], point.rgb[1], point.rgb[2]);
   sum.count += count;
-  sum.label.add(point.label, count);
+  if (labelled) sum.label.add(point.label, count);
+  sum.labelled |= labelled;
 }
 
 std::vector<VoxelPoint> VoxelCloud::points() const {
@@ -33,7 +34,7 @@ std::vector<VoxelPoint> VoxelCloud::points() const {
     LabelledPoint mean{.position = (sum.position / sum.count).cast<float>(),
                        .label = sum.label.winner};
     for (int i = 0; i < 3; ++i) mean.rgb[i] = static_cast<std::uint8_t>(std::lround(rgb[i]));
-    points.push_back({mean, sum.count});
+    points.push_back({mean, sum.count, sum.labelled});
   }
   return points;
 }

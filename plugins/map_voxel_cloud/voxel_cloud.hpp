@@ -16,6 +16,7 @@ namespace stillpoint {
 struct VoxelPoint {
   LabelledPoint mean;  ///< its label is that of their majority
   std::uint32_t count = 0;
+  bool labelled = true;  ///< whether its class is known
 };
 
 /// A hash of voxels: mean position and colour, most frequent class, number of points. Its points
@@ -25,8 +26,9 @@ class VoxelCloud {
   /// Edge of a voxel in metres.
   explicit VoxelCloud(double resolution) : per_metre_(static_cast<float>(1 / resolution)) {}
 
-  /// `count` points at once. Points that are not finite or out of reach (2²⁰ voxels) are left out.
-  void add(const LabelledPoint& point, std::uint32_t count = 1);
+  /// `count` points at once, which have no say in the class if they are not labelled. Points that
+  /// are not finite or out of reach (2²⁰ voxels) are left out.
+  void add(const LabelledPoint& point, std::uint32_t count = 1, bool labelled = true);
   std::vector<VoxelPoint> points() const;
 
  private:
@@ -35,6 +37,7 @@ class VoxelCloud {
     Eigen::Vector3d rgb = Eigen::Vector3d::Zero();
     std::uint32_t count = 0;
     MajorityVote label;
+    bool labelled = false;
   };
 
   float per_metre_;

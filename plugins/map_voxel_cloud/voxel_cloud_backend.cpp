@@ -24,7 +24,8 @@ void VoxelCloudBackend::integrate(const DenseKeyFrame& keyframe) {
       if (weight && weight[u] < options_.min_weight) continue;
       cloud.add({.position = frame.camera->unproject(u, v, depth[u]).cast<float>(),
                  .rgb = {bgr[u][2], bgr[u][1], bgr[u][0]},
-                 .label = label ? label[u] : std::uint8_t{0}});
+                 .label = label ? label[u] : std::uint8_t{0}},
+                1, label != nullptr);
     }
   }
   entries_[keyframe.id] = {keyframe.world_from_camera, cloud.points()};
@@ -49,7 +50,7 @@ std::vector<VoxelPoint> VoxelCloudBackend::points() const {
     for (const VoxelPoint& point : entry.points) {
       LabelledPoint moved = point.mean;
       moved.position = pose * moved.position;
-      world.add(moved, point.count);
+      world.add(moved, point.count, point.labelled);
     }
   }
   std::vector<VoxelPoint> points = world.points();

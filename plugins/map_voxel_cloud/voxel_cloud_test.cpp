@@ -91,6 +91,18 @@ TEST(VoxelCloudBackend, SeesTheWallWhereItMayBeMapped) {
   }
 }
 
+TEST(VoxelCloudBackend, KeyFramesWithoutLabelsHaveNoSayInTheClass) {
+  VoxelCloudBackend map({}, context());
+  map.integrate(wall(0, Pose::Identity()));
+  for (KeyFrameId id = 1; id < 4; ++id) {
+    DenseKeyFrame unlabelled = wall(id, Pose::Identity());
+    unlabelled.segmentation = nullptr;
+    map.integrate(unlabelled);
+  }
+  for (const VoxelPoint& point : map.points())
+    EXPECT_EQ(point.mean.label, point.mean.position.x() < 0 ? 3 : 0);
+}
+
 TEST(VoxelCloudBackend, FollowsItsKeyFrames) {
   VoxelCloudBackend map({}, context());
   map.integrate(wall(0, Pose::Identity()));

@@ -99,7 +99,7 @@ void CornerOptions::visit(OptionVisitor& v) {
      .unit = "grey levels/px",
      .help = "of grid: least gradient in every direction, in the image at half its size"});
   v("corner_quality", corner_quality,
-    {.min = 0, .max = 1, .help = "of shi_tomasi: least score, as a share of the strongest one"});
+    {.min = 1e-6, .max = 1, .help = "of shi_tomasi: least score, as a share of the strongest one"});
   v("min_distance", min_distance,
     {.min = 0, .unit = "px", .help = "of shi_tomasi: between corners"});
 }

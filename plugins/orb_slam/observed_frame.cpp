@@ -44,8 +44,7 @@ ObservedFrame unmatched(FramePtr frame, FeaturesPtr features) {
 }
 
 // What a person wears becomes landmarks by the hundred in a few frames, and they agree with each
-// other. A landmark from another recording, saved with its map, may seem to lie in the
-// future.
+// other.
 double proven(const Landmark& landmark, const SparseMap& map, double time, double proving_time) {
   const KeyFrame* creator = map.keyframe(landmark.created_by);
   if (!creator || time < creator->time) return 1;
@@ -112,7 +111,8 @@ int ObservedFrame::matched() const {
       std::count_if(landmarks.begin(), landmarks.end(), [](LandmarkId id) { return id != kNoId; }));
 }
 
-int solve_pose(ObservedFrame& observed, const SparseMap& map, double proving_time) {
+int solve_pose(ObservedFrame& observed, const SparseMap& map, double proving_time,
+               KeyFrameId first_keyframe) {
   const Features& features = *observed.features;
   const ScalePyramid pyramid(features);
   std::vector<PoseObservation> observations;
@@ -122,7 +122,8 @@ int solve_pose(ObservedFrame& observed, const SparseMap& map, double proving_tim
     if (!landmark && !observed.temporary[i]) continue;
     const cv::KeyPoint& k = features.keypoints[i];
     const double sigma = pyramid.pixel_sigma(k.octave);
-    const double trust = landmark ? proven(*landmark, map, observed.frame->time, proving_time) : 1;
+    const bool young = landmark && landmark->created_by >= first_keyframe;
+    const double trust = young ? proven(*landmark, map, observed.frame->time, proving_time) : 1;
     observations.push_back(
         {.point_in_world = landmark ? landmark->position_in_world : *observed.temporary[i],
          .pixel = {k.pt.x, k.pt.y},

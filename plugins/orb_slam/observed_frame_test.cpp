@@ -145,12 +145,13 @@ class NewcomersTest : public SolvePoseTest {
     map_ = std::move(edit).finish();
   }
 
-  double error_at(double seconds_since_newcomers, double proving_time) {
+  double error_at(double seconds_since_newcomers, double proving_time,
+                  KeyFrameId first_keyframe = 0) {
     auto frame = std::make_shared<Frame>(*frame_.frame);
     frame->time = map_.keyframe(1)->time + seconds_since_newcomers;
     frame_.frame = std::move(frame);
     frame_.world_from_camera = walk(2);
-    solve_pose(frame_, map_, proving_time);
+    solve_pose(frame_, map_, proving_time, first_keyframe);
     return metres_between(frame_.world_from_camera, walk(2));
   }
 
@@ -167,6 +168,7 @@ TEST_F(NewcomersTest, CountInFullOnceTheyAreProven) {
 }
 
 TEST_F(NewcomersTest, OfAnotherRecordingAreNone) {
+  EXPECT_EQ(error_at(0.05, 1.0, 2), error_at(0.05, 0.0));
   EXPECT_EQ(error_at(-20.0, 1.0), error_at(-20.0, 0.0));
 }
 

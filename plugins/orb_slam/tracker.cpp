@@ -92,8 +92,9 @@ double OrbTracker::feature_share() const {
 
 // All that is worn by somebody whom nobody recognised can become landmarks at once. Where nobody
 // is, new landmarks are as good as others.
-double OrbTracker::proving_time() const {
-  return current_.frame->time - last_company_ < kCompany ? options_.proving_time : 0.0;
+int OrbTracker::solve(const SparseMap& map) {
+  const bool company = current_.frame->time - last_company_ < kCompany;
+  return solve_pose(current_, map, company ? options_.proving_time : 0.0, first_keyframe_);
 }
 
 TrackResult OrbTracker::track(FramePtr, const StaticWeights& weights, const SparseMap& map,
@@ -102,6 +103,8 @@ TrackResult OrbTracker::track(FramePtr, const StaticWeights& weights, const Spar
   unmapped_ = unmapped_area(weights);
   if (!unmapped_.empty() && cv::countNonZero(unmapped_) > 0) last_company_ = current_.frame->time;
   visible_.clear();
+  if (!saw_map_) first_keyframe_ = map.keyframe_id_end();
+  saw_map_ = true;
   if (map.empty())
     return !hints.localise_only && start() ? tracked(map, hints)
                                            : not_tracked(TrackState::kWaiting);
@@ -149,7 +152,7 @@ bool OrbTracker::track_with_motion(const SparseMap& map) {
   int matches = match_projected(current_, targets, prediction, options_.motion_window, 1);
   if (matches < kMinMotionMatches)
     matches = match_projected(current_, targets, prediction, 2 * options_.motion_window, 1);
-  const int inliers = solve_pose(current_, map, proving_time());
+  const int inliers = solve(map);
   current_.drop_outliers();
   return inliers >= kMinMotionInliers && inliers >= kMinMotionShare * matches;
 }
@@ -168,15 +171,14 @@ bool OrbTracker::track_local_map(const SparseMap& map) {
   const Pose prior = current_.world_from_camera;
   const auto temporary =
       std::exchange(current_.temporary, decltype(current_.temporary)(current_.features->size()));
-  inliers_ = solve_pose(current_, map, proving_time());
+  inliers_ = solve(map);
   bridged_ = inliers_ < options_.min_inliers;
   if (!bridged_) return true;
   // A view that the map hardly knows: carried by what the last frame measured, it becomes a key
   // frame and the map knows it from then on.
   current_.temporary = temporary;
   current_.world_from_camera = prior;
-  return current_.reference != kNoId &&
-         solve_pose(current_, map, proving_time()) >= options_.min_bridge_points;
+  return current_.reference != kNoId && solve(map) >= options_.min_bridge_points;
 }
 
 void OrbTracker::search_local_map(const SparseMap& map) {

@@ -38,7 +38,7 @@ class OrbTracker final : public Tracker {
 
  private:
   double feature_share() const;
-  double proving_time() const;
+  int solve(const SparseMap& map);
   bool start();
   void follow_map(const SparseMap& map);
   bool track_with_motion(const SparseMap& map);
@@ -65,6 +65,8 @@ class OrbTracker final : public Tracker {
   int inliers_ = 0;       // landmarks
   bool bridged_ = false;  // the pose of this frame needed temporary points
 
+  bool saw_map_ = false;           // in an earlier frame
+  KeyFrameId first_keyframe_ = 0;  // of this recording: others came with the map
   KeyFrameId next_keyframe_ = 0;
   std::uint32_t last_keyframe_index_ = 0;  // frame index of the newest key frame
   std::vector<LandmarkId> visible_;        // landmarks that should be seen in this frame

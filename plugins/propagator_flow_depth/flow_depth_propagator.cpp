@@ -35,17 +35,6 @@ cv::Rect frame_box(cv::Rect box, cv::Size frame) {
       kViewScale, frame);
 }
 
-void check_size(const Segmentation& segmentation, const Frame& frame) {
-  if (!segmentation.known() || segmentation.labels.size() == frame.gray.size()) return;
-  const auto text = [](cv::Size size) {
-    return std::to_string(size.width) + " x " + std::to_string(size.height);
-  };
-  throw Error(Fault::kStage,
-              "the labels have " + text(segmentation.labels.size()) +
-                  " pixels, but the frame has " + text(frame.gray.size()),
-              "", "the segmenter must give labels of the frame's size");
-}
-
 /// Where the tracked points say that the object is now, with room for its outline to move.
 cv::Rect search_region(const FollowedObject& object, int margin, cv::Size image) {
   cv::Rect2f box = object.reference_box;
@@ -64,7 +53,7 @@ cv::Rect search_region(const FollowedObject& object, int margin, cv::Size image)
 }  // namespace
 
 void FlowDepthPropagator::Options::visit(OptionVisitor& v) {
-  v("points", points, {.min = 4, .max = 500, .help = "followed on each object"});
+  v("points", points, {.min = kFewestPoints, .max = 500, .help = "followed on each object"});
   v("max_flow_error", max_flow_error,
     {.min = 0.05,
      .max = 20,
@@ -89,7 +78,6 @@ void FlowDepthPropagator::Options::visit(OptionVisitor& v) {
 
 Segmentation FlowDepthPropagator::propagate(const Segmentation& segmentation, const Frame& from,
                                             const Frame& to) {
-  check_size(segmentation, from);
   View view = make_view(to, spare_view());
   if (!history_.empty() && history_.back().size() != view.size()) {
     history_.clear();
@@ -125,10 +113,13 @@ const View& FlowDepthPropagator::view_of(const Frame& frame) {
   return *history_.insert(place, make_view(frame));
 }
 
-/// The view itself, or the one before it when nothing has been placed in it yet.
+/// The view itself, or when nothing has been placed in it, the one before it; of a view that is
+/// older than all others, the one after it.
 const View& FlowDepthPropagator::followed_near(const View& view) const {
   const auto place = std::ranges::lower_bound(history_, view.frame, {}, &View::frame);
-  return place->instances.empty() && place != history_.begin() ? *(place - 1) : *place;
+  if (!place->instances.empty()) return *place;
+  if (place != history_.begin()) return *(place - 1);
+  return place + 1 != history_.end() && !(place + 1)->instances.empty() ? *(place + 1) : *place;
 }
 
 void FlowDepthPropagator::learn(const Segmentation& segmentation, const View& view) {
@@ -173,8 +164,8 @@ void FlowDepthPropagator::learn(const Segmentation& segmentation, const View& vi
     object.misses = 0;
     // Large objects are worth more points, because they hide more.
     const double share = static_cast<double>(found.objects[i].pixels) / std::max(1, all_pixels);
-    object.points = std::clamp(static_cast<int>(kMostPoints * share), kFewestPoints,
-                               std::max(kFewestPoints, options_.points));
+    object.points =
+        std::clamp(static_cast<int>(kMostPoints * share), kFewestPoints, options_.points);
     set_reference(object, masks[i], boxes[i], view);
     next.push_back(std::move(object));
   }

@@ -155,5 +155,22 @@ TEST_F(Run, EarlierRunIsReplaced) {
   EXPECT_EQ(count_poses(out() / "same/trajectory.txt"), 2u);
 }
 
+TEST_F(Run, EarlierDenseMapDoesNotOutliveItsRun) {
+  const auto run_with = [&](const std::string& backend) {
+    const Outcome outcome = run("same", "orb_baseline",
+                                {"--dataset", simulated_recording().string(), "--set",
+                                 "source.limit=3", "--set", "map_backend" + backend});
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  };
+  const auto map = out() / "same/map";
+  run_with(".type=octomap");
+  EXPECT_TRUE(std::filesystem::exists(map / "map.ot"));
+  run_with(".type=voxel_cloud");
+  EXPECT_FALSE(std::filesystem::exists(map / "map.ot"));
+  EXPECT_TRUE(std::filesystem::exists(map / "cloud.ply"));
+  run_with("=null");
+  EXPECT_FALSE(std::filesystem::exists(map));
+}
+
 }  // namespace
 }  // namespace stillpoint::testing

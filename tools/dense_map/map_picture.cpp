@@ -235,7 +235,8 @@ void add_legend(cv::Mat& picture, const SavedOctree& map) {
 cv::Mat picture_of(const SavedOctree& map, const PictureOptions& options) {
   const bool classes = options.mode == PictureOptions::Mode::kClass;
   if (classes ? map.classes.names.empty() : !map.has_colors)
-    throw Error(Fault::kUsage, classes ? "the map has no classes" : "the map has no colours");
+    throw Error(Fault::kUsage, classes ? "the map has no classes" : "the map has no colours", "",
+                "draw the map.ot of a run: .bt files and plain octrees only say what is occupied");
   Scene scene = scene_of(map, options);
   if (scene.faces.empty()) throw Error(Fault::kUsage, "there is nothing to draw");
   const View view = view_of(scene, options);

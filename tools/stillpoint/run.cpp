@@ -57,6 +57,7 @@ void run_and_print(Stages stages, const PipelineConfig& config, const RunFolder&
     folder.log(LogLevel::kInfo, std::string("failed: ") + error.what());
     throw;
   }
+  folder.remove_earlier_maps();
   print();
 }
 

@@ -19,6 +19,7 @@ namespace fs = std::filesystem;
 
 constexpr const char* kResults[] = {"pipeline.yaml", "log.txt",     "trajectory.txt",
                                     "keyframes.txt", "timings.csv", "summary.json"};
+constexpr const char* kMaps[] = {"map.ot", "map.bt", "map.ply", "map.pgm", "map.yaml", "cloud.ply"};
 
 [[noreturn]] void fail(const fs::path& path, const std::string& reason) {
   throw Error(Fault::kUsage, "cannot write the run folder: " + reason, path.string(),
@@ -67,6 +68,13 @@ void RunFolder::log(LogLevel level, std::string_view text) const {
   if (level == LogLevel::kError) console_.line("error: " + std::string(text));
 }
 
+void RunFolder::remove_earlier_maps() const {
+  std::error_code ignored;
+  for (const auto& [file, written] : earlier_maps_)
+    if (fs::last_write_time(file, ignored) == written && !ignored) fs::remove(file, ignored);
+  if (!earlier_maps_.empty()) fs::remove(path_ / "map", ignored);  // if nothing is left in it
+}
+
 std::vector<std::string> RunFolder::contents() const {
   std::vector<std::string> names;
   for (const fs::directory_entry& entry : fs::directory_iterator(path_))
@@ -75,12 +83,17 @@ std::vector<std::string> RunFolder::contents() const {
   return names;
 }
 
-void RunFolder::remove_earlier_results() const {
+void RunFolder::remove_earlier_results() {
   std::error_code error;
   bool found = false;
   for (const char* name : kResults) {
     found = fs::remove(path_ / name, error) || found;
     if (error) fail(path_ / name, error.message());
+  }
+  for (const char* name : kMaps) {
+    const fs::path file = path_ / "map" / name;
+    const fs::file_time_type written = fs::last_write_time(file, error);
+    if (!error) earlier_maps_.emplace_back(file, written);
   }
   if (found)
     console_.line("note: " + path_.string() + " holds an earlier run, which is overwritten");

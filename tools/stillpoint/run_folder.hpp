@@ -5,6 +5,7 @@
 #include <memory>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "console.hpp"
@@ -16,8 +17,8 @@ class logger;
 
 namespace stillpoint {
 
-/// Made with its parents; results of an earlier run in it are removed. Holds pipeline.yaml and
-/// log.txt from the start.
+/// Made with its parents; results of an earlier run in it are removed, its dense map only at the
+/// end. Holds pipeline.yaml and log.txt from the start.
 class RunFolder {
  public:
   /// Throws Error(kUsage) when the folder cannot be written.
@@ -26,15 +27,18 @@ class RunFolder {
   const std::filesystem::path& path() const { return path_; }
   /// Into log.txt; warnings and errors also to the console. May be called from any thread.
   void log(LogLevel level, std::string_view text) const;
+  /// Of an earlier run, what this one has not replaced. After a run that did not fail.
+  void remove_earlier_maps() const;
   /// Names of what is in it, sorted; folders end with '/'.
   std::vector<std::string> contents() const;
 
  private:
-  void remove_earlier_results() const;
+  void remove_earlier_results();
 
   std::filesystem::path path_;
   Console& console_;
   std::shared_ptr<spdlog::logger> log_;
+  std::vector<std::pair<std::filesystem::path, std::filesystem::file_time_type>> earlier_maps_;
 };
 
 }  // namespace stillpoint

@@ -19,6 +19,9 @@ class STILLPOINT_EXPORT AtomicFile {
   AtomicFile& operator=(const AtomicFile&) = delete;
 
   std::ostream& stream() { return stream_; }
+  /// Throws Error when what was written so far finds no room: before the commit() of the first of
+  /// several files that belong together.
+  void flush();
   /// Throws Error when not everything could be written.
   void commit();
 

@@ -5,10 +5,21 @@
 #include <mutex>
 #include <utility>
 
+#include "stillpoint/error.hpp"
+
 namespace stillpoint {
 namespace {
 
 constexpr std::size_t kFramesAhead = 2;
+
+std::optional<Frame> next_of(Source& source) {
+  std::optional<Frame> frame = source.next();
+  if (frame &&
+      (frame->bgr.size() != frame->gray.size() || frame->depth.size() != frame->gray.size()))
+    throw Error(Fault::kStage, "the colour, grey and depth images of a frame differ in size", "",
+                "the source must give all three, of the camera's size");
+  return frame;
+}
 
 }  // namespace
 
@@ -56,7 +67,7 @@ FramePtr FrameFeed::next() {
 
 FramePtr FrameFeed::read() {
   ScopedTime time(times_, "source", frames_read_);
-  std::optional<Frame> frame = source_.call_unmeasured(frames_read_, &Source::next);
+  std::optional<Frame> frame = source_.call_unmeasured(frames_read_, next_of);
   if (!frame) {
     time.discard();  // the end is no frame
     return nullptr;

@@ -1,13 +1,27 @@
 #include "stillpoint/runtime/segmentation_stage.hpp"
 
+#include <string>
 #include <utility>
 
+#include "stillpoint/error.hpp"
 #include "stillpoint/objects.hpp"
 
 namespace stillpoint {
 namespace {
 
 constexpr int kMinObjectPixels = 1;  // segmenters that name no objects have all of them named
+
+Segmentation segment(Segmenter& segmenter, const Frame& frame) {
+  Segmentation labels = segmenter.segment(frame);
+  if (!labels.known() || labels.labels.size() == frame.gray.size()) return labels;
+  const auto text = [](cv::Size size) {
+    return std::to_string(size.width) + " x " + std::to_string(size.height);
+  };
+  throw Error(Fault::kStage,
+              "the labels have " + text(labels.labels.size()) + " pixels, but the frame has " +
+                  text(frame.gray.size()),
+              "", "the segmenter must give labels of the frame's size");
+}
 
 }  // namespace
 
@@ -50,7 +64,7 @@ void SegmentationStage::segment(FramePtr frame) {
 
 Segmentation SegmentationStage::labels_of(const Frame& frame) {
   try {
-    Segmentation labels = segmenter_.call("segmentation", frame.index, &Segmenter::segment, frame);
+    Segmentation labels = segmenter_.call("segmentation", frame.index, stillpoint::segment, frame);
     if (labels.known() && labels.instances.empty()) find_objects(labels, kMinObjectPixels);
     return labels;
   } catch (const StageError& error) {

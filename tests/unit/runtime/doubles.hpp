@@ -62,7 +62,12 @@ class Journal {
 
 inline Frame make_frame(std::uint32_t index) {
   static const auto camera = std::make_shared<const Camera>();
-  return {.index = index, .time = 10.0 + 0.1 * index, .camera = camera};
+  return {.index = index,
+          .time = 10.0 + 0.1 * index,
+          .bgr = cv::Mat(1, 1, CV_8UC3, cv::Scalar::all(0)),
+          .gray = cv::Mat(1, 1, CV_8UC1, cv::Scalar(0)),
+          .depth = cv::Mat(1, 1, CV_32FC1, cv::Scalar(1)),
+          .camera = camera};
 }
 
 class FakeSource final : public Source {

@@ -189,6 +189,29 @@ TEST_P(PipelineInBothModes, DataFaultsOfTheSourceStayDataFaults) {
   EXPECT_EQ(f.output->finished, 1);
 }
 
+class SourceWithoutDepth final : public Source {
+ public:
+  std::optional<Frame> next() override {
+    Frame frame = testing::make_frame(0);
+    frame.depth.release();
+    return frame;
+  }
+};
+
+TEST_P(PipelineInBothModes, FramesWithoutDepthAreTheSourcesFault) {
+  Fixture f;
+  f.source = std::make_shared<SourceWithoutDepth>();
+  try {
+    Pipeline(f.stages(), runtime(GetParam()), {}).run();
+    FAIL() << "no exception";
+  } catch (const Error& error) {
+    EXPECT_STREQ(error.what(),
+                 "source (list) failed on frame 0: the colour, grey and depth images of a frame "
+                 "differ in size; the source must give all three, of the camera's size");
+  }
+  EXPECT_EQ(f.output->finished, 1);
+}
+
 TEST_P(PipelineInBothModes, AStopFromAnotherThreadEndsTheRun) {
   Fixture f(1'000'000'000);
   std::stop_source stop;

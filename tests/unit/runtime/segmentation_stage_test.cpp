@@ -130,6 +130,29 @@ TEST(SegmentationStage, OnFailureContinueGoesOnWithoutLabelsAndCounts) {
   }
 }
 
+class SmallLabels final : public Segmenter {
+ public:
+  ClassNames classes() const override { return named_classes("voc21"); }
+  Segmentation segment(const Frame& frame) override {
+    return {.labels = cv::Mat(3, 4, CV_8UC1, cv::Scalar(15)), .frame = frame.index};
+  }
+};
+
+TEST(SegmentationStage, LabelsOfAnotherSizeAreTheSegmentersFault) {
+  StopSignal stop;
+  TimeLog times;
+  SegmentationStage stage({std::make_shared<SmallLabels>(), "small"}, {}, {}, Mode::kInline, stop,
+                          times);
+  try {
+    process(stage, 0);
+    FAIL() << "no exception";
+  } catch (const StageError& error) {
+    EXPECT_STREQ(error.what(),
+                 "segmentation (small) failed on frame 0: the labels have 4 x 3 pixels, but the "
+                 "frame has 1 x 1; the segmenter must give labels of the frame's size");
+  }
+}
+
 TEST(SegmentationStage, TimesNameTheirFrame) {
   Fixture f;
   const auto stage = f.make(Schedule::kWait, Mode::kThreaded);
