@@ -99,11 +99,15 @@ MovingPoints RgbdChecker::check(const Frame& previous, const Frame& current) {
   const auto motion = camera_motion(observations, current);
   if (motion) {
     judge(observations, *motion, *current.camera, result);
-    recheck(observations, motion->target_from_source, *current.camera, result);
+    recheck(observations, motion->target_from_source, current, result);
   }
   remember(observations, result, motion ? motion->target_from_source : memory_.motion,
            current.index);
   return result;
+}
+
+moving::Surface RgbdChecker::surface_in(const Frame& frame, const cv::Point2f& pixel) const {
+  return surface_at(frame.depth, pixel, options_.noise.inverse_depth, options_.surface);
 }
 
 std::vector<RgbdChecker::Observation> RgbdChecker::observe(const Frame& previous,
@@ -113,10 +117,8 @@ std::vector<RgbdChecker::Observation> RgbdChecker::observe(const Frame& previous
   for (const Match& match : follower_.follow(previous, current, memory_.points)) {
     Observation observation{.match = match};
     if (with_depth) {
-      observation.from = surface_at(previous.depth, match.previous, options_.noise.inverse_depth,
-                                    options_.surface);
-      observation.to =
-          surface_at(current.depth, match.current, options_.noise.inverse_depth, options_.surface);
+      observation.from = surface_in(previous, match.previous);
+      observation.to = surface_in(current, match.current);
     }
     result.push_back(observation);
   }
@@ -208,14 +210,15 @@ void RgbdChecker::judge(std::vector<Observation>& observations, const RigidMotio
 // Flow may lose its point, by far when the image moves fast. Who is found at the place of a static
 // point when searched for there has not moved.
 void RgbdChecker::recheck(std::vector<Observation>& observations, const Pose& motion,
-                          const Camera& camera, MovingPoints& result) const {
+                          const Frame& current, MovingPoints& result) const {
   std::vector<std::size_t> suspects;
   std::vector<cv::Point2f> points;
   std::vector<cv::Point2f> expected;
   for (std::size_t i = 0; i < observations.size(); ++i) {
     if (!result.points[i].moving) continue;
     const Match& match = observations[i].match;
-    const Moved at = moved(match.previous, observations[i].from.inverse_depth, motion, camera);
+    const Moved at =
+        moved(match.previous, observations[i].from.inverse_depth, motion, *current.camera);
     if ((vector_of(match.current) - at.pixel).norm() <= options_.epsilon) continue;  // in depth
     suspects.push_back(i);
     points.push_back(match.previous);
@@ -231,7 +234,9 @@ void RgbdChecker::recheck(std::vector<Observation>& observations, const Pose& mo
              .current = *found[k],
              .residual = static_cast<float>(residual),
              .moving = false};
-    observations[suspects[k]].match.current = *found[k];
+    Observation& observation = observations[suspects[k]];
+    observation.match.current = *found[k];
+    observation.to = surface_in(current, *found[k]);
   }
 }
 

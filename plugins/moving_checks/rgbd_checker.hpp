@@ -54,6 +54,7 @@ class RgbdChecker final : public MovingChecker {
     std::vector<double> trust;
   };
 
+  moving::Surface surface_in(const Frame& frame, const cv::Point2f& pixel) const;
   std::vector<Observation> observe(const Frame& previous, const Frame& current);
   void inherit_trust(std::vector<Observation>& observations) const;
   double inherited_trust(const Observation& observation) const;
@@ -61,7 +62,7 @@ class RgbdChecker final : public MovingChecker {
                                            const Frame& current) const;
   void judge(std::vector<Observation>& observations, const RigidMotion& motion,
              const Camera& camera, MovingPoints& result) const;
-  void recheck(std::vector<Observation>& observations, const Pose& motion, const Camera& camera,
+  void recheck(std::vector<Observation>& observations, const Pose& motion, const Frame& current,
                MovingPoints& result) const;
   void remember(const std::vector<Observation>& observations, const MovingPoints& result,
                 const Pose& motion, std::uint32_t frame);
