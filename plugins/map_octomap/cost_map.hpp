@@ -48,9 +48,10 @@ struct CostMap {
 std::optional<FloorPlane> floor_of(const SemanticOctree& tree, const CostMapOptions& options);
 
 /// Occupied: a voxel between the two heights is, and those that touch it are 2 dm² of surface that
-/// more than one key frame has seen. Free: none is, at least half of what is between them was looked
-/// through, and its lower end as well, or the floor itself was seen: no low obstacle is there. All
-/// else is unknown. Throws Error(kData) for a map so wide that it would have more than 10⁸ cells.
+/// more than one key frame has seen. Free: none is, at least half of what is between them was
+/// looked through, and its lower end as well, or the floor itself was seen: no low obstacle is
+/// there. All else is unknown. Throws Error(kData) for a map so wide that it would have more than
+/// 10⁸ cells.
 CostMap project(const SemanticOctree& tree, const FloorPlane& floor, const CostMapOptions& options);
 
 /// `stem`.pgm and `stem`.yaml (mode trinary; besides map_server's keys `world_from_map`: position
