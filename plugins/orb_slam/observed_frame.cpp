@@ -122,8 +122,8 @@ int solve_pose(ObservedFrame& observed, const SparseMap& map, double proving_tim
     if (!landmark && !observed.temporary[i]) continue;
     const cv::KeyPoint& k = features.keypoints[i];
     const double sigma = pyramid.pixel_sigma(k.octave);
-    const bool young = landmark && landmark->created_by >= first_keyframe;
-    const double trust = young ? proven(*landmark, map, observed.frame->time, proving_time) : 1;
+    const bool own = landmark && landmark->created_by >= first_keyframe;
+    const double trust = own ? proven(*landmark, map, observed.frame->time, proving_time) : 1;
     observations.push_back(
         {.point_in_world = landmark ? landmark->position_in_world : *observed.temporary[i],
          .pixel = {k.pt.x, k.pt.y},

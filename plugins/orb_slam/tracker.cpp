@@ -85,26 +85,26 @@ void OrbTracker::prepare(FramePtr frame) {
 // So many times as many features as usual: what is left of the image says less, since it is smaller
 // and since it is a narrower view.
 double OrbTracker::feature_share() const {
-  if (unmapped_.empty()) return 1;
-  const double hidden = cv::countNonZero(unmapped_) / static_cast<double>(unmapped_.total());
-  return std::min(1 / ((1 - hidden) * (1 - hidden)), options_.most_features);
+  return std::min(1 / ((1 - hidden_) * (1 - hidden_)), options_.most_features);
 }
 
 // All that is worn by somebody whom nobody recognised can become landmarks at once. Where nobody
 // is, new landmarks are as good as others.
 int OrbTracker::solve(const SparseMap& map) {
   const bool company = current_.frame->time - last_company_ < kCompany;
-  return solve_pose(current_, map, company ? options_.proving_time : 0.0, first_keyframe_);
+  return solve_pose(current_, map, company ? options_.proving_time : 0.0, *first_keyframe_);
 }
 
 TrackResult OrbTracker::track(FramePtr, const StaticWeights& weights, const SparseMap& map,
                               TrackHints hints) {
   current_.set_weights(weights);
   unmapped_ = unmapped_area(weights);
-  if (!unmapped_.empty() && cv::countNonZero(unmapped_) > 0) last_company_ = current_.frame->time;
+  hidden_ = unmapped_.empty()
+                ? 0.0
+                : cv::countNonZero(unmapped_) / static_cast<double>(unmapped_.total());
+  if (hidden_ > 0) last_company_ = current_.frame->time;
+  if (!first_keyframe_) first_keyframe_ = map.keyframe_id_end();
   visible_.clear();
-  if (!saw_map_) first_keyframe_ = map.keyframe_id_end();
-  saw_map_ = true;
   if (map.empty())
     return !hints.localise_only && start() ? tracked(map, hints)
                                            : not_tracked(TrackState::kWaiting);

@@ -1,6 +1,7 @@
 // Tracker `orb`: the pose of each frame in the sparse map (DS-SLAM III-A; ORB-SLAM2).
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "orb_slam/keyframe_policy.hpp"
@@ -53,8 +54,9 @@ class OrbTracker final : public Tracker {
   Options options_;
   OrbExtractor extractor_;
   Relocaliser relocaliser_;
-  cv::Mat unmapped_;  // where the last frame's features could have no landmark: not 0, CV_8U
-  double last_company_ = -1e300;  // seconds: time of the last frame with something in `unmapped_`
+  cv::Mat unmapped_;     // where the last frame's features could have no landmark: not 0, CV_8U
+  double hidden_ = 0.0;  // share of the image that `unmapped_` is
+  double last_company_ = -1e300;  // seconds: time of the last frame in which it was more than none
 
   ObservedFrame current_;
   ObservedFrame last_;                // the last one with a pose
@@ -65,8 +67,7 @@ class OrbTracker final : public Tracker {
   int inliers_ = 0;       // landmarks
   bool bridged_ = false;  // the pose of this frame needed temporary points
 
-  bool saw_map_ = false;           // in an earlier frame
-  KeyFrameId first_keyframe_ = 0;  // of this recording: others came with the map
+  std::optional<KeyFrameId> first_keyframe_;  // of this recording: others came with the map
   KeyFrameId next_keyframe_ = 0;
   std::uint32_t last_keyframe_index_ = 0;  // frame index of the newest key frame
   std::vector<LandmarkId> visible_;        // landmarks that should be seen in this frame

@@ -48,6 +48,7 @@ RunFolder::RunFolder(fs::path path, const std::string& effective_yaml, Console& 
   fs::create_directories(path_, error);
   if (error) fail(path_, error.message());
   remove_earlier_results();
+  note_earlier_maps();
   std::ofstream yaml(path_ / "pipeline.yaml");
   if (!(yaml << effective_yaml << std::flush)) fail(path_ / "pipeline.yaml", std::strerror(errno));
   try {
@@ -68,6 +69,15 @@ void RunFolder::log(LogLevel level, std::string_view text) const {
   if (level == LogLevel::kError) console_.line("error: " + std::string(text));
 }
 
+void RunFolder::note_earlier_maps() {
+  for (const char* name : kMaps) {
+    std::error_code missing;
+    const fs::path file = path_ / "map" / name;
+    const fs::file_time_type written = fs::last_write_time(file, missing);
+    if (!missing) earlier_maps_.emplace_back(file, written);
+  }
+}
+
 void RunFolder::remove_earlier_maps() const {
   std::error_code ignored;
   for (const auto& [file, written] : earlier_maps_)
@@ -83,17 +93,12 @@ std::vector<std::string> RunFolder::contents() const {
   return names;
 }
 
-void RunFolder::remove_earlier_results() {
+void RunFolder::remove_earlier_results() const {
   std::error_code error;
   bool found = false;
   for (const char* name : kResults) {
     found = fs::remove(path_ / name, error) || found;
     if (error) fail(path_ / name, error.message());
-  }
-  for (const char* name : kMaps) {
-    const fs::path file = path_ / "map" / name;
-    const fs::file_time_type written = fs::last_write_time(file, error);
-    if (!error) earlier_maps_.emplace_back(file, written);
   }
   if (found)
     console_.line("note: " + path_.string() + " holds an earlier run, which is overwritten");

@@ -33,7 +33,8 @@ class RunFolder {
   std::vector<std::string> contents() const;
 
  private:
-  void remove_earlier_results();
+  void remove_earlier_results() const;
+  void note_earlier_maps();
 
   std::filesystem::path path_;
   Console& console_;

@@ -12,13 +12,13 @@ namespace {
 constexpr int kMinObjectPixels = 1;  // segmenters that name no objects have all of them named
 
 Segmentation segment(Segmenter& segmenter, const Frame& frame) {
-  Segmentation labels = segmenter.segment(frame);
-  if (!labels.known() || labels.labels.size() == frame.gray.size()) return labels;
+  Segmentation found = segmenter.segment(frame);
+  if (!found.known() || found.labels.size() == frame.gray.size()) return found;
   const auto text = [](cv::Size size) {
     return std::to_string(size.width) + " x " + std::to_string(size.height);
   };
   throw Error(Fault::kStage,
-              "the labels have " + text(labels.labels.size()) + " pixels, but the frame has " +
+              "the labels have " + text(found.labels.size()) + " pixels, but the frame has " +
                   text(frame.gray.size()),
               "", "the segmenter must give labels of the frame's size");
 }
