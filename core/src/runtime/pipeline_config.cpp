@@ -205,6 +205,11 @@ void RuntimeOptions::visit(OptionVisitor& v) {
 void SegmentationOptions::visit(OptionVisitor& v) {
   v.choice("schedule", schedule, {{"wait", Schedule::kWait}, {"latest", Schedule::kLatest}},
            {.help = "wait for each frame's labels (the paper), or take the latest there are"});
+  v("interval", interval,
+    {.min = 1,
+     .max = 1000,
+     .unit = "frames",
+     .help = "of 'latest': from one that the network takes to the next; fewer cost less"});
   v("latency", latency,
     {.min = 0,
      .max = 1000,

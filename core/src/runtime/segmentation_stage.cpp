@@ -34,11 +34,13 @@ SegmentationStage::SegmentationStage(Stage<Segmenter> segmenter, Stage<Propagato
       segmenter_(std::move(segmenter), "segmentation", times),
       propagator_(std::move(propagator), "propagation", times),
       network_(segmenter_.present() ? mode : Mode::kInline, 1, stop,
-               [this](FramePtr frame) { segment(std::move(frame)); }) {}
+               [this](FramePtr frame) { segment(taken(std::move(frame))); }) {}
 
 void SegmentationStage::offer(const FramePtr& frame) {
   if (options_.schedule == Schedule::kWait)
     network_.push(frame);
+  else if (frame->index < next_)
+    return;
   else if (network_.threaded())
     network_.push_or_replace(frame);
   else
@@ -46,11 +48,16 @@ void SegmentationStage::offer(const FramePtr& frame) {
 }
 
 SegmentationPtr SegmentationStage::at(const FramePtr& frame) {
-  if (waiting_ == frame) imitate_latency(frame);
+  if (options_.schedule == Schedule::kLatest && !network_.threaded()) imitate_latency(frame);
   const Labelled newest = wait_for(frame);
   if (!newest.frame) return nullptr;
   return std::make_shared<const Segmentation>(propagator_.call(
       "propagate", frame->index, &Propagator::propagate, *newest.labels, *newest.frame, *frame));
+}
+
+FramePtr SegmentationStage::taken(FramePtr frame) {
+  if (frame) next_ = frame->index + static_cast<std::uint32_t>(options_.interval);
+  return frame;
 }
 
 void SegmentationStage::segment(FramePtr frame) {
@@ -76,10 +83,10 @@ Segmentation SegmentationStage::labels_of(const Frame& frame) {
 
 void SegmentationStage::imitate_latency(const FramePtr& now) {
   const auto latency = static_cast<std::uint32_t>(options_.latency);
-  if (!newest_.frame) return segment(std::exchange(waiting_, nullptr));
-  if (!running_) running_ = std::exchange(waiting_, nullptr);
-  if (now->index - running_->index < latency) return;
-  segment(std::exchange(running_, std::exchange(waiting_, nullptr)));
+  if (!newest_.frame) return segment(taken(std::exchange(waiting_, nullptr)));
+  if (!running_) running_ = taken(std::exchange(waiting_, nullptr));
+  if (!running_ || now->index - running_->index < latency) return;
+  segment(std::exchange(running_, taken(std::exchange(waiting_, nullptr))));
 }
 
 SegmentationStage::Labelled SegmentationStage::wait_for(const FramePtr& frame) {

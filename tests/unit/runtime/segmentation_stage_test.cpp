@@ -23,10 +23,9 @@ struct Fixture {
 
   std::unique_ptr<SegmentationStage> make(Schedule schedule, Mode mode, int latency = 3,
                                           OnFailure on_failure = OnFailure::kStop) {
-    SegmentationOptions options;
-    options.on_failure = on_failure;
-    options.schedule = schedule;
-    options.latency = latency;
+    return make({.schedule = schedule, .latency = latency, .on_failure = on_failure}, mode);
+  }
+  std::unique_ptr<SegmentationStage> make(const SegmentationOptions& options, Mode mode) {
     return std::make_unique<SegmentationStage>(
         Stage<Segmenter>{std::make_shared<testing::FakeSegmenter>(journal), "fake"},
         Stage<Propagator>{std::make_shared<testing::FakePropagator>(journal), "fake"}, options,
@@ -72,6 +71,56 @@ TEST(SegmentationStage, LatestInlineWithoutLatencyIsWait) {
   for (std::uint32_t i = 0; i < 4; ++i) process(*stage, i);
   EXPECT_EQ(f.journal.entries("propagate"),
             (Strings{"propagate 0 0", "propagate 1 1", "propagate 2 2", "propagate 3 3"}));
+}
+
+TEST(SegmentationStage, LatestInlineTakesAFrameEveryInterval) {
+  Fixture f;
+  const auto stage =
+      f.make({.schedule = Schedule::kLatest, .interval = 3, .latency = 1}, Mode::kInline);
+  for (std::uint32_t i = 0; i <= 7; ++i) process(*stage, i);
+  EXPECT_EQ(f.journal.entries("propagate"),
+            (Strings{"propagate 0 0", "propagate 0 1", "propagate 0 2", "propagate 0 3",
+                     "propagate 3 4", "propagate 3 5", "propagate 3 6", "propagate 6 7"}));
+}
+
+TEST(SegmentationStage, AnIntervalShorterThanTheNetworkTakesChangesNothing) {
+  Fixture f;
+  const auto stage =
+      f.make({.schedule = Schedule::kLatest, .interval = 2, .latency = 3}, Mode::kInline);
+  for (std::uint32_t i = 0; i <= 8; ++i) process(*stage, i);
+  EXPECT_EQ(f.journal.entries("segment"), (Strings{"segment 0", "segment 2", "segment 5"}));
+}
+
+TEST(SegmentationStage, LatestThreadedTakesAFrameEveryInterval) {
+  Fixture f;
+  const auto stage = f.make({.schedule = Schedule::kLatest, .interval = 3}, Mode::kThreaded);
+  for (std::uint32_t i = 0; i <= 8; ++i) {
+    process(*stage, i);
+    if (i % 3 == 0) f.journal.wait_for("segment " + std::to_string(i));
+  }
+  stage->end();
+  EXPECT_EQ(f.journal.entries("segment"), (Strings{"segment 0", "segment 3", "segment 6"}));
+}
+
+TEST(SegmentationStage, LatestThreadedABusyNetworkGoesOnWithTheNewest) {
+  Fixture f;
+  std::latch release(1);
+  f.journal.hook = [&](const std::string& entry) {
+    if (entry == "segment 2") release.wait();
+  };
+  const auto stage = f.make({.schedule = Schedule::kLatest, .interval = 2}, Mode::kThreaded);
+  for (std::uint32_t i = 0; i <= 2; ++i) process(*stage, i);
+  f.journal.wait_for("segment 2");
+  for (std::uint32_t i = 3; i <= 7; ++i) process(*stage, i);
+  release.count_down();
+  stage->end();
+  EXPECT_EQ(f.journal.entries("segment"), (Strings{"segment 0", "segment 2", "segment 7"}));
+}
+
+TEST(SegmentationStage, WaitGivesEveryFrameItsLabelsWhateverTheInterval) {
+  Fixture f;
+  const auto stage = f.make({.schedule = Schedule::kWait, .interval = 3}, Mode::kThreaded);
+  for (std::uint32_t i = 0; i < 4; ++i) EXPECT_EQ(process(*stage, i)->frame, i);
 }
 
 TEST(SegmentationStage, LatestThreadedNeverWaitsForABusyNetwork) {

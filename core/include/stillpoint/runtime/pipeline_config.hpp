@@ -44,7 +44,8 @@ struct RuntimeOptions {
 /// The `segmentation:` section, and `segmenter.on_failure`: how labels meet frames.
 struct SegmentationOptions {
   enum class Schedule { kWait, kLatest } schedule = Schedule::kWait;
-  int latency = 3;  ///< frames; of `latest` in mode inline, instead of the clock
+  int interval = 1;  ///< frames, of `latest`: from one that the network takes to the next
+  int latency = 3;   ///< frames; of `latest` in mode inline, instead of the clock
   enum class OnFailure { kStop, kContinue } on_failure = OnFailure::kStop;
 
   void visit(OptionVisitor& visitor);

@@ -1,6 +1,7 @@
 // Thread 2: how the labels of the network meet the frames (paper III-B).
 #pragma once
 
+#include <atomic>
 #include <condition_variable>
 #include <cstdint>
 #include <mutex>
@@ -12,8 +13,9 @@
 namespace stillpoint {
 
 /// Schedule `wait`: every frame has its own labels, as in the paper. `latest`: the newest finished
-/// labels are brought forward by the propagator; frames that come while the network is busy replace
-/// each other. The first labels are always waited for, because the map begins with them.
+/// labels are brought forward by the propagator; the network takes a frame every `interval`, and
+/// those that come while it is busy replace each other. The first labels are always waited for,
+/// because the map begins with them.
 ///
 /// `latest` inline imitates a network that takes `latency` frames per image, so that its effect can
 /// be studied without the clock.
@@ -42,6 +44,7 @@ class SegmentationStage {
     SegmentationPtr labels;
   };
 
+  FramePtr taken(FramePtr frame);
   void segment(FramePtr frame);
   Segmentation labels_of(const Frame& frame);
   void imitate_latency(const FramePtr& now);
@@ -56,6 +59,8 @@ class SegmentationStage {
   std::mutex mutex_;
   std::condition_variable_any changed_;
   Labelled newest_;  // guarded by mutex_
+
+  std::atomic<std::uint32_t> next_ = 0;  // of `latest`: the network takes no frame before it
 
   int failures_ = 0;  // both of the thread that segments
   std::string first_failure_;
