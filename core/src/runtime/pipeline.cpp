@@ -29,12 +29,12 @@ Pipeline::Pipeline(Stages stages, const RuntimeOptions& runtime,
       map_directory_(std::move(stages.map_directory)),
       localise_only_(stages.localise_only),
       clock_(std::move(clock)),
-      checker_(std::move(stages.moving_checker), "moving check", times_),
       decision_(std::move(stages.decision), "decision", times_),
       tracker_(std::move(stages.tracker), "tracking", times_),
       feed_(std::move(stages.source), runtime, *clock_, stop_, times_),
       segmentation_(std::move(stages.segmenter), std::move(stages.propagator), segmentation,
                     runtime.mode, stop_, times_),
+      motion_(std::move(stages.moving_checker), segmentation_, runtime.mode, stop_, times_),
       mapping_(std::move(stages.local_mapper), std::move(stages.loop_closer),
                std::move(stages.map_backend), std::move(stages.known_map), runtime.mode, stop_,
                times_) {
@@ -60,12 +60,10 @@ void Pipeline::process(const FramePtr& frame) {
   const std::uint32_t index = frame->index;
   const ScopedTime time(times_, "track_thread", index);
   segmentation_.offer(frame);                                 // thread 2
-  tracker_.call("prepare", index, &Tracker::prepare, frame);  // overlaps the network
-  const auto moving =
-      previous_ ? checker_.call("moving_check", index, &MovingChecker::check, *previous_, *frame)
-                : MovingPoints{};
-  const auto labels = segmentation_.at(frame);  // waits (paper), or propagates the newest
-  if (!labels) return;                          // stopped meanwhile
+  motion_.offer(frame);                                       // moving points, labels of this frame
+  tracker_.call("prepare", index, &Tracker::prepare, frame);  // overlaps both
+  const auto [moving, labels] = motion_.at(frame);
+  if (!labels) return;  // stopped meanwhile
   const auto weights = std::make_shared<const StaticWeights>(
       decision_.call("decision", index, &Decision::decide, *frame, *labels, moving));
   const auto result =
@@ -73,7 +71,6 @@ void Pipeline::process(const FramePtr& frame) {
                     TrackHints{mapping_.waiting(), localise_only_});
   if (result.keyframe) mapping_.push(new_keyframe(*result.keyframe, frame, labels, weights));
   report({*frame, *labels, moving, *weights, result, times_.take()});
-  previous_ = frame;
 }
 
 void Pipeline::report(const FrameReport& report) {
@@ -86,6 +83,7 @@ void Pipeline::report(const FrameReport& report) {
 }
 
 void Pipeline::end_threads() {
+  motion_.end();
   segmentation_.end();
   mapping_.end();
   feed_.end();

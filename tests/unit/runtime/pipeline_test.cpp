@@ -51,6 +51,16 @@ TEST_P(PipelineInBothModes, EveryFrameGoesThroughEveryBox) {
   EXPECT_EQ(f.output->source.skipped, 2u);
 }
 
+TEST(Pipeline, ThreadedTheMovingCheckRunsBesideTheExtractionOfFeatures) {
+  Fixture f(3);
+  f.journal.hook = [&](const std::string& entry) {
+    if (entry == "prepare 1") f.journal.wait_for("propagate 1 1");
+    if (entry == "check 1 2") f.journal.wait_for("prepare 2");
+  };
+  Pipeline(f.stages(), runtime(Mode::kThreaded), {}).run();
+  EXPECT_EQ(f.journal.entries("track"), (Strings{"track 0", "track 1", "track 2"}));
+}
+
 TEST_P(PipelineInBothModes, CorrectionsReachTheMapsAlsoAtTheEnd) {
   Fixture f(60);
   Pipeline(f.stages(), runtime(GetParam()), {}).run();
@@ -77,8 +87,8 @@ TEST_P(PipelineInBothModes, AllTimesAreReportedOnceAndNameTheirFrame) {
       continue;
     EXPECT_TRUE(seen.emplace(time.stage, time.frame).second) << time.stage << ' ' << time.frame;
   }
-  std::size_t expected = 8 * 4 + 3 + 2 * 2;          // per frame, check, per key frame
-  if (GetParam() == Mode::kThreaded) expected += 4;  // segmentation_wait
+  std::size_t expected = 8 * 4 + 3 + 2 * 2;              // per frame, check, per key frame
+  if (GetParam() == Mode::kThreaded) expected += 2 * 4;  // two kinds of waiting
   EXPECT_EQ(seen.size(), expected);
 }
 

@@ -1,4 +1,4 @@
-// Contract: which points move by themselves (paper III-C, Algorithm 1). Thread 1.
+// Contract: which points move by themselves (paper III-C, Algorithm 1). Beside thread 1.
 #pragma once
 
 #include "stillpoint/contracts/frame.hpp"

@@ -1,4 +1,4 @@
-// Contract: brings labels of an older frame to the current one. Thread 1.
+// Contract: brings labels of an older frame to the current one. Beside thread 1.
 #pragma once
 
 #include "stillpoint/contracts/frame.hpp"

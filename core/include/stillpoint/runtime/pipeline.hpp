@@ -9,6 +9,7 @@
 
 #include "stillpoint/runtime/frame_feed.hpp"
 #include "stillpoint/runtime/mapping_system.hpp"
+#include "stillpoint/runtime/motion_stage.hpp"
 #include "stillpoint/runtime/segmentation_stage.hpp"
 
 namespace stillpoint {
@@ -41,12 +42,10 @@ class Pipeline {
   StopSignal stop_;
   TimeLog times_;
 
-  StageCaller<MovingChecker> checker_;
   StageCaller<Decision> decision_;
   StageCaller<Tracker> tracker_;
   std::vector<StageCaller<Output>> outputs_;
 
-  FramePtr previous_;
   std::vector<TrackedPose> poses_;
   double wall_seconds_ = 0.0;
   double cpu_seconds_ = 0.0;
@@ -54,6 +53,7 @@ class Pipeline {
   // Last: their threads use the clock, the stop signal and the time log.
   FrameFeed feed_;
   SegmentationStage segmentation_;
+  MotionStage motion_;
   MappingSystem mapping_;
 };
 

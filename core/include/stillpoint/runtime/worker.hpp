@@ -61,10 +61,8 @@ class Worker {
   /// Items that have to wait for others.
   std::size_t size() const { return queue_.size(); }
   bool waiting() const { return size() > 0; }
-  /// Returns when everything pushed has been handled, or after a stop.
-  void wait_idle() {
-    if (threaded_) queue_.wait_idle(stop_.token());
-  }
+  /// Waits until everything pushed has been handled. False after a stop.
+  bool wait_idle() { return !threaded_ || queue_.wait_idle(stop_.token()); }
   /// Handles what waits, except after a stop, and ends the thread. No push may follow.
   void end() {
     queue_.close();

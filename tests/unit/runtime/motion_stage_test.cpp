@@ -1,0 +1,131 @@
+#include "stillpoint/runtime/motion_stage.hpp"
+
+#include <gtest/gtest.h>
+
+#include <latch>
+#include <thread>
+
+#include "doubles.hpp"
+
+namespace stillpoint {
+namespace {
+
+using testing::Journal;
+using Strings = std::vector<std::string>;
+
+struct Fixture {
+  Journal journal;
+  StopSignal stop;
+  TimeLog times;
+  SegmentationStage segmentation{
+      Stage<Segmenter>{std::make_shared<testing::FakeSegmenter>(journal), "net"},
+      Stage<Propagator>{std::make_shared<testing::FakePropagator>(journal), "flow"},
+      {},
+      Mode::kInline,
+      stop,
+      times};
+  Stage<MovingChecker> checker{std::make_shared<testing::FakeChecker>(journal), "lk"};
+
+  std::unique_ptr<MotionStage> make(Mode mode) {
+    return std::make_unique<MotionStage>(checker, segmentation, mode, stop, times);
+  }
+  FramePtr offer(MotionStage& stage, std::uint32_t index) {
+    auto frame = std::make_shared<const Frame>(testing::make_frame(index));
+    segmentation.offer(frame);
+    stage.offer(frame);
+    return frame;
+  }
+};
+
+class MotionStageInBothModes : public ::testing::TestWithParam<Mode> {};
+INSTANTIATE_TEST_SUITE_P(Modes, MotionStageInBothModes,
+                         ::testing::Values(Mode::kInline, Mode::kThreaded), [](const auto& test) {
+                           return test.param == Mode::kInline ? "Inline" : "Threaded";
+                         });
+
+TEST_P(MotionStageInBothModes, GivesPointsAndLabelsOfTheFrame) {
+  Fixture f;
+  const auto stage = f.make(GetParam());
+  for (std::uint32_t i = 0; i < 3; ++i) {
+    const SceneMotion motion = stage->at(f.offer(*stage, i));
+    EXPECT_EQ(motion.points.reliable, i > 0);
+    ASSERT_TRUE(motion.labels);
+    EXPECT_EQ(motion.labels->frame, i);
+  }
+  EXPECT_EQ(f.journal.entries("check"), (Strings{"check 0 1", "check 1 2"}));
+}
+
+TEST_P(MotionStageInBothModes, AFailureOfTheCheckIsNamed) {
+  Fixture f;
+  f.journal.failing = "check 0 1";
+  const auto stage = f.make(GetParam());
+  stage->at(f.offer(*stage, 0));
+  try {
+    EXPECT_FALSE(stage->at(f.offer(*stage, 1)).labels);
+    ASSERT_TRUE(f.stop.failure());
+    std::rethrow_exception(f.stop.failure());
+  } catch (const StageError& error) {
+    EXPECT_STREQ(error.what(), "moving check (lk) failed on frame 1: out of ideas");
+  }
+}
+
+TEST(MotionStage, InlineWaitsForTheFeatures) {
+  Fixture f;
+  const auto stage = f.make(Mode::kInline);
+  stage->at(f.offer(*stage, 0));
+  const FramePtr frame = f.offer(*stage, 1);
+  EXPECT_TRUE(f.journal.entries("check").empty());
+  stage->at(frame);
+  EXPECT_TRUE(f.journal.contains("check 0 1"));
+}
+
+TEST(MotionStage, ThreadedRunsBesideItsCaller) {
+  Fixture f;
+  const auto stage = f.make(Mode::kThreaded);
+  stage->at(f.offer(*stage, 0));
+  const FramePtr frame = f.offer(*stage, 1);
+  f.journal.wait_for("propagate 1 1");
+  EXPECT_TRUE(stage->at(frame).points.reliable);
+}
+
+TEST(MotionStage, AStopEndsTheWait) {
+  Fixture f;
+  std::latch release(1);
+  f.journal.hook = [&](const std::string& entry) {
+    if (entry == "check 0 1") release.wait();
+  };
+  const auto stage = f.make(Mode::kThreaded);
+  stage->at(f.offer(*stage, 0));
+  const FramePtr frame = f.offer(*stage, 1);
+  f.journal.wait_for("check 0 1");
+  f.stop.request();
+  EXPECT_FALSE(stage->at(frame).labels);
+  release.count_down();
+}
+
+TEST_P(MotionStageInBothModes, WithoutACheckThereAreLabelsOnly) {
+  Fixture f;
+  f.checker = {};
+  const auto stage = f.make(GetParam());
+  for (std::uint32_t i = 0; i < 2; ++i) {
+    const SceneMotion motion = stage->at(f.offer(*stage, i));
+    EXPECT_TRUE(motion.points.points.empty());
+    EXPECT_TRUE(motion.labels && motion.labels->known());
+  }
+  for (const StageTime& time : f.times.take()) EXPECT_NE(time.stage, "motion_wait");
+}
+
+TEST(MotionStage, WaitingIsMeasured) {
+  Fixture f;
+  const auto stage = f.make(Mode::kThreaded);
+  stage->at(f.offer(*stage, 7));
+  Strings stages;
+  for (const StageTime& time : f.times.take()) {
+    EXPECT_EQ(time.frame, 7u);
+    stages.push_back(time.stage);
+  }
+  EXPECT_EQ(std::ranges::count(stages, "motion_wait"), 1);
+}
+
+}  // namespace
+}  // namespace stillpoint
