@@ -56,8 +56,8 @@ fs::path find_model(const std::string& file, const void* own_code) {
     searched.push_back(candidate.string());
   }
   throw Error(Fault::kUsage, "the network's file does not exist; searched: " + join(searched), file,
-              "tools/get_models fetches the networks of configs/segmenters; add folders with "
-              "STILLPOINT_MODEL_PATH");
+              "tools/get_models fetches networks of configs/segmenters, whose files say where others "
+              "come from; add folders with STILLPOINT_MODEL_PATH");
 }
 
 }  // namespace stillpoint

@@ -72,7 +72,7 @@ TEST(ObjectVote, NeedsANumberAndAShareOfPoints) {
                   .object_moves[0]);
 }
 
-TEST(ObjectVote, UnreliablePointsDecideNothing) {
+TEST(ObjectVote, UnreliablePointsLeaveItToUnsure) {
   MovingPoints points = make_points(kNowhere);
   points.reliable = false;
   using Unsure = ObjectVote::Unsure;

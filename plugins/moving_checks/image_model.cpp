@@ -48,7 +48,7 @@ void ConsensusOptions::visit(OptionVisitor& v) {
     {.min = 0.01,
      .max = 100,
      .unit = "px",
-     .help = "matches nearer than this agree with a sample"});
+     .help = "matches nearer than this agree with a sample (Algorithm 1: RANSAC)"});
   v("confidence", confidence,
     {.min = 0.5, .max = 0.999999, .help = "that the best sample has been drawn"});
   v("max_iterations", max_iterations, {.min = 1, .max = 1000000, .help = "samples at most"});

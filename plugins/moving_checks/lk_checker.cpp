@@ -66,14 +66,15 @@ bool agreed(const ImageModel& model, const std::vector<Match>& matches, double s
   return model.inlier_count >= share * static_cast<double>(matches.size());
 }
 
-// How far a fifth of the matches at least are from what one homography explains, in px. Noise alone
+// How far a share of the matches at least is from what one homography explains, in px. Noise alone
 // gives some tenths; a fundamental matrix is determined by what exceeds it.
-double parallax(const Pairs& inliers, const ImageModel& homography) {
+double parallax(const Pairs& inliers, const ImageModel& homography, double share) {
   std::vector<double> distances;
   for (std::size_t i = 0; i < inliers.previous.size(); ++i)
     distances.push_back(
         moving::transfer_distance(homography.matrix, inliers.previous[i], inliers.current[i]));
-  const auto nth = distances.begin() + static_cast<std::ptrdiff_t>(distances.size() * 4 / 5);
+  const auto below = static_cast<std::size_t>(static_cast<double>(distances.size()) * (1 - share));
+  const auto nth = distances.begin() + static_cast<std::ptrdiff_t>(below);
   std::nth_element(distances.begin(), nth, distances.end());
   return *nth;
 }
@@ -84,9 +85,9 @@ void LkOptions::visit(OptionVisitor& v) {
   consensus.visit(v);
   follow.visit(v);
   v("min_matches", min_matches,
-    {.min = 8, .max = 100000, .help = "fewer decide nothing (reliable: false)"});
+    {.min = 8, .max = 100000, .help = "fewer decide nothing (reliable: false); not in the paper"});
   v("min_inlier_share", min_inlier_share,
-    {.min = 0, .max = 1, .help = "when fewer matches agree, nothing is decided"});
+    {.min = 0, .max = 1, .help = "when fewer matches agree, nothing is decided; not in the paper"});
 }
 
 void EpipolarChecker::Options::visit(OptionVisitor& v) {
@@ -96,7 +97,9 @@ void EpipolarChecker::Options::visit(OptionVisitor& v) {
   v("min_parallax", min_parallax,
     {.min = 0,
      .unit = "px",
-     .help = "a fifth of the inliers must be this far from one homography; else degenerate"});
+     .help = "parallax_share must be this far from one homography; else degenerate"});
+  v("parallax_share", parallax_share,
+    {.min = 0.01, .max = 1, .help = "of the inliers, as min_parallax asks for"});
   v.choice("when_degenerate", when_degenerate,
            {{"unreliable", Degenerate::kUnreliable},
             {"homography", Degenerate::kHomography},
@@ -122,7 +125,7 @@ MovingPoints EpipolarChecker::check(const Frame& previous, const Frame& current)
     const Pairs inliers = inliers_of(pairs, *model);
     const auto plane =
         moving::find_homography(inliers.previous, inliers.current, options_.lk.consensus);
-    if (plane && parallax(inliers, *plane) < options_.min_parallax) {
+    if (plane && parallax(inliers, *plane, options_.parallax_share) < options_.min_parallax) {
       if (options_.when_degenerate == Degenerate::kUnreliable) return undecided(matches);
       return judged_by_homography(matches, options_.epsilon, *plane);
     }

@@ -29,7 +29,8 @@ class EpipolarChecker : public MovingChecker {
   struct Options {
     double epsilon = 1.0;  ///< px
     LkOptions lk;
-    double min_parallax = 0.3;  ///< px
+    double min_parallax = 0.3;    ///< px
+    double parallax_share = 0.2;  ///< of the inliers
     Degenerate when_degenerate = Degenerate::kUnreliable;
 
     void visit(OptionVisitor& v);

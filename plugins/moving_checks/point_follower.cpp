@@ -31,7 +31,11 @@ int patch_difference(const cv::Mat& a, const cv::Point2f& in_a, const cv::Mat& b
 
 void FollowOptions::visit(OptionVisitor& v) {
   corners.visit(v);
-  v("window", window, {.min = 5, .max = 101, .unit = "px", .help = "side of the followed patch"});
+  v("window", window,
+    {.min = 5,
+     .max = 101,
+     .unit = "px",
+     .help = "side of the followed patch (Algorithm 1: pyramidal Lucas-Kanade)"});
   v("pyramid_levels", pyramid_levels,
     {.min = 1, .max = 10, .help = "of the flow, the image itself included"});
   v("iterations", iterations, {.min = 1, .max = 1000, .help = "of the flow, per level"});

@@ -91,6 +91,21 @@ TEST_F(LocalMapperTest, InsertGivesLandmarksAtOnce) {
   EXPECT_EQ(map_.keyframe(0)->world_from_camera.matrix(), Pose::Identity().matrix());
 }
 
+TEST_F(LocalMapperTest, LandmarksThatProveToMoveAreRemoved) {
+  step();
+  const auto first =
+      std::ranges::find_if(map_.keyframe(0)->landmarks, [](LandmarkId id) { return id != kNoId; });
+  ASSERT_NE(first, map_.keyframe(0)->landmarks.end());
+  const LandmarkId moving = *first;
+  for (const float log_odds : {-2.0f, -0.5f, -1.0f}) {
+    ASSERT_TRUE(map_.landmark(moving)) << "-2.5 is not enough";
+    KeyFrame keyframe = next_keyframe();
+    keyframe.evidence = {{.landmark = moving, .visible = 4, .static_log_odds = log_odds}};
+    map_ = mapper_.insert(std::move(map_), std::move(keyframe));
+  }
+  EXPECT_FALSE(map_.landmark(moving));
+}
+
 TEST_F(LocalMapperTest, EvidenceIsAddedToLandmarksOnce) {
   step();
   const LandmarkId seen = landmarks_by_point()[views_[0].point[0]] == kNoId

@@ -253,9 +253,12 @@ void FlowDepthPropagator::place(FollowedObject& object, const View& view) const 
 }
 
 bool FlowDepthPropagator::supported(const FollowedObject& object, const View& view) const {
-  if (object.seen_frame == learnt_frame_) return true;
-  if (view.time - object.seen_time > options_.keep_seconds) return false;
-  if (object.misses > std::min(object.sightings, options_.max_misses)) return false;
+  const bool recent = view.time - object.seen_time <= options_.keep_seconds;
+  if (object.seen_frame == learnt_frame_) {
+    if (recent) return true;  // else the network is slow, and the images have to bear it out
+  } else if (!recent || object.misses > std::min(object.sightings, options_.max_misses)) {
+    return false;
+  }
   return object.tracks.size() >= static_cast<std::size_t>(options_.min_points) &&
          object.support >= kSupport && !object.mask.empty() &&
          cv::countNonZero(object.mask) * kViewScale * kViewScale >= options_.min_object_pixels;

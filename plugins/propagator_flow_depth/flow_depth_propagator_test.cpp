@@ -212,6 +212,19 @@ TEST(FlowDepthPropagator, LetsGoWhoseDepthIsGone) {
   }
 }
 
+TEST(FlowDepthPropagator, LetsGoWhoseDepthIsGoneAlsoWithASlowNetwork) {
+  FlowDepthPropagator propagator({.keep_seconds = 0.5});
+  const Box chair{{200, 100, 60, 60}, 3.0f, kChair};
+  const Scene first(0, {chair, walker(0)});
+  for (int i = 0; i < 40; ++i) {
+    const Scene now(i, i < 8 ? std::vector<Box>{chair, walker(0)} : std::vector<Box>{chair});
+    const Segmentation carried = propagator.propagate(first.truth(), first.frame, now.frame);
+    if (i < 16) continue;
+    ASSERT_EQ(carried.objects.size(), 1U) << i;
+    EXPECT_EQ(carried.objects[0].label, kChair);
+  }
+}
+
 TEST(FlowDepthPropagator, WhatPassesBeforeAnObjectIsNotPartOfIt) {
   FlowDepthPropagator propagator({});
   const Scene first(0, {walker(0)});

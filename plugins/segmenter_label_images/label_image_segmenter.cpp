@@ -24,6 +24,14 @@ std::string size_text(cv::Size size) {
   return std::to_string(size.width) + " x " + std::to_string(size.height);
 }
 
+void check_size(const cv::Mat& labels, cv::Size frame, const std::filesystem::path& file) {
+  if (labels.size() == frame) return;
+  throw Error(Fault::kData,
+              "the label image has " + size_text(labels.size()) + " pixels, but the frame has " +
+                  size_text(frame),
+              file.string(), "labels must belong to the undistorted and cropped images");
+}
+
 }  // namespace
 
 void LabelImageSegmenter::Options::visit(OptionVisitor& v) {
@@ -46,7 +54,11 @@ LabelImageSegmenter::LabelImageSegmenter(Options options, const StageContext& co
       errors_(options_.errors, false_label(options_.errors, classes_), context.seed),
       log_(context.log) {
   // A folder of something else shall be found out before the run begins.
-  read_labels(files_.entries().front().file, classes_.size());
+  const std::filesystem::path& first = files_.entries().front().file;
+  const cv::Mat labels = read_labels(first, classes_.size());
+  if (!context.camera) return;
+  const Camera camera = context.camera->undistorted();
+  check_size(labels, {camera.width, camera.height}, first);
 }
 
 Segmentation LabelImageSegmenter::segment(const Frame& frame) {
@@ -58,11 +70,7 @@ Segmentation LabelImageSegmenter::segment(const Frame& frame) {
   }
   ++found_;
   const cv::Mat labels = read_labels(nearest.file, classes_.size());
-  if (labels.size() != frame.gray.size())
-    throw Error(Fault::kData,
-                "the label image has " + size_text(labels.size()) + " pixels, but the frame has " +
-                    size_text(frame.gray.size()),
-                nearest.file.string(), "labels must belong to the undistorted and cropped images");
+  check_size(labels, frame.gray.size(), nearest.file);
   result.labels =
       errors_.any() ? errors_.apply(labels, frame.index, options_.min_object_pixels) : labels;
   find_objects(result, options_.min_object_pixels);

@@ -235,6 +235,16 @@ TEST_F(LabelImageSegmenterTest, BadImagesAreFoundOutAtTheStart) {
   EXPECT_THAT(message_of([&] { open(); }), HasSubstr("cannot be read"));
 }
 
+TEST_F(LabelImageSegmenterTest, LabelsOfAnotherSizeThanTheCameraAreFoundOutAtTheStart) {
+  write(1.0, room_labels());
+  StageContext context{.recording = folder_.path()};
+  context.camera = CameraModel{.width = 200, .height = 120, .crop = {20, 0, 160, 120}};
+  EXPECT_NO_THROW(LabelImageSegmenter(options_, context));
+  context.camera->crop.clear();
+  EXPECT_THAT(message_of([&] { LabelImageSegmenter(options_, context); }),
+              AllOf(HasSubstr("1.000000.png"), HasSubstr("160 x 120"), HasSubstr("200 x 120")));
+}
+
 TEST_F(LabelImageSegmenterTest, LabelsOfAnotherSizeAreAnError) {
   write(1.0, room_labels());
   LabelImageSegmenter segmenter = open();

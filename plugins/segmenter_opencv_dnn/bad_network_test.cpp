@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 
 #include <functional>
+#include <limits>
 
 #include "segmenter_opencv_dnn/test_networks.hpp"
 
@@ -62,6 +63,16 @@ TEST_F(BadNetwork, TruncatedDarknet) {
   const std::string whole = read_file(options_.network.model);
   options_.network.model = folder_.write("cut.weights", whole.substr(0, whole.size() - 8));
   EXPECT_THAT(fault(Fault::kData), AllOf(HasSubstr("cut.weights"), HasSubstr("truncated")));
+}
+
+TEST_F(BadNetwork, WeightsThatAreNotNumbers) {
+  use_darknet();
+  std::string file = read_file(options_.network.model);
+  const float not_a_number = std::numeric_limits<float>::quiet_NaN();
+  file.replace(file.size() - sizeof(float), sizeof(float), bytes_of({not_a_number}));
+  options_.network.model = folder_.write("nan.weights", file);
+  EXPECT_THAT(fault(Fault::kData),
+              AllOf(HasSubstr("nan.weights"), HasSubstr("not all finite"), HasSubstr("damaged")));
 }
 
 TEST_F(BadNetwork, OfAnotherKind) {

@@ -36,6 +36,17 @@ std::vector<std::string> chosen_outputs(const cv::dnn::Net& net, const NetworkOp
               file, "correct 'output'");
 }
 
+/// Scores that are not numbers would compare as the background.
+void check_finite(cv::dnn::Net& net, const std::string& file) {
+  for (const std::string& name : net.getLayerNames()) {
+    for (const cv::Mat& weights : net.getLayer(net.getLayerId(name))->blobs) {
+      if (cv::checkRange(weights)) continue;
+      throw Error(Fault::kData, "the weights of layer '" + name + "' are not all finite numbers",
+                  file, "the file is damaged; get it again");
+    }
+  }
+}
+
 }  // namespace
 
 void NetworkOptions::visit(OptionVisitor& v) {
@@ -73,6 +84,7 @@ Network::Network(const NetworkOptions& options, bool all_outputs)
         "check 'width' and 'height'; or the file is damaged or uses layers that OpenCV " CV_VERSION
         " does not have");
   }
+  check_finite(net_, file_);
 }
 
 std::vector<cv::Mat> Network::run(const cv::Mat& bgr) {

@@ -43,7 +43,7 @@ struct StageContext {
   bool deterministic = true;               ///< `mode: inline`: no clock and no races in decisions
   std::filesystem::path output_directory;  ///< of the run; exists when outputs are created
   std::filesystem::path recording;         ///< what the source reads; empty when it reads none
-  std::optional<CameraModel> camera;       ///< the `camera:` section, for sources
+  std::optional<CameraModel> camera;       ///< the `camera:` section, of the source
   ClassNames classes;                      ///< of the segmenter; empty without one
   std::function<void(LogLevel, std::string_view)> log = [](LogLevel, std::string_view) {};
 };
