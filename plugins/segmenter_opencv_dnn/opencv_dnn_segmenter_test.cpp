@@ -58,6 +58,25 @@ TEST(OpenCvDnnSegmenter, SameImageSameResult) {
   }
 }
 
+TEST(OpenCvDnnSegmenter, ATensorFlowNetworkGivesTheSameAsItsTwinOfCaffe) {
+  const testing::TemporaryFolder folder;
+  constexpr int kStride = 4;
+  const cv::Size input(33, 25);
+  Frame frame;
+  frame.bgr = noise(input);
+  const auto labels = [&](const NetworkOptions& network) {
+    return OpenCvDnnSegmenter(with(network, ResultKind::kClassLogits, {"background", "cat", "dog"}),
+                              {})
+        .segment(frame)
+        .labels;
+  };
+  const cv::Mat tensorflow = labels(tensorflow_network(folder, kStride, input));
+  EXPECT_EQ(cv::norm(tensorflow, labels(caffe_network(folder, subsampling(kStride), input)),
+                     cv::NORM_INF),
+            0);
+  for (int label = 0; label < 3; ++label) EXPECT_GT(cv::countNonZero(tensorflow == label), 0);
+}
+
 // Every 16th pixel of the input is a cell: between two of them the scores are linear.
 TEST(OpenCvDnnSegmenter, LogitsOfStride16AreAlignedExactly) {
   const testing::TemporaryFolder folder;

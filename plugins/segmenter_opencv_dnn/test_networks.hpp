@@ -1,6 +1,8 @@
 // Small networks whose results are known, written as files.
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -46,6 +48,42 @@ inline std::string subsampling(int stride) {
   return "layer { name: \"cells\" type: \"Pooling\" bottom: \"data\" top: \"cells\" "
          "pooling_param { pool: MAX kernel_size: 1 stride: " +
          std::to_string(stride) + " } }\n";
+}
+
+/// Fields of Protocol Buffers, for numbers and lengths below 128.
+inline std::string proto_number(int field, int value) {
+  return {static_cast<char>(field << 3), static_cast<char>(value)};
+}
+inline std::string proto_bytes(int field, const std::string& bytes) {
+  EXPECT_LT(bytes.size(), 128U);
+  return std::string{static_cast<char>(field << 3 | 2), static_cast<char>(bytes.size())} + bytes;
+}
+
+/// As subsampling(), frozen by TensorFlow: a GraphDef of two nodes, images with channels last.
+inline NetworkOptions tensorflow_network(const testing::TemporaryFolder& folder, int stride,
+                                         cv::Size input) {
+  const auto attribute = [](const std::string& key, const std::string& value) {
+    return proto_bytes(5, proto_bytes(1, key) + proto_bytes(2, value));
+  };
+  const auto list = [](int y, int x) {
+    const std::string steps{1, static_cast<char>(y), static_cast<char>(x), 1};
+    return proto_bytes(1, proto_bytes(3, steps));
+  };
+  const auto node = [](const std::string& name, const std::string& operation) {
+    return proto_bytes(1, name) + proto_bytes(2, operation);
+  };
+  constexpr int kFloat = 1;
+  const std::string image =
+      node("data", "Placeholder") + attribute("dtype", proto_number(6, kFloat));
+  const std::string cells =
+      node("cells", "MaxPool") + proto_bytes(3, "data") + attribute("ksize", list(1, 1)) +
+      attribute("strides", list(stride, stride)) + attribute("padding", proto_bytes(2, "VALID"));
+  NetworkOptions options;
+  options.model = folder.write("net.pb", proto_bytes(1, image) + proto_bytes(1, cells));
+  options.width = input.width;
+  options.height = input.height;
+  options.scale = {1.0};
+  return options;
 }
 
 /// Puts out the red channel as `red`, the others as `rest`.
