@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <latch>
-#include <thread>
 
 #include "doubles.hpp"
 
