@@ -90,9 +90,10 @@ Corners strongest_corners(const cv::Mat& gray, const CornerOptions& options) {
 
 void CornerOptions::visit(OptionVisitor& v) {
   v.choice("corners", corners, {{"grid", Method::kGrid}, {"shi_tomasi", Method::kShiTomasi}},
-           {.help = "the strongest corner of every cell, or the strongest ones anywhere"});
+           {.help = "P1 of Algorithm 1: the strongest corner of every cell, or the strongest ones "
+                    "anywhere"});
   v("max_corners", max_corners,
-    {.min = 8, .max = 100000, .help = "corners followed from the previous frame"});
+    {.min = 8, .max = 100000, .help = "of P1, the corners followed from the previous frame"});
   v("min_gradient", min_gradient,
     {.min = 0,
      .max = 255,

@@ -48,10 +48,11 @@ void ConsensusOptions::visit(OptionVisitor& v) {
     {.min = 0.01,
      .max = 100,
      .unit = "px",
-     .help = "matches nearer than this agree with a sample (Algorithm 1: RANSAC)"});
+     .help = "matches nearer than this agree with a sample (Algorithm 1, line 3)"});
   v("confidence", confidence,
-    {.min = 0.5, .max = 0.999999, .help = "that the best sample has been drawn"});
-  v("max_iterations", max_iterations, {.min = 1, .max = 1000000, .help = "samples at most"});
+    {.min = 0.5, .max = 0.999999, .help = "that the best sample has been drawn (line 3)"});
+  v("max_iterations", max_iterations,
+    {.min = 1, .max = 1000000, .help = "samples at most (line 3)"});
 }
 
 std::optional<ImageModel> find_fundamental(const Points& previous, const Points& current,

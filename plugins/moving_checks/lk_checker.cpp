@@ -92,12 +92,15 @@ void LkOptions::visit(OptionVisitor& v) {
 
 void EpipolarChecker::Options::visit(OptionVisitor& v) {
   v("epsilon", epsilon,
-    {.min = 0, .unit = "px", .help = "farther from its epipolar line a point moves (eq. 3)"});
+    {.min = 0,
+     .unit = "px",
+     .help = "farther from its epipolar line a point moves (eq. 3; Algorithm 1, line 7)"});
   lk.visit(v);
   v("min_parallax", min_parallax,
     {.min = 0,
      .unit = "px",
-     .help = "parallax_share must be this far from one homography; else degenerate"});
+     .help =
+         "parallax_share must be this far from one homography; else degenerate; not in the paper"});
   v("parallax_share", parallax_share,
     {.min = 0.01, .max = 1, .help = "of the inliers, as min_parallax asks for"});
   v.choice("when_degenerate", when_degenerate,

@@ -35,19 +35,21 @@ void FollowOptions::visit(OptionVisitor& v) {
     {.min = 5,
      .max = 101,
      .unit = "px",
-     .help = "side of the followed patch (Algorithm 1: pyramidal Lucas-Kanade)"});
+     .help = "side of the followed patch (Algorithm 1, line 1)"});
   v("pyramid_levels", pyramid_levels,
-    {.min = 1, .max = 10, .help = "of the flow, the image itself included"});
-  v("iterations", iterations, {.min = 1, .max = 1000, .help = "of the flow, per level"});
+    {.min = 1, .max = 10, .help = "of the flow, the image itself included (line 1)"});
+  v("iterations", iterations, {.min = 1, .max = 1000, .help = "of the flow, per level (line 1)"});
   v("accuracy", accuracy,
-    {.min = 0, .max = 1, .unit = "px", .help = "a smaller step ends the iterations"});
+    {.min = 0, .max = 1, .unit = "px", .help = "a smaller step ends the iterations (line 1)"});
   v("edge", edge,
-    {.min = 0, .unit = "px", .help = "a match nearer to the image edge is discarded (III-C)"});
+    {.min = 0,
+     .unit = "px",
+     .help = "a match nearer to the image edge is discarded (III-C, line 2)"});
   v("max_patch_difference", max_patch_difference,
     {.min = 0,
      .max = 2295,
      .unit = "grey levels",
-     .help = "a match whose 3 x 3 px differ by more in sum is discarded (III-C)"});
+     .help = "a match whose 3 x 3 px differ by more in sum is discarded (III-C, line 2)"});
 }
 
 bool PointFollower::usable(const cv::Mat& previous, const cv::Mat& current) const {
