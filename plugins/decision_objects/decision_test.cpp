@@ -183,5 +183,19 @@ TEST(Bayes, BeliefsFollowObjectsByTheirId) {
   EXPECT_TRUE(decision.decide(make_frame(61), elsewhere, make_points(kNowhere)).object_moves[0]);
 }
 
+TEST(Bayes, WhoWasMissedForLongIsJudgedByTheClassAgain) {
+  Segmentation labels = make_labels();
+  labels.objects[0].id = 7;
+  const auto moves_after_missing = [&](std::uint32_t missed) -> bool {
+    Bayes decision({}, with_classes());
+    std::uint32_t i = 0;
+    while (i < 60) decision.decide(make_frame(i++), labels, make_points(kNowhere));
+    while (i < 60 + missed) decision.decide(make_frame(i++), {}, make_points(kNowhere));
+    return decision.decide(make_frame(i), labels, make_points(kNowhere)).object_moves[0];
+  };
+  EXPECT_FALSE(moves_after_missing(3));
+  EXPECT_TRUE(moves_after_missing(120));
+}
+
 }  // namespace
 }  // namespace stillpoint::decision

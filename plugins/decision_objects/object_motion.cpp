@@ -1,6 +1,7 @@
 #include "decision_objects/object_motion.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "decision_objects/probability.hpp"
 
@@ -14,7 +15,8 @@ void ObjectMotionOptions::visit(OptionVisitor& v) {
   v("rise", rise, {.min = 0, .max = 100, .unit = "log-odds", .help = "per frame at most"});
   v("fall", fall,
     {.min = 0, .max = 100, .unit = "log-odds", .help = "per frame at most: who pauses walks on"});
-  v("pull", pull, {.min = 0, .max = 1, .help = "share of the way back to the prior per frame"});
+  v("pull", pull,
+    {.min = 0, .max = 1, .help = "share of the way back to the prior per frame, seen or missed"});
   v("range", range,
     {.min = 0, .max = 20, .unit = "log-odds", .help = "by which evidence can outweigh the prior"});
   v("min_points", min_points, {.min = 1, .help = "on an object, to learn from them"});
@@ -40,6 +42,7 @@ const std::vector<ObjectBelief>& ObjectBeliefs::update(const std::vector<Segment
     belief.label = objects[i].label;
     belief.box = objects[i].box;
     belief.prior = priors[i];
+    forget(belief, before ? updates_ - before->updated : 1);
     belief.updated = updates_;
     learn(belief, counts.empty() ? PointCount{} : counts[i]);
     if (objects[i].id >= 0) by_id_[objects[i].id] = belief;
@@ -68,8 +71,12 @@ const ObjectBelief* ObjectBeliefs::known(const SegmentedObject& object) const {
   return best;
 }
 
+void ObjectBeliefs::forget(ObjectBelief& belief, int updates) const {
+  const double kept = std::pow(1 - options_.pull, updates);
+  belief.log_odds = belief.prior + kept * (belief.log_odds - belief.prior);
+}
+
 void ObjectBeliefs::learn(ObjectBelief& belief, const PointCount& count) const {
-  belief.log_odds += options_.pull * (belief.prior - belief.log_odds);
   if (count.points >= options_.min_points) {
     const double share = static_cast<double>(count.moving) / count.points;
     belief.log_odds +=

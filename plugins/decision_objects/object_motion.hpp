@@ -15,7 +15,7 @@ struct ObjectMotionOptions {
   double share = 0.1;         ///< of an object's points that move, at which nothing is learnt
   double rise = 1.5;          ///< log-odds per frame, most
   double fall = 0.3;          ///< log-odds per frame, most: people who pause go on walking
-  double pull = 0.02;         ///< share of the way back to the class prior, per frame
+  double pull = 0.02;         ///< share of the way back to the prior, per frame, seen or missed
   double range = 3.5;         ///< log-odds that evidence can outweigh the prior by
   int min_points = 4;         ///< on an object, for evidence
   double moves_above = 0.7;   ///< probability
@@ -53,6 +53,7 @@ class ObjectBeliefs {
 
  private:
   const ObjectBelief* known(const SegmentedObject& object) const;
+  void forget(ObjectBelief& belief, int updates) const;
   void learn(ObjectBelief& belief, const PointCount& count) const;
 
   ObjectMotionOptions options_;

@@ -51,6 +51,26 @@ void measure_objects(Segmentation& segmentation, int min_pixels) {
   segmentation.objects = std::move(kept);
 }
 
+cv::Mat mirrored(const cv::Mat& image) {
+  cv::Mat result;
+  if (!image.empty()) cv::flip(image, result, 1);
+  return result;
+}
+
+/// All that is looked at, left for right.
+Frame mirrored(const Frame& frame) {
+  Frame result = frame;
+  for (cv::Mat* image : {&result.bgr, &result.gray, &result.depth}) *image = mirrored(*image);
+  return result;
+}
+
+Segmentation mirrored(Segmentation segmentation) {
+  for (cv::Mat* image : {&segmentation.labels, &segmentation.instances}) *image = mirrored(*image);
+  for (SegmentedObject& object : segmentation.objects)
+    object.box.x = segmentation.labels.cols - object.box.br().x;
+  return segmentation;
+}
+
 }  // namespace
 
 void OpenCvDnnSegmenter::Options::visit(OptionVisitor& v) {
@@ -76,6 +96,8 @@ void OpenCvDnnSegmenter::Options::visit(OptionVisitor& v) {
   v("boxes", boxes, {.help = "how boxes become masks"});
   v("min_object_pixels", min_object_pixels,
     {.min = 1, .unit = "px", .help = "smaller parts of a class are background"});
+  v("mirror", mirror,
+    {.help = "every second image is seen left for right, and its labels are turned back"});
   v("threads", threads,
     {.min = 0,
      .max = 256,
@@ -142,6 +164,12 @@ void OpenCvDnnSegmenter::check_planes(const cv::Mat& output) const {
 }
 
 Segmentation OpenCvDnnSegmenter::segment(const Frame& frame) {
+  const bool second = images_++ % 2 == 1;
+  return options_.mirror && second ? mirrored(segment_as_is(mirrored(frame)))
+                                   : segment_as_is(frame);
+}
+
+Segmentation OpenCvDnnSegmenter::segment_as_is(const Frame& frame) {
   const std::vector<cv::Mat> outputs = network_.run(frame.bgr);
   Segmentation result =
       options_.rule.result == ResultKind::kBoxes

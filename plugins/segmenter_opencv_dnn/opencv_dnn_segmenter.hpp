@@ -24,7 +24,8 @@ class OpenCvDnnSegmenter final : public Segmenter {
     RefinementOptions refinement;
     BoxMaskOptions boxes;
     int min_object_pixels = 200;
-    int threads = 0;  ///< of OpenCV, in the whole process; 0: as many as the runtime allows
+    bool mirror = false;  ///< every second image; what is overlooked one way may be seen the other
+    int threads = 0;      ///< of OpenCV, in the whole process; 0: as many as the runtime allows
 
     void visit(OptionVisitor& visitor);
   };
@@ -36,6 +37,7 @@ class OpenCvDnnSegmenter final : public Segmenter {
   Segmentation segment(const Frame& frame) override;
 
  private:
+  Segmentation segment_as_is(const Frame& frame);
   void check_outputs() const;
   void check_boxes(const cv::Mat& output) const;
   void check_planes(const cv::Mat& output) const;
@@ -46,7 +48,8 @@ class OpenCvDnnSegmenter final : public Segmenter {
   Options options_;
   ClassNames classes_;
   Network network_;
-  CellGrid grid_;  // for the image size seen last
+  CellGrid grid_;        // for the image size seen last
+  unsigned images_ = 0;  // seen so far
 };
 
 }  // namespace stillpoint

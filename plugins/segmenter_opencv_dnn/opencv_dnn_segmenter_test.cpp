@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 
 #include <opencv2/core.hpp>
+#include <opencv2/imgproc.hpp>
 
 #include "segmenter_opencv_dnn/test_networks.hpp"
 
@@ -27,6 +28,15 @@ cv::Mat noise(cv::Size size) {
   return image;
 }
 
+/// Head and shoulders, enough for the shipped network.
+cv::Mat portrait() {
+  cv::Mat image(240, 320, CV_8UC3, cv::Scalar(170, 180, 180));
+  cv::ellipse(image, {120, 230}, {80, 100}, 0, 0, 360, {110, 60, 40}, cv::FILLED);
+  cv::ellipse(image, {120, 90}, {34, 46}, 0, 0, 360, {140, 170, 215}, cv::FILLED);
+  cv::ellipse(image, {120, 60}, {38, 26}, 0, 180, 360, {30, 40, 50}, cv::FILLED);
+  return image;
+}
+
 TEST(OpenCvDnnSegmenter, DefaultsAreTheShippedNetwork) {
   Options options;
   options.network.model = shipped_model();
@@ -44,11 +54,11 @@ TEST(OpenCvDnnSegmenter, DefaultsAreTheShippedNetwork) {
 TEST(OpenCvDnnSegmenter, SameImageSameResult) {
   Options options;
   options.network.model = shipped_model();
-  options.rule.threshold = 0.05;  // something is found in noise, too
   OpenCvDnnSegmenter first(options, {}), second(options, {});
   Frame frame;
-  frame.bgr = noise({320, 240});
+  frame.bgr = portrait();
   const Segmentation a = first.segment(frame);
+  EXPECT_FALSE(a.objects.empty());
   first.segment(blocks(noise({4, 3}), 8));  // another image, of another size, in between
   for (const Segmentation& b : {first.segment(frame), second.segment(frame)}) {
     EXPECT_EQ(cv::norm(a.labels, b.labels, cv::NORM_INF), 0);
@@ -248,6 +258,29 @@ TEST(OpenCvDnnSegmenter, SsdBoxesBetterOnesOnTop) {
   EXPECT_EQ(result.objects[1].box, cv::Rect(14, 0, 14, 16));
   EXPECT_NEAR(result.objects[1].score, 60.0 / 64, 1e-6);
   EXPECT_EQ(cv::countNonZero(result.labels), 28 * 16);
+}
+
+TEST(OpenCvDnnSegmenter, EverySecondImageIsSeenInAMirror) {
+  Options options;
+  options.network.model = shipped_model();
+  OpenCvDnnSegmenter plain(options, {});
+  options.mirror = true;
+  OpenCvDnnSegmenter segmenter(options, {});
+  Frame frame, turned;
+  frame.bgr = portrait();
+  cv::flip(frame.bgr, turned.bgr, 1);
+  const Segmentation as_is = plain.segment(frame), in_mirror = plain.segment(turned);
+  for (const bool second : {false, true, false}) {
+    const Segmentation result = segmenter.segment(frame);
+    cv::Mat labels = as_is.labels.clone();
+    if (second) cv::flip(in_mirror.labels, labels, 1);
+    EXPECT_EQ(cv::norm(result.labels, labels, cv::NORM_INF), 0);
+    ASSERT_EQ(result.objects.size(), (second ? in_mirror : as_is).objects.size());
+    ASSERT_FALSE(result.objects.empty());
+    for (std::size_t i = 0; i < result.objects.size(); ++i)
+      EXPECT_EQ(result.objects[i].box, cv::boundingRect(result.instances == 1.0 + i));
+  }
+  EXPECT_GT(cv::norm(segmenter.segment(frame).labels, as_is.labels, cv::NORM_INF), 0);
 }
 
 TEST(OpenCvDnnSegmenter, OpenCvFailingAtRunTimeNamesTheNetwork) {
