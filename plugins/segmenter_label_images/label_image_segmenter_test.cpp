@@ -132,6 +132,26 @@ TEST_F(LabelImageSegmenterTest, ErrorsLastAsLongAsAsked) {
   EXPECT_NEAR(changes, 50, 20);
 }
 
+TEST_F(LabelImageSegmenterTest, LegsHolesAndFloorAsAsked) {
+  write(1.0, room_labels());
+  options_.errors.missing_legs = 0.5;
+  EXPECT_EQ(open().segment(frame_at(1.0)).objects[0].box,
+            cv::Rect(kPersonBox.x, kPersonBox.y, kPersonBox.width, kPersonBox.height / 2));
+  options_.errors.missing_legs = 0;
+  options_.errors.floor = 2;
+  EXPECT_EQ(open().segment(frame_at(1.0)).objects[0].box,
+            cv::Rect(kPersonBox.x - kPersonBox.width / 2, kPersonBox.y, 2 * kPersonBox.width,
+                     kPersonBox.height));
+  options_.errors.floor = 0;
+  options_.errors.holes = 12;
+  LabelImageSegmenter segmenter = open();
+  const cv::Mat first = segmenter.segment(frame_at(1.0, 0)).labels;
+  EXPECT_LT(count(first, kPerson), 0.95 * kPersonBox.area());
+  EXPECT_GT(count(first, kPerson), 0.6 * kPersonBox.area());
+  EXPECT_EQ(cv::norm(first, segmenter.segment(frame_at(1.0, 0)).labels, cv::NORM_INF), 0);
+  EXPECT_GT(cv::norm(first, segmenter.segment(frame_at(1.0, 1)).labels, cv::NORM_INF), 0);
+}
+
 TEST_F(LabelImageSegmenterTest, OutlinesMoveByPixels) {
   write(1.0, room_labels());
   options_.errors.boundary = -3;

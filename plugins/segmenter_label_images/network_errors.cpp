@@ -9,7 +9,7 @@
 namespace stillpoint {
 namespace {
 
-enum Purpose : std::uint32_t { kMisses, kOutlines, kFalseObjects };
+enum Purpose : std::uint32_t { kMisses, kOutlines, kFalseObjects, kHoles };
 
 /// px along an outline over which its error stays about the same.
 constexpr int kWobbleCell = 16;
@@ -46,6 +46,14 @@ void NetworkErrorOptions::visit(OptionVisitor& v) {
      .help = "outlines lie outside the true ones; < 0 inside"});
   v("wobble", wobble,
     {.min = 0, .max = 100, .unit = "px", .help = "outlines lie off at random by up to so much"});
+  v("missing_legs", missing_legs,
+    {.min = 0, .max = 1, .help = "share of each object's height that is missing at its lower end"});
+  v("holes", holes,
+    {.min = 0, .max = 1000, .help = "in each object, each as wide as a seventh of it"});
+  v("floor", floor,
+    {.min = 0,
+     .max = 10,
+     .help = "floor that is taken for the object standing on it, in its widths; 0: none"});
   v("false_objects", false_objects,
     {.min = 0, .max = 1, .help = "probability that a frame has an object that is not there"});
   v("false_class", false_class, {.help = "class of the objects that are not there"});
@@ -65,6 +73,7 @@ cv::Mat NetworkErrors::apply(const cv::Mat& labels, std::uint32_t frame,
   cv::RNG misses = generator(period, kMisses);
   const bool moves_outlines = options_.boundary != 0 || options_.wobble > 0;
   const cv::Mat shift = moves_outlines ? outline_shift(labels.size(), frame) : cv::Mat();
+  cv::RNG holes = generator(frame, kHoles);
   const int room = static_cast<int>(std::ceil(std::abs(options_.boundary) + options_.wobble)) + 2;
 
   cv::Mat result(labels.size(), CV_8UC1, cv::Scalar(0));
@@ -73,14 +82,28 @@ cv::Mat NetworkErrors::apply(const cv::Mat& labels, std::uint32_t frame,
     if (misses.uniform(0.0, 1.0) < options_.miss_rate) continue;
     const SegmentedObject& object = truth.objects[i];
     const cv::Rect box = object.box;
+    const int side = room + cvCeil(box.width * std::max(0.0, options_.floor - 1) / 2);
     const cv::Rect region =
-        cv::Rect(box.x - room, box.y - room, box.width + 2 * room, box.height + 2 * room) & image;
+        cv::Rect(box.x - side, box.y - room, box.width + 2 * side, box.height + 2 * room) & image;
     cv::Mat mask = truth.instances(region) == static_cast<int>(i) + 1;
     if (moves_outlines) mask = moved_outline(mask, shift(region));
+    spoil(mask, box - region.tl(), holes);
     result(region).setTo(object.label, mask & (result(region) == 0));
   }
   add_false_object(result, period);
   return result;
+}
+
+void NetworkErrors::spoil(cv::Mat& mask, const cv::Rect& box, cv::RNG& random) const {
+  const int legs = cvRound(options_.missing_legs * box.height);
+  if (legs > 0) mask.rowRange(box.br().y - legs, mask.rows).setTo(0);
+  for (int i = 0; i < options_.holes; ++i) {
+    const cv::Point centre(random.uniform(box.x, box.br().x), random.uniform(box.y, box.br().y));
+    cv::circle(mask, centre, std::max(1, box.width / 14), 0, cv::FILLED);
+  }
+  const cv::Size floor(cvRound(options_.floor * box.width), box.height / 8);
+  const cv::Point at(box.x + (box.width - floor.width) / 2, box.br().y - floor.height);
+  mask(cv::Rect(at, floor) & cv::Rect({}, mask.size())).setTo(255);
 }
 
 cv::Mat NetworkErrors::outline_shift(cv::Size size, std::uint32_t frame) const {

@@ -13,6 +13,9 @@ struct NetworkErrorOptions {
   double miss_rate = 0.0;              ///< probability that an object is missed
   int boundary = 0;                    ///< px outwards (or inwards, < 0) that outlines lie off
   double wobble = 0.0;                 ///< px up to which outlines lie off at random
+  double missing_legs = 0.0;           ///< share of an object's height that its lower end lacks
+  int holes = 0;                       ///< in each object
+  double floor = 0.0;                  ///< times as wide as the object: floor that is taken for it
   double false_objects = 0.0;          ///< probability of a false object
   std::string false_class = "person";  ///< what it is taken for
   int error_frames = 1;                ///< frames that misses and false objects last
@@ -28,6 +31,7 @@ class NetworkErrors {
 
   bool any() const {
     return options_.miss_rate > 0 || options_.boundary != 0 || options_.wobble > 0 ||
+           options_.missing_legs > 0 || options_.holes > 0 || options_.floor > 0 ||
            options_.false_objects > 0;
   }
   /// Objects are the connected parts of each class; those below `min_object_pixels` are left out.
@@ -36,6 +40,7 @@ class NetworkErrors {
  private:
   cv::RNG generator(std::uint32_t period, std::uint32_t purpose) const;
   cv::Mat outline_shift(cv::Size size, std::uint32_t frame) const;
+  void spoil(cv::Mat& mask, const cv::Rect& box, cv::RNG& random) const;
   void add_false_object(cv::Mat& labels, std::uint32_t period) const;
 
   NetworkErrorOptions options_;
