@@ -92,6 +92,20 @@ TEST_F(Photos, RefinementHelpsTheShippedNetwork) {
   EXPECT_GT(total_iou(options), plain + 0.02);
 }
 
+TEST_F(Photos, TheShippedNetworkIsAsGoodInAMirror) {
+  Options options;
+  options.network.model = shipped_model();
+  options.rule.threshold = 0.45;
+  options.refinement.radius = 8;
+  options.mirror = true;
+  for (const std::string& photo : kPhotos) {
+    OpenCvDnnSegmenter segmenter(options, {});
+    const double as_is = person_overlap(segmenter, photo).iou();
+    const double in_mirror = person_overlap(segmenter, photo).iou();
+    EXPECT_GT(in_mirror, as_is - kTolerance);
+  }
+}
+
 TEST_F(Photos, SquareSelfieNetwork) {
   Options options;
   options.network.model = shared() / "models/selfie_segmentation.onnx";
