@@ -63,7 +63,7 @@ StaticWeights Bayes::decide(const Frame& frame, const Segmentation& segmentation
 
 void Bayes::weigh_surfaces(const Frame& frame, StaticWeights& weights) const {
   const cv::Mat& field = field_.log_odds();
-  const double prior = log_odds(options_.other.prior);
+  const double prior = log_odds(options_.unlabelled.prior);
   cv::Mat cells(field.size(), CV_8U);
   for (int y = 0; y < field.rows; ++y) {
     const auto* evidence = field.ptr<float>(y);

@@ -158,6 +158,13 @@ TEST(Bayes, FindsUnlabelledThings) {
   EXPECT_EQ(weight_at(w.track, 500, 200), 255);
 }
 
+TEST(Bayes, TheOtherClassesSayNothingOfWhatHasNoLabel) {
+  Bayes decision({.other = {.prior = 0.8}}, with_classes());
+  const StaticWeights w = decision.decide(make_frame(), make_labels(5), make_points(kNowhere));
+  EXPECT_EQ(weight_at(w.track, 250, 200), 0) << "a bottle, by its prior";
+  EXPECT_EQ(weight_at(w.track, 500, 200), 255);
+}
+
 TEST(Bayes, UnreliablePointsChangeNothing) {
   MovingPoints points = make_points(kPerson);
   points.reliable = false;

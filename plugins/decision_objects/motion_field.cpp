@@ -25,6 +25,8 @@ void sample_depth(const cv::Mat& depth, cv::Mat& cells) {
 }  // namespace
 
 void MotionFieldOptions::visit(OptionVisitor& v) {
+  v("prior", prior,
+    {.min = 0.001, .max = 0.14, .help = "probability that a surface moves without evidence"});
   v("moving", moving, {.min = 0, .max = 10, .unit = "log-odds", .help = "of a moving point"});
   v("still", still, {.min = 0, .max = 10, .unit = "log-odds", .help = "of a point at rest"});
   v("memory", memory, {.min = 0, .max = 1, .help = "share of evidence kept to the next frame"});

@@ -12,6 +12,7 @@
 namespace stillpoint::decision {
 
 struct MotionFieldOptions {
+  double prior = 0.05;   ///< probability that a surface moves of which nothing is known
   double moving = 1.5;   ///< log-odds that a moving point adds
   double still = 0.7;    ///< log-odds that a point at rest takes away
   double memory = 0.85;  ///< share of a point's evidence kept from frame to frame

@@ -14,7 +14,6 @@ View make_view(const Frame& frame, View recycled) {
   view.time = frame.time;
   view.ids.clear();
   view.instances.release();
-  view.focal_length = frame.camera ? frame.camera->fx / kViewScale : frame.gray.cols / kViewScale;
   const cv::Size size(std::max(1, frame.gray.cols / kViewScale),
                       std::max(1, frame.gray.rows / kViewScale));
   cv::Mat gray;

@@ -15,7 +15,6 @@ inline constexpr int kViewScale = 2;
 struct View {
   std::uint32_t frame = 0;       ///< index
   double time = 0.0;             ///< seconds
-  double focal_length = 0;       ///< px of the view
   std::vector<cv::Mat> pyramid;  ///< of gray values, with derivatives, for optical flow
   cv::Mat depth;                 ///< CV_32FC1, metres, 0 = no measurement
   cv::Mat instances;     ///< CV_8UC1, 1 + index into `ids`, 0 = none; once objects are known

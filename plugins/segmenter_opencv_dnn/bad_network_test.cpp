@@ -75,6 +75,25 @@ TEST_F(BadNetwork, WeightsThatAreNotNumbers) {
               AllOf(HasSubstr("nan.weights"), HasSubstr("not all finite"), HasSubstr("damaged")));
 }
 
+TEST_F(BadNetwork, OutputsThatAreNotNumbers) {
+  const testing::TemporaryFolder folder;
+  Options options;
+  options.network = caffe_network(folder, subsampling(1), {4, 4});
+  options.network.scale = {1e38};
+  options.rule.result = ResultKind::kClassLogits;
+  options.classes = {"background", "cat", "dog"};
+  OpenCvDnnSegmenter segmenter(options, {});
+  Frame frame;
+  frame.bgr = cv::Mat(4, 4, CV_8UC3, cv::Scalar::all(200));
+  try {
+    segmenter.segment(frame);
+    FAIL() << "nothing was thrown";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.fault(), Fault::kStage);
+    EXPECT_THAT(error.what(), HasSubstr("not all finite"));
+  }
+}
+
 TEST_F(BadNetwork, OfAnotherKind) {
   options_.network.model = folder_.write("notes.txt", "text");
   EXPECT_THAT(fault(Fault::kUsage), HasSubstr(".onnx, .caffemodel"));

@@ -90,10 +90,14 @@ Network::Network(const NetworkOptions& options, bool all_outputs)
 std::vector<cv::Mat> Network::run(const cv::Mat& bgr) {
   const QuietOpenCv quiet;
   try {
-    return forward(bgr);
+    std::vector<cv::Mat> outputs = forward(bgr);
+    if (std::ranges::all_of(outputs, [](const cv::Mat& m) { return cv::checkRange(m); }))
+      return outputs;
   } catch (const cv::Exception& exception) {
     throw Error(Fault::kStage, "the network failed: " + reason(exception), file_);
   }
+  throw Error(Fault::kStage, "what the network puts out are not all finite numbers", file_,
+              "check 'scale' and 'mean'");
 }
 
 /// As cv::dnn::blobFromImage, but with a scale per channel, and in a third of its time.

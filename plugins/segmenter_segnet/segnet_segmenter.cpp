@@ -70,11 +70,13 @@ cv::Mat SegnetSegmenter::scores(const cv::Mat& bgr) {
       given.size() == 1 ? cv::Scalar::all(given[0]) : cv::Scalar(given[0], given[1], given[2]);
   const bool swap = options_.channels == ChannelOrder::kRgb;
   try {
-    return network_.scores(
+    cv::Mat scores = network_.scores(
         cv::dnn::blobFromImage(bgr, options_.scale, network_.input_size(), mean, swap, false));
+    if (cv::checkRange(scores)) return scores;
   } catch (const cv::Exception& failure) {
     throw Error(Fault::kStage, "OpenCV DNN failed: " + failure.err, options_.prototxt);
   }
+  throw Error(Fault::kStage, "its scores are not finite", options_.prototxt);
 }
 
 }  // namespace stillpoint

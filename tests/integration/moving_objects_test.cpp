@@ -106,6 +106,7 @@ TEST_F(MovingObjects, OnFailureDecidesWhatAFailingSegmenterDoes) {
   EXPECT_EQ(went_on.exit_code, 0) << went_on.err;
   const auto summary = json_file(out() / "on/summary.json");
   EXPECT_EQ(summary["unlabelled_frames"], 1);
+  EXPECT_EQ(summary["segmentation_failures"], 1);
   EXPECT_THAT(summary["segmentation_failure"].get<std::string>(),
               HasSubstr(files[10].filename().string()));
 }

@@ -41,6 +41,32 @@ TEST(Fingerprint, OfARecordingSeesListsAndImages) {
   EXPECT_NE(recording_fingerprint(folder.path()), repainted);
 }
 
+TEST(Fingerprint, OfInputsSeesNetworksAndLabels) {
+  const TemporaryFolder folder, models;
+  const std::string network = folder.write("nets/own.onnx", "network");
+  folder.write("labels/1.png", "image");
+  folder.write("recording/1.png", "image");
+  const auto print = [&] {
+    const std::string root = folder.path();
+    return input_fingerprint(
+        "source: {path: " + root + "/recording}\nsegmenter:\n  model: " + network +
+            "\n  path: " + root + "/labels\nother: [{model: " + root + "/found.onnx}, wait]\n",
+        folder.path() / "recording", {models.path()});
+  };
+  const std::string before = print();
+  EXPECT_EQ(print(), before);
+  folder.write("recording/1.png", "another image");
+  EXPECT_EQ(print(), before) << "the recording has a fingerprint of its own";
+  folder.write("nets/own.onnx", "another network");
+  const std::string retrained = print();
+  EXPECT_NE(retrained, before);
+  folder.write("labels/2.png", "");
+  const std::string relabelled = print();
+  EXPECT_NE(relabelled, retrained);
+  models.write("found.onnx", "network");
+  EXPECT_NE(print(), relabelled);
+}
+
 TEST(Fingerprint, OfNoRecordingIsAFaultOfTheData) {
   try {
     recording_fingerprint("/no/such/recording");

@@ -13,6 +13,7 @@
 #include "evaluation/trajectory.hpp"
 #include "interrupt.hpp"
 #include "stillpoint/error.hpp"
+#include "stillpoint/model_lookup.hpp"
 #include "study/cell_runner.hpp"
 #include "study/child_process.hpp"
 #include "study/csv_report.hpp"
@@ -111,7 +112,7 @@ class Ablation {
 
   std::vector<PlannedCell> plan_cells(const std::vector<Cell>& cells) {
     std::vector<PlannedCell> plan;
-    std::string recording_print, pipeline;
+    std::string recording_print, pipeline, inputs;
     for (const Cell& cell : cells) {
       const Sequence sequence = at_repeat(study(), study().sequences[cell.sequence], cell.repeat);
       const fs::path recording = recording_of(output_, sequence);
@@ -119,14 +120,18 @@ class Ablation {
           request_of(study(), sequence, study().variants[cell.variant], recording);
       const bool other = plan.empty() || plan.back().recording != recording;
       if (other) recording_print = recording_fingerprint(recording);
-      if (other || cell.repeat == 0) pipeline = load_pipeline(request, registry_).effective_yaml;
+      if (other || cell.repeat == 0) {
+        const PipelineConfig config = load_pipeline(request, registry_);
+        pipeline = config.effective_yaml;
+        inputs = input_fingerprint(pipeline, config.recording, folders_of_models());
+      }
       const int seed = study().seed + cell.repeat;
       const fs::path run = run_folder(output_, study(), cell);
       plan.push_back({.cell = cell,
                       .command = command_of(request, run, seed),
                       .run = run,
                       .recording = recording,
-                      .fingerprint = cell_fingerprint(pipeline, recording_print, seed)});
+                      .fingerprint = cell_fingerprint(pipeline, recording_print + inputs, seed)});
     }
     return plan;
   }
@@ -140,6 +145,15 @@ class Ablation {
       command.insert(command.end(), {"--set", assignment});
     command.insert(command.end(), {"--set", "runtime.seed=" + std::to_string(seed)});
     return command;
+  }
+
+  std::vector<fs::path> folders_of_models() const {
+    std::vector<fs::path> folders = model_folders(nullptr);
+    for (const PluginType& type : registry_.types()) {
+      const fs::path own = fs::path(type.library).parent_path() / "models";
+      if (std::ranges::find(folders, own) == folders.end()) folders.push_back(own);
+    }
+    return folders;
   }
 
   std::string program() const {

@@ -61,6 +61,20 @@ void run_and_print(Stages stages, const PipelineConfig& config, const RunFolder&
   print();
 }
 
+/// What is allowed, but seldom meant.
+void warn_of_labels(const PipelineConfig& config, const RunFolder& folder) {
+  const bool latest = config.segmentation.schedule == SegmentationOptions::Schedule::kLatest;
+  if (latest && config.segmenter && !config.propagator)
+    folder.log(
+        LogLevel::kWarning,
+        "schedule 'latest' without a propagator: labels stay where they were in the frame "
+        "that they belong to; 'propagator: {type: flow_depth}' brings them to the current one");
+  if (!latest && config.segmentation.interval > 1)
+    folder.log(
+        LogLevel::kWarning,
+        "segmentation.interval means nothing with schedule 'wait': every frame is segmented");
+}
+
 void run(const Arguments& arguments) {
   Registry registry;
   const PipelineConfig config = load_pipeline(arguments.request, registry);
@@ -72,6 +86,7 @@ void run(const Arguments& arguments) {
       arguments.output.empty() ? fs::path("out") / config.file.stem() : arguments.output,
       config.effective_yaml, console);
   folder.log(LogLevel::kInfo, "stillpoint " STILLPOINT_VERSION ", " + config.file.string());
+  warn_of_labels(config, folder);
   Stages stages =
       make_stages(config, folder.path(),
                   [&folder](LogLevel level, std::string_view text) { folder.log(level, text); });

@@ -28,6 +28,7 @@ void RunTable::finish(const RunSummary& summary) {
   dropped_ = summary.dropped_frames;
   loops_ = summary.loops_closed;
   unlabelled_ = summary.unlabelled_frames;
+  segmentation_failures_ = summary.segmentation_failures;
   segmentation_failure_ = summary.segmentation_failure;
   wall_seconds_ = summary.wall_seconds;
   cpu_seconds_ = summary.cpu_seconds;
@@ -52,9 +53,10 @@ void RunTable::print_run(std::ostream& stream) const {
   if (source_.skipped > 0)
     stream << format("            %zu image%s skipped as unusable\n", source_.skipped,
                      source_.skipped == 1 ? "" : "s");
-  if (unlabelled_ > 0)
-    stream << format("            %d without labels: ", unlabelled_) << segmentation_failure_
-           << '\n';
+  if (unlabelled_ > 0) stream << format("            %d without labels\n", unlabelled_);
+  if (segmentation_failures_ > 0)
+    stream << format("            the segmenter failed on %d: ", segmentation_failures_)
+           << segmentation_failure_ << '\n';
   stream << format("  map       %zu key frames, %zu landmarks, %d loop%s closed\n", keyframes_,
                    landmarks_, loops_, loops_ == 1 ? "" : "s");
   stream << format("  speed     %.1f frames/s (%.1f s for a recording of %.1f s)\n",

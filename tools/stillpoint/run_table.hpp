@@ -29,6 +29,7 @@ class RunTable final : public Output {
   int dropped_ = 0;
   int loops_ = 0;
   int unlabelled_ = 0;
+  int segmentation_failures_ = 0;
   std::string segmentation_failure_;
   double wall_seconds_ = 0.0;
   double cpu_seconds_ = 0.0;

@@ -1,5 +1,7 @@
 #include "study/fingerprint.hpp"
 
+#include <yaml-cpp/yaml.h>
+
 #include <algorithm>
 #include <array>
 #include <cstdio>
@@ -24,6 +26,34 @@ std::vector<fs::directory_entry> files_below(const fs::path& folder) {
     if (entry.is_regular_file()) files.push_back(entry);
   std::ranges::sort(files);
   return files;
+}
+
+void add_file(Fingerprint& fingerprint, const fs::path& file) {
+  std::error_code ignored;  // a file that cannot be seen is the same again next time
+  fingerprint.add(file.string())
+      .add(std::to_string(fs::file_size(file, ignored)))
+      .add(std::to_string(fs::last_write_time(file, ignored).time_since_epoch().count()));
+}
+
+/// The paths of an effective pipeline are absolute; a network that is not there is found by name.
+void add_named(Fingerprint& fingerprint, const fs::path& named,
+               const std::vector<fs::path>& folders) {
+  std::error_code ignored;
+  if (!named.is_absolute()) return;
+  if (fs::is_regular_file(named, ignored)) return add_file(fingerprint, named);
+  if (fs::is_directory(named, ignored)) {
+    for (const fs::directory_entry& file : files_below(named)) add_file(fingerprint, file.path());
+    return;
+  }
+  for (const fs::path& folder : folders)
+    if (fs::is_regular_file(folder / named.filename(), ignored))
+      add_file(fingerprint, folder / named.filename());
+}
+
+void collect_scalars(const YAML::Node& node, std::vector<std::string>& scalars) {
+  if (node.IsScalar()) scalars.push_back(node.Scalar());
+  for (const auto& child : node)
+    collect_scalars(node.IsMap() ? child.second : YAML::Node(child), scalars);
 }
 
 }  // namespace
@@ -55,19 +85,24 @@ std::string recording_fingerprint(const fs::path& recording) {
   }
 }
 
-std::string cell_fingerprint(const std::string& effective_pipeline, const std::string& recording,
+std::string input_fingerprint(const std::string& effective_pipeline, const fs::path& recording,
+                              const std::vector<fs::path>& folders) {
+  std::vector<std::string> scalars;
+  collect_scalars(YAML::Load(effective_pipeline), scalars);
+  Fingerprint fingerprint;
+  for (const std::string& scalar : scalars)
+    if (scalar != recording.string()) add_named(fingerprint, scalar, folders);
+  return fingerprint.text();
+}
+
+std::string cell_fingerprint(const std::string& effective_pipeline, const std::string& inputs,
                              int seed) {
-  return Fingerprint().add(effective_pipeline).add(recording).add(std::to_string(seed)).text();
+  return Fingerprint().add(effective_pipeline).add(inputs).add(std::to_string(seed)).text();
 }
 
 std::string program_fingerprint(const std::vector<fs::path>& files) {
   Fingerprint fingerprint;
-  for (const fs::path& file : files) {
-    std::error_code ignored;  // a file that cannot be seen is the same again next time
-    fingerprint.add(file.string())
-        .add(std::to_string(fs::file_size(file, ignored)))
-        .add(std::to_string(fs::last_write_time(file, ignored).time_since_epoch().count()));
-  }
+  for (const fs::path& file : files) add_file(fingerprint, file);
   return fingerprint.text();
 }
 

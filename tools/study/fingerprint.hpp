@@ -23,8 +23,14 @@ class Fingerprint {
 /// Images are not read. Throws Error(kData) when the folder cannot be read.
 std::string recording_fingerprint(const std::filesystem::path& recording);
 
-/// Of a run: the complete pipeline, the recording it reads and the seed.
-std::string cell_fingerprint(const std::string& effective_pipeline, const std::string& recording,
+/// Of the files and folders that a pipeline names besides its recording, such as networks and
+/// labels: their sizes and times of change. Networks are also looked for in `folders`, by name.
+std::string input_fingerprint(const std::string& effective_pipeline,
+                              const std::filesystem::path& recording,
+                              const std::vector<std::filesystem::path>& folders);
+
+/// Of a run: the complete pipeline, the fingerprints of what it reads, and the seed.
+std::string cell_fingerprint(const std::string& effective_pipeline, const std::string& inputs,
                              int seed);
 
 /// Of the program, its libraries and plugins: their sizes and times of change.

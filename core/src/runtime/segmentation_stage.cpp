@@ -1,5 +1,6 @@
 #include "stillpoint/runtime/segmentation_stage.hpp"
 
+#include <opencv2/core.hpp>
 #include <string>
 #include <utility>
 
@@ -11,16 +12,32 @@ namespace {
 
 constexpr int kMinObjectPixels = 1;  // segmenters that name no objects have all of them named
 
-Segmentation segment(Segmenter& segmenter, const Frame& frame) {
-  Segmentation found = segmenter.segment(frame);
-  if (!found.known() || found.labels.size() == frame.gray.size()) return found;
+void check_image(const cv::Mat& image, cv::Size frame, const std::string& what) {
+  if (image.type() == CV_8UC1 && image.size() == frame) return;
   const auto text = [](cv::Size size) {
     return std::to_string(size.width) + " x " + std::to_string(size.height);
   };
+  const std::string type = image.type() == CV_8UC1 ? "" : " of " + cv::typeToString(image.type());
   throw Error(Fault::kStage,
-              "the labels have " + text(found.labels.size()) + " pixels, but the frame has " +
-                  text(frame.gray.size()),
-              "", "the segmenter must give labels of the frame's size");
+              what + " have " + text(image.size()) + " pixels" + type + ", but the frame has " +
+                  text(frame),
+              "", "the segmenter must give one byte per pixel of the frame");
+}
+
+Segmentation segment(Segmenter& segmenter, const Frame& frame) {
+  Segmentation found = segmenter.segment(frame);
+  if (!found.known()) return found;
+  check_image(found.labels, frame.gray.size(), "the labels");
+  if (found.instances.empty()) return found;
+  check_image(found.instances, frame.gray.size(), "the instances");
+  double highest = 0;
+  cv::minMaxLoc(found.instances, nullptr, &highest);
+  if (highest > static_cast<double>(found.objects.size()))
+    throw Error(Fault::kStage,
+                "a pixel belongs to object " + std::to_string(static_cast<int>(highest)) + " of " +
+                    std::to_string(found.objects.size()),
+                "", "the segmenter must number its instances from 1, as in its list of objects");
+  return found;
 }
 
 }  // namespace
@@ -51,8 +68,10 @@ SegmentationPtr SegmentationStage::at(const FramePtr& frame) {
   if (options_.schedule == Schedule::kLatest && !network_.threaded()) imitate_latency(frame);
   const Labelled newest = wait_for(frame);
   if (!newest.frame) return nullptr;
-  return std::make_shared<const Segmentation>(propagator_.call(
+  auto labels = std::make_shared<const Segmentation>(propagator_.call(
       "propagate", frame->index, &Propagator::propagate, *newest.labels, *newest.frame, *frame));
+  unlabelled_ += segmenter_.present() && !labels->known() ? 1 : 0;
+  return labels;
 }
 
 FramePtr SegmentationStage::taken(FramePtr frame) {

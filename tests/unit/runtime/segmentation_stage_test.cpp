@@ -1,5 +1,6 @@
 #include "stillpoint/runtime/segmentation_stage.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <latch>
@@ -174,32 +175,45 @@ TEST(SegmentationStage, OnFailureContinueGoesOnWithoutLabelsAndCounts) {
     EXPECT_TRUE(process(*stage, 2)->known());
     stage->end();
     EXPECT_EQ(stage->failures(), 1);
+    EXPECT_EQ(stage->unlabelled(), 1);
     EXPECT_EQ(stage->first_failure(), "segmentation (fake) failed on frame 1: out of ideas");
     EXPECT_FALSE(f.stop.failure());
   }
 }
 
-class SmallLabels final : public Segmenter {
+class Careless final : public Segmenter {
  public:
+  explicit Careless(Segmentation given) : given_(std::move(given)) {}
   ClassNames classes() const override { return named_classes("voc21"); }
-  Segmentation segment(const Frame& frame) override {
-    return {.labels = cv::Mat(3, 4, CV_8UC1, cv::Scalar(15)), .frame = frame.index};
-  }
+  Segmentation segment(const Frame&) override { return given_; }
+
+ private:
+  Segmentation given_;
 };
 
-TEST(SegmentationStage, LabelsOfAnotherSizeAreTheSegmentersFault) {
-  StopSignal stop;
-  TimeLog times;
-  SegmentationStage stage({std::make_shared<SmallLabels>(), "small"}, {}, {}, Mode::kInline, stop,
-                          times);
-  try {
-    process(stage, 0);
-    FAIL() << "no exception";
-  } catch (const StageError& error) {
-    EXPECT_STREQ(error.what(),
-                 "segmentation (small) failed on frame 0: the labels have 4 x 3 pixels, but the "
-                 "frame has 1 x 1; the segmenter must give labels of the frame's size");
-  }
+TEST(SegmentationStage, LabelsThatDoNotFitTheFrameAreTheSegmentersFault) {
+  const auto message = [](Segmentation given) -> std::string {
+    Fixture f;
+    SegmentationStage stage({std::make_shared<Careless>(std::move(given)), "careless"}, {}, {},
+                            Mode::kInline, f.stop, f.times);
+    try {
+      process(stage, 0);
+    } catch (const StageError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  const cv::Mat pixel(1, 1, CV_8UC1, cv::Scalar(1)), small(3, 4, CV_8UC1, cv::Scalar(0));
+  EXPECT_EQ(message({.labels = small}),
+            "segmentation (careless) failed on frame 0: the labels have 4 x 3 pixels, but the "
+            "frame has 1 x 1; the segmenter must give one byte per pixel of the frame");
+  EXPECT_THAT(message({.labels = cv::Mat(1, 1, CV_32FC1, cv::Scalar(1))}),
+              ::testing::HasSubstr("1 x 1 pixels of CV_32FC1"));
+  EXPECT_THAT(message({.labels = pixel, .instances = small}),
+              ::testing::HasSubstr("the instances"));
+  EXPECT_THAT(message({.labels = pixel, .instances = pixel}),
+              ::testing::HasSubstr("belongs to object 1 of 0"));
+  EXPECT_EQ(message({.labels = pixel, .instances = pixel, .objects = {{.label = 1}}}), "");
 }
 
 TEST(SegmentationStage, TimesNameTheirFrame) {

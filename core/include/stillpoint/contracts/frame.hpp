@@ -16,7 +16,7 @@ struct Frame {
   cv::Mat bgr;              ///< CV_8UC3, undistorted
   cv::Mat gray;             ///< CV_8UC1, of bgr
   cv::Mat depth;            ///< CV_32FC1, metres along z, 0 = no measurement; registered to bgr
-  std::shared_ptr<const Camera> camera;
+  std::shared_ptr<const Camera> camera;  ///< never null in a run
 };
 using FramePtr = std::shared_ptr<const Frame>;
 

@@ -57,7 +57,8 @@ struct RunSummary {
   double recorded_seconds = 0.0;
   long long seed = 0;
   std::string mode;                  ///< "inline" or "threaded"
-  int unlabelled_frames = 0;         ///< because the segmenter failed and `on_failure: continue`
+  int unlabelled_frames = 0;         ///< without labels although there is a segmenter
+  int segmentation_failures = 0;     ///< images that it failed on, with `on_failure: continue`
   std::string segmentation_failure;  ///< the message of the first of them
   bool complete = true;              ///< false when the run was stopped or failed
   std::string failure;               ///< the message of the stage that failed, if any

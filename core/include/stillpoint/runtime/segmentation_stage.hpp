@@ -32,8 +32,9 @@ class SegmentationStage {
   /// Ends the thread.
   void end() { network_.end(); }
 
-  /// Frames without labels because the segmenter failed, and what the first failure said; after
-  /// end().
+  /// Frames that had no labels when they were tracked, calls of the segmenter that failed, and what
+  /// the first of these said; after end().
+  int unlabelled() const { return unlabelled_; }
   int failures() const { return failures_; }
   const std::string& first_failure() const { return first_failure_; }
 
@@ -62,7 +63,8 @@ class SegmentationStage {
 
   std::atomic<std::uint32_t> next_ = 0;  // of `latest`: the network takes no frame before it
 
-  int failures_ = 0;  // both of the thread that segments
+  int unlabelled_ = 0;  // of the thread that calls at()
+  int failures_ = 0;    // both of the thread that segments
   std::string first_failure_;
 
   // Of `latest` inline: the frame in the imitated network and the one that waits for it.
