@@ -1,4 +1,4 @@
-// Contract: where frames come from. Thread 1.
+// Contract: where frames come from. A thread of its own when threaded.
 #pragma once
 
 #include <cstddef>
