@@ -46,7 +46,6 @@ OpenCvDnnSegmenter shipped_network() {
                           options.network.model;
   options.rule.threshold = 0.45;
   options.refinement.radius = 8;
-  options.mirror = true;
   return OpenCvDnnSegmenter(options, {});
 }
 
