@@ -96,7 +96,7 @@ std::vector<cv::Mat> Network::run(const cv::Mat& bgr) {
   } catch (const cv::Exception& exception) {
     throw Error(Fault::kStage, "the network failed: " + reason(exception), file_);
   }
-  throw Error(Fault::kStage, "what the network puts out are not all finite numbers", file_,
+  throw Error(Fault::kStage, "the network's outputs are not all finite numbers", file_,
               "check 'scale' and 'mean'");
 }
 

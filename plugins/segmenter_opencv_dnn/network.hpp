@@ -33,8 +33,7 @@ class Network {
   Network(const NetworkOptions& options, bool all_outputs);
 
   /// The outputs for an image of any size, stretched to the input. They are valid until the next
-  /// call. Throws Error(kStage) when OpenCV does, and for outputs
-  /// that are not finite.
+  /// call. Throws Error(kStage) when OpenCV does, and for outputs that are not finite.
   std::vector<cv::Mat> run(const cv::Mat& bgr);
 
   /// Of the trial.
