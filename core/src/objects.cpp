@@ -9,8 +9,6 @@
 namespace stillpoint {
 namespace {
 
-constexpr std::size_t kMostObjects = 255;  // instances are 8-bit
-
 struct Part {
   SegmentedObject object;
   cv::Mat components;  // of its class

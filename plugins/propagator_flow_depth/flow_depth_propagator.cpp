@@ -279,7 +279,7 @@ void FlowDepthPropagator::compose(View& view) {
   view.instances = cv::Mat(view.size(), CV_8UC1, cv::Scalar(0));
   view.ids.clear();
   for (FollowedObject& object : objects_) {
-    if (object.mask.empty() || view.ids.size() == 255) continue;
+    if (object.mask.empty() || view.ids.size() == kMostObjects) continue;
     cv::Mat place = view.instances(object.box);
     object.mask &= place == 0;
     if (cv::countNonZero(object.mask) * kViewScale * kViewScale < options_.min_object_pixels)

@@ -20,10 +20,6 @@ int false_label(const NetworkErrorOptions& options, const ClassNames& classes) {
   return options.false_objects > 0 ? class_id(classes, options.false_class) : 0;
 }
 
-std::string size_text(cv::Size size) {
-  return std::to_string(size.width) + " x " + std::to_string(size.height);
-}
-
 void check_size(const cv::Mat& labels, cv::Size frame, const std::filesystem::path& file) {
   if (labels.size() == frame) return;
   throw Error(Fault::kData,

@@ -9,6 +9,7 @@
 #include "stillpoint/did_you_mean.hpp"
 #include "stillpoint/error.hpp"
 #include "stillpoint/model_lookup.hpp"
+#include "stillpoint/size_text.hpp"
 
 namespace stillpoint {
 namespace {
@@ -78,8 +79,8 @@ Network::Network(const NetworkOptions& options, bool all_outputs)
   } catch (const cv::Exception& exception) {
     throw Error(
         Fault::kData,
-        "the network fails on a black image of " + std::to_string(options_.width) + " x " +
-            std::to_string(options_.height) + ": " + reason(exception),
+        "the network fails on a black image of " + size_text(input_size()) + ": " +
+            reason(exception),
         file_,
         "check 'width' and 'height'; or the file is damaged or uses layers that OpenCV " CV_VERSION
         " does not have");

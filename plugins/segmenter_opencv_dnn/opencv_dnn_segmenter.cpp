@@ -8,17 +8,11 @@
 namespace stillpoint {
 namespace {
 
-constexpr std::size_t kMostObjects = 255;  // instances are 8-bit
-
 std::string shape_text(const cv::Mat& output) {
   std::string text;
   for (int i = 0; i < output.dims; ++i)
     text += (i > 0 ? " x " : "") + std::to_string(output.size[i]);
   return text;
-}
-
-std::string size_text(cv::Size size) {
-  return std::to_string(size.width) + " x " + std::to_string(size.height);
 }
 
 int use_threads(int wanted, const StageContext& context) {

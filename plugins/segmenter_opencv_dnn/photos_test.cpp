@@ -2,26 +2,22 @@
 // larger ones.
 #include <gtest/gtest.h>
 
-#include <cstdlib>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
 #include "segmenter_opencv_dnn/test_networks.hpp"
+#include "support/shared_data.hpp"
 
 namespace stillpoint {
 namespace {
 
 namespace fs = std::filesystem;
+using testing::shared_data;
 using Options = OpenCvDnnSegmenter::Options;
 
 constexpr double kTolerance = 0.02;
 constexpr int kUnclear = 128;  // in the masks drawn by hand
 const std::vector<std::string> kPhotos = {"tum_1341846434.710184", "tum_1341846435.014019"};
-
-fs::path shared() {
-  const char* variable = std::getenv("STILLPOINT_SHARED");
-  return variable ? fs::path(variable) : fs::path(STILLPOINT_SOURCE_DIR) / "../shared";
-}
 
 struct Overlap {
   double both = 0;
@@ -31,9 +27,10 @@ struct Overlap {
 
 Overlap person_overlap(OpenCvDnnSegmenter& segmenter, const std::string& photo) {
   Frame frame;
-  frame.bgr = cv::imread(shared() / "photos" / (photo + ".png"));
+  frame.bgr = cv::imread(shared_data() / "photos" / (photo + ".png"));
   cv::cvtColor(frame.bgr, frame.gray, cv::COLOR_BGR2GRAY);
-  const cv::Mat drawn = cv::imread(shared() / "photos" / (photo + "_gt.png"), cv::IMREAD_GRAYSCALE);
+  const cv::Mat drawn =
+      cv::imread(shared_data() / "photos" / (photo + "_gt.png"), cv::IMREAD_GRAYSCALE);
   const cv::Mat clear = drawn != kUnclear;
   const cv::Mat person = drawn == 255;
   const cv::Mat found =
@@ -44,7 +41,7 @@ Overlap person_overlap(OpenCvDnnSegmenter& segmenter, const std::string& photo) 
 
 Options stride16(const std::string& model, ResultKind result, const std::string& classes) {
   Options options;
-  options.network = {.model = shared() / "models" / model,
+  options.network = {.model = shared_data() / "models" / model,
                      .width = 513,
                      .height = 385,
                      .scale = {1.0 / 128},
@@ -70,9 +67,9 @@ double total_iou(const Options& options) {
 class Photos : public ::testing::Test {
  protected:
   void SetUp() override {
-    if (!fs::exists(shared() / "photos" / (kPhotos[0] + ".png")) ||
-        !fs::exists(shared() / "models"))
-      GTEST_SKIP() << "no photos and models in " << shared();
+    if (!fs::exists(shared_data() / "photos" / (kPhotos[0] + ".png")) ||
+        !fs::exists(shared_data() / "models"))
+      GTEST_SKIP() << "no photos and models in " << shared_data();
   }
 };
 
@@ -108,7 +105,7 @@ TEST_F(Photos, TheShippedNetworkIsAsGoodInAMirror) {
 
 TEST_F(Photos, SquareSelfieNetwork) {
   Options options;
-  options.network.model = shared() / "models/selfie_segmentation.onnx";
+  options.network.model = shared_data() / "models/selfie_segmentation.onnx";
   options.network.width = options.network.height = 256;
   OpenCvDnnSegmenter segmenter(options, {});
   EXPECT_NEAR(person_overlap(segmenter, kPhotos[0]).iou(), 0.75, kTolerance);
@@ -135,8 +132,8 @@ TEST_F(Photos, BodyPix) {
 // Boxes without depth are ellipses: only that both people are found counts.
 TEST_F(Photos, YoloFastest) {
   Options options;
-  options.network.model = shared() / "models/yolo-fastest-1.1-xl.weights";
-  options.network.config = shared() / "models/yolo-fastest-1.1-xl.cfg";
+  options.network.model = shared_data() / "models/yolo-fastest-1.1-xl.weights";
+  options.network.config = shared_data() / "models/yolo-fastest-1.1-xl.cfg";
   options.network.width = options.network.height = 320;
   options.rule.result = ResultKind::kBoxes;
   options.classes = {"coco80"};

@@ -42,15 +42,11 @@ Recording selected_recording(const TumSource::Options& options) {
   return recording;
 }
 
-std::string size_text(int width, int height) {
-  return std::to_string(width) + " x " + std::to_string(height);
-}
-
 void check_size(const cv::Mat& image, const CameraModel& model, const std::filesystem::path& file) {
   if (image.cols == model.width && image.rows == model.height) return;
   throw Error(Fault::kData,
-              "the image has " + size_text(image.cols, image.rows) + " pixels, but camera '" +
-                  model.name + "' has " + size_text(model.width, model.height),
+              "the image has " + size_text(image.size()) + " pixels, but camera '" + model.name +
+                  "' has " + size_text({model.width, model.height}),
               file.string(), "choose the camera of this recording with --camera");
 }
 

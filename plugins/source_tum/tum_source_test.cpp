@@ -3,11 +3,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <cstdlib>
 #include <functional>
 #include <opencv2/imgproc.hpp>
 
 #include "support/recording_writer.hpp"
+#include "support/shared_data.hpp"
 
 namespace stillpoint {
 namespace {
@@ -228,10 +228,7 @@ TEST_F(TumSourceTest, ReportsOnlyTheFirstOfManySkippedImages) {
 }
 
 TEST(TumSourceOnRealData, ReadsFreiburg1Xyz) {
-  const char* shared = std::getenv("STILLPOINT_SHARED");
-  const std::filesystem::path folder =
-      std::filesystem::path(shared ? shared : STILLPOINT_SOURCE_DIR "/../shared") /
-      "data/tum_fr1_xyz";
+  const std::filesystem::path folder = testing::shared_data() / "data/tum_fr1_xyz";
   if (!std::filesystem::exists(folder)) GTEST_SKIP() << folder << " is not there";
 
   StageContext context;

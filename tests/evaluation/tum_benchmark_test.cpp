@@ -1,7 +1,6 @@
 // The same figures as the scripts of the TUM RGB-D benchmark, to every digit they print.
 #include <gtest/gtest.h>
 
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <iostream>
@@ -12,6 +11,7 @@
 
 #include "evaluation/evaluation.hpp"
 #include "evaluation/format.hpp"
+#include "support/shared_data.hpp"
 
 namespace stillpoint::evaluation {
 namespace {
@@ -86,10 +86,7 @@ int compare_all_rows(const std::filesystem::path& folder) {
 }
 
 TEST(TumBenchmark, PublishedTrajectoriesGiveThePrintedDigits) {
-  const char* shared = std::getenv("STILLPOINT_SHARED");
-  const std::filesystem::path folder =
-      std::filesystem::path(shared ? shared : STILLPOINT_SOURCE_DIR "/../shared") /
-      "data/trajectories";
+  const std::filesystem::path folder = testing::shared_data() / "data/trajectories";
   if (!std::filesystem::exists(folder / "expected_tum_tools.csv"))
     GTEST_SKIP() << "no published trajectories at " << folder << "; set STILLPOINT_SHARED";
   EXPECT_GT(compare_all_rows(folder), 0);

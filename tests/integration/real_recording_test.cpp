@@ -1,10 +1,10 @@
 // A recording of a real sensor, when it is there.
 #include <gtest/gtest.h>
 
-#include <cstdlib>
 #include <filesystem>
 #include <string>
 
+#include "support/shared_data.hpp"
 #include "support/simulated_recording.hpp"
 
 namespace stillpoint::testing {
@@ -12,13 +12,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-fs::path shared_data() {
-  const char* variable = std::getenv("STILLPOINT_SHARED");
-  return (variable ? fs::path(variable) : fs::path(STILLPOINT_SOURCE_DIR) / "../shared") / "data";
-}
-
 TEST(RealRecording, IsTrackedToTheEnd) {
-  const fs::path recording = shared_data() / "tum_fr1_xyz";
+  const fs::path recording = shared_data() / "data/tum_fr1_xyz";
   if (!fs::exists(recording)) GTEST_SKIP() << "no recording in " << recording;
   constexpr int kFrames = kSanitized ? 30 : 200;
   const TemporaryFolder folder;

@@ -3,11 +3,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <cstdlib>
-
 #include "inspection/audit_report.hpp"
 #include "stillpoint/error.hpp"
 #include "support/recording_writer.hpp"
+#include "support/shared_data.hpp"
 
 namespace stillpoint::inspection {
 namespace {
@@ -144,10 +143,7 @@ TEST_F(RecordingAuditTest, IsWrittenAsJson) {
 }
 
 TEST(RecordingAuditOnRealData, AuditsFreiburg1Xyz) {
-  const char* shared = std::getenv("STILLPOINT_SHARED");
-  const std::filesystem::path folder =
-      std::filesystem::path(shared ? shared : STILLPOINT_SOURCE_DIR "/../shared") /
-      "data/tum_fr1_xyz";
+  const std::filesystem::path folder = stillpoint::testing::shared_data() / "data/tum_fr1_xyz";
   if (!std::filesystem::exists(folder)) GTEST_SKIP() << folder << " is not there";
   const TimeOffset as_recorded = audit_recording(folder, {}).time_offset;
   const RecordingAudit shifted =

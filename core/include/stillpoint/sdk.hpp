@@ -23,3 +23,4 @@
 #include "stillpoint/point_cloud_file.hpp"
 #include "stillpoint/pose_math.hpp"
 #include "stillpoint/rigid_motion.hpp"
+#include "stillpoint/size_text.hpp"

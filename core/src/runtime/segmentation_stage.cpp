@@ -6,6 +6,7 @@
 
 #include "stillpoint/error.hpp"
 #include "stillpoint/objects.hpp"
+#include "stillpoint/size_text.hpp"
 
 namespace stillpoint {
 namespace {
@@ -14,13 +15,10 @@ constexpr int kMinObjectPixels = 1;  // segmenters that name no objects have all
 
 void check_image(const cv::Mat& image, cv::Size frame, const std::string& what) {
   if (image.type() == CV_8UC1 && image.size() == frame) return;
-  const auto text = [](cv::Size size) {
-    return std::to_string(size.width) + " x " + std::to_string(size.height);
-  };
   const std::string type = image.type() == CV_8UC1 ? "" : " of " + cv::typeToString(image.type());
   throw Error(Fault::kStage,
-              what + " have " + text(image.size()) + " pixels" + type + ", but the frame has " +
-                  text(frame),
+              what + " have " + size_text(image.size()) + " pixels" + type +
+                  ", but the frame has " + size_text(frame),
               "", "the segmenter must give one byte per pixel of the frame");
 }
 
