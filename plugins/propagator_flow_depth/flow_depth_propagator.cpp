@@ -1,9 +1,9 @@
 #include "propagator_flow_depth/flow_depth_propagator.hpp"
 
 #include <algorithm>
-#include <numeric>
 #include <opencv2/imgproc.hpp>
 
+#include "propagator_flow_depth/found_objects.hpp"
 #include "propagator_flow_depth/mask_warp.hpp"
 #include "propagator_flow_depth/object_matching.hpp"
 
@@ -19,13 +19,6 @@ constexpr double kMissedShare = 0.2;  // of an object, to be followed by itself
 cv::Rect grown(cv::Rect box, int by, cv::Size image) {
   return cv::Rect(box.x - by, box.y - by, box.width + 2 * by, box.height + 2 * by) &
          cv::Rect({}, image);
-}
-
-/// A box of a frame in its view, with room for a pixel of background.
-cv::Rect view_box(cv::Rect box, cv::Size view) {
-  return grown({box.x / kViewScale, box.y / kViewScale, box.width / kViewScale + 1,
-                box.height / kViewScale + 1},
-               1, view);
 }
 
 /// The frame's pixels of a view's box.
@@ -123,50 +116,40 @@ const View& FlowDepthPropagator::followed_near(const View& view) const {
 }
 
 void FlowDepthPropagator::learn(const Segmentation& segmentation, const View& view) {
-  Segmentation found = segmentation;
-  if (found.instances.empty()) find_objects(found, options_.min_object_pixels);
-  cv::Mat instances;
-  cv::resize(found.instances, instances, view.size(), 0, 0, cv::INTER_NEAREST);
-  std::vector<cv::Mat> masks;
-  std::vector<DepthLayer> layers;
-  std::vector<cv::Rect> boxes;
-  for (std::size_t i = 0; i < found.objects.size(); ++i) {
-    boxes.push_back(view_box(found.objects[i].box, view.size()));
-    masks.push_back(instances(boxes[i]) == static_cast<int>(i) + 1);
-    layers.push_back(depth_layer(view.depth(boxes[i]), masks[i]));
-  }
-  const auto pixels_of = [](int sum, const SegmentedObject& object) { return sum + object.pixels; };
-  const int all_pixels = std::accumulate(found.objects.begin(), found.objects.end(), 0, pixels_of);
+  const FoundObjects found = found_objects(segmentation, view, options_.min_object_pixels);
+  int all_pixels = 0;
+  for (const FoundObject& object : found.objects) all_pixels += object.pixels;
   const View& before = followed_near(view);
   const Matches matches =
-      match_objects({found.objects, instances, layers, objects_, before.instances, before.ids});
+      match_objects({found.objects, found.instances, objects_, before.instances, before.ids});
 
   std::vector<FollowedObject> next;
   std::vector<bool> seen(objects_.size(), false);
   for (std::size_t i = 0; i < found.objects.size(); ++i) {
-    if (cv::countNonZero(masks[i]) == 0) continue;
+    const FoundObject& sighting = found.objects[i];
     const int known = matches.followed_of[i];
+    if (sighting.pixels == 0) continue;
     FollowedObject object;
     if (known >= 0) {
       const auto f = static_cast<std::size_t>(known);
-      if (auto rest = missed_part(objects_[f], before, instances, view))
+      if (auto rest = missed_part(objects_[f], before, found.instances, view))
         next.push_back(std::move(*rest));
       object = std::move(objects_[f]);
       seen[f] = true;
     } else {
       object.id = next_id_++;
-      object.label = found.objects[i].label;
+      object.label = sighting.label;
     }
-    object.score = found.objects[i].score;
+    object.score = sighting.score;
     object.seen_frame = view.frame;
     object.seen_time = view.time;
     ++object.sightings;
     object.misses = 0;
     // Large objects are worth more points, because they hide more.
-    const double share = static_cast<double>(found.objects[i].pixels) / std::max(1, all_pixels);
+    const double share = static_cast<double>(sighting.pixels) / std::max(1, all_pixels);
     object.points =
         std::clamp(static_cast<int>(kMostPoints * share), kFewestPoints, options_.points);
-    set_reference(object, masks[i], boxes[i], view);
+    set_reference(object, sighting.mask, sighting.box, view);
     next.push_back(std::move(object));
   }
   for (std::size_t f = 0; f < objects_.size(); ++f) {

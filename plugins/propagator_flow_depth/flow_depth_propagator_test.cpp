@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <opencv2/imgproc.hpp>
+#include <set>
 
 namespace stillpoint {
 namespace {
@@ -247,6 +248,42 @@ TEST(FlowDepthPropagator, TouchingObjectsStayApart) {
     EXPECT_GT(overlap(carried.labels, now.labels, kPerson), 0.9) << i;
     EXPECT_GT(overlap(carried.labels, now.labels, kChair), 0.75) << i;
   }
+}
+
+TEST(FlowDepthPropagator, ADeskTakenForAPartOfSomebodyDoesNotTakeTheirPlace) {
+  FlowDepthPropagator propagator({});
+  const Box desk{{0, 150, 320, 90}, 2.8f, 0};  // larger than the person
+  int id = -1;
+  for (int i = 0; i < 10; ++i) {
+    const Scene now(i, {desk, walker(i)});
+    Segmentation found = now.truth();
+    if (i >= 3) {
+      found = {.labels = now.labels.clone(), .frame = now.frame.index};
+      found.labels(desk.area).setTo(kPerson);
+    }
+    const Segmentation carried = propagator.propagate(found, now.frame, now.frame);
+    const int instance = carried.instances.at<std::uint8_t>(100, 90 + 5 * i);
+    ASSERT_GT(instance, 0) << i;
+    if (id < 0) id = carried.objects[0].id;
+    EXPECT_EQ(carried.objects[static_cast<std::size_t>(instance) - 1].id, id) << i;
+    EXPECT_GT(overlap(carried.instances, now.labels / kPerson * instance, instance), 0.9) << i;
+  }
+}
+
+TEST(FlowDepthPropagator, PeopleWithOneMaskStayTwo) {
+  FlowDepthPropagator propagator({});
+  const auto people = [](int i) {
+    return std::vector<Box>{{{200 - 5 * i, 40, 90, 160}, 2.6f, kPerson}, walker(i)};
+  };
+  std::set<int> ids;
+  for (int i = 0; i < 10; ++i) {  // meanwhile, most of the one behind can be seen
+    const Scene now(i, people(i));
+    const Segmentation carried = propagator.propagate(now.truth(), now.frame, now.frame);
+    EXPECT_EQ(carried.objects.size(), 2U) << i;
+    for (const SegmentedObject& object : carried.objects) ids.insert(object.id);
+    EXPECT_GT(overlap(carried.labels, now.labels), 0.9) << i;
+  }
+  EXPECT_EQ(ids.size(), 2U);
 }
 
 TEST(FlowDepthPropagator, DepthMendsAnImperfectMask) {

@@ -54,7 +54,7 @@ Matches match_objects(const MatchInput& input) {
       if (input.found[i].label != input.followed[f].label || overlap == 0) continue;
       of_its_class += overlap;
       const int smaller = std::min(size, static_cast<int>(cv::sum(counts.row(row))[0]));
-      if (overlap >= kOverlap * smaller && as_far(input.found_layers[i], input.followed[f].layer))
+      if (overlap >= kOverlap * smaller && as_far(input.found[i].layer, input.followed[f].layer))
         pairs.push_back({i, f, overlap});
     }
     matches.covered[f] = of_its_class > kCovered * size;

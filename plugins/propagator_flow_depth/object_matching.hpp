@@ -6,15 +6,14 @@
 #include <vector>
 
 #include "propagator_flow_depth/followed_object.hpp"
-#include "stillpoint/contracts/segmentation.hpp"
+#include "propagator_flow_depth/found_objects.hpp"
 
 namespace stillpoint {
 
 /// What was found in a view, and what was followed there.
 struct MatchInput {
-  std::span<const SegmentedObject> found;
-  const cv::Mat& found_instances;            ///< CV_8UC1, 1 + index into `found`; of a view's size
-  std::span<const DepthLayer> found_layers;  ///< of `found`
+  std::span<const FoundObject> found;
+  const cv::Mat& found_instances;  ///< CV_8UC1, 1 + index into `found`; of a view's size
   std::span<const FollowedObject> followed;
   const cv::Mat& followed_instances;  ///< CV_8UC1, 1 + index into `followed_ids`; may be empty
   std::span<const int> followed_ids;

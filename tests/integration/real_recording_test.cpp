@@ -2,8 +2,10 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <map>
 #include <string>
 
+#include "support/pasted_people.hpp"
 #include "support/shared_data.hpp"
 #include "support/simulated_recording.hpp"
 
@@ -26,6 +28,28 @@ TEST(RealRecording, IsTrackedToTheEnd) {
   EXPECT_EQ(summary["coverage"], 1.0);
   EXPECT_EQ(summary["skipped_images"], 0);
   EXPECT_LT(absolute_error(recording, folder.path() / "trajectory.txt"), 0.02);
+}
+
+// Two people who cover up to half of the image.
+TEST(RealRecording, WithRealPeopleIsTrackedAsWell) {
+  if (kSanitized) GTEST_SKIP() << "a network takes minutes under a sanitizer";
+  const fs::path recording = shared_data() / "data/tum_fr1_xyz", photos = shared_data() / "photos";
+  if (!fs::exists(recording) || !fs::exists(photos))
+    GTEST_SKIP() << "no " << recording << " or " << photos;
+  const TemporaryFolder folder;
+  const fs::path with_people = folder.path() / "with_people";
+  paste_people(recording, photos, 1, 250, 150, with_people);
+  std::map<std::string, double> error;
+  for (const std::string pipeline : {"orb_baseline", "stillpoint"}) {
+    const fs::path out = folder.path() / pipeline;
+    const Outcome outcome = call({"run", pipeline, "--dataset", with_people.string(), "--camera",
+                                  "tum_fr1", "-o", out.string(), "--set", "runtime.mode=inline"});
+    ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+    EXPECT_EQ(json_file(out / "summary.json")["coverage"], 1.0);
+    error[pipeline] = absolute_error(with_people, out / "trajectory.txt");
+  }
+  EXPECT_LT(error["stillpoint"], 0.02);
+  EXPECT_GT(error["orb_baseline"], 3 * error["stillpoint"]);
 }
 
 }  // namespace

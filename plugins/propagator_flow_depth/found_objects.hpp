@@ -1,0 +1,35 @@
+// What a result of the network shows, as following needs it.
+#pragma once
+
+#include <opencv2/core/mat.hpp>
+#include <vector>
+
+#include "propagator_flow_depth/depth_layer.hpp"
+#include "propagator_flow_depth/view.hpp"
+#include "stillpoint/contracts/segmentation.hpp"
+
+namespace stillpoint {
+
+/// An object of the result; or a surface of its own before the larger part of one: a mask that has
+/// grown over the desk or the floor still has the person whom it belongs to, and of two people with
+/// one mask the nearer may be the smaller. What lies behind the larger part is taken for
+/// background.
+struct FoundObject {
+  int label = 0;
+  float score = 1.0f;
+  cv::Rect box;      ///< of the view, with a pixel of background, unless the image ends
+  cv::Mat mask;      ///< CV_8UC1, 0 or 255, of `box`
+  int pixels = 0;    ///< of the mask
+  DepthLayer layer;  ///< of the larger part of the mask
+};
+
+struct FoundObjects {
+  std::vector<FoundObject> objects;
+  cv::Mat instances;  ///< CV_8UC1, 1 + index into `objects`, 0 = none; of the view's size
+};
+
+/// Those of the result as it is, then the surfaces. Parts of a class with fewer than `min_pixels`
+/// of the frame are left out where the result names no objects.
+FoundObjects found_objects(const Segmentation& segmentation, const View& view, int min_pixels);
+
+}  // namespace stillpoint
