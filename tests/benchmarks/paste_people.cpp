@@ -6,6 +6,7 @@
 #include "support/pasted_people.hpp"
 
 #include <iostream>
+#include <limits>
 
 int main(int count, char** arguments) {
   if (count != 5 && count != 7) {

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
-#include <limits>
 #include <numbers>
 #include <opencv2/core.hpp>
 #include <opencv2/imgcodecs.hpp>
@@ -83,36 +82,27 @@ class PastedPeople {
   }
 
  private:
+  static constexpr double kWaist = 0.4;    // metres below the first camera
+  static constexpr double kNearest = 0.3;  // metres: who comes nearer is left out
+
   static double wave(double time, double period, double start = 0) {
     return std::sin(2 * std::numbers::pi * time / period + start);
   }
 
   void paste(const CutOut& person, const Stroll& stroll, const Pose& camera_from_first, double time,
              cv::Mat& bgr, cv::Mat& depth) {
-    // Corners of the cut-out in the first camera: it sways about its waist and looks ahead.
-    const double scale = person.height / person.bgr.rows;
-    const bool ahead = wave(time, stroll.period, stroll.start + std::numbers::pi / 2) < 0;
-    const double sway = 0.07 * wave(time, 1.3);
-    const Eigen::Vector3d waist(stroll.reach * wave(time, stroll.period, stroll.start), 0.4,
-                                stroll.depth + 0.07 * wave(time, 11));
-    const auto [w, h] =
-        std::array{static_cast<float>(person.bgr.cols), static_cast<float>(person.bgr.rows)};
-    const std::array<cv::Point2f, 4> corners = {{{0, 0}, {w, 0}, {w, h}, {0, h}}};
+    const auto corners = corners_in_camera(person, stroll, camera_from_first, time);
     std::array<cv::Point2f, 4> pixels;
-    double nearest = std::numeric_limits<double>::max(), z = 0;
+    double z = 0;
     for (std::size_t i = 0; i < 4; ++i) {
-      const double x = (corners[i].x - w / 2) * scale * (ahead ? 1 : -1),
-                   y = (corners[i].y - h) * scale;
-      const Eigen::Vector3d corner =
-          camera_from_first * (waist + Eigen::Vector3d(x * std::cos(sway) - y * std::sin(sway),
-                                                       x * std::sin(sway) + y * std::cos(sway), 0));
-      nearest = std::min(nearest, corner.z());
-      z += corner.z() / 4;
-      const Eigen::Vector2d pixel = camera_.project(corner);
+      if (corners[i].z() < kNearest) return;
+      const Eigen::Vector2d pixel = camera_.project(corners[i]);
       pixels[i] = {static_cast<float>(pixel.x()), static_cast<float>(pixel.y())};
+      z += corners[i].z() / 4;
     }
-    if (nearest < 0.3) return;
-    const cv::Mat homography = cv::getPerspectiveTransform(corners.data(), pixels.data());
+    const auto w = static_cast<float>(person.bgr.cols), h = static_cast<float>(person.bgr.rows);
+    const std::array<cv::Point2f, 4> cut = {{{0, 0}, {w, 0}, {w, h}, {0, h}}};
+    const cv::Mat homography = cv::getPerspectiveTransform(cut.data(), pixels.data());
     const auto warped = [&](const cv::Mat& image) {
       cv::Mat rippled, result;
       cv::remap(image, rippled, ripple(image.size(), time), {}, cv::INTER_LINEAR);
@@ -120,6 +110,23 @@ class PastedPeople {
       return result;
     };
     blend(warped(person.bgr), warped(person.alpha), z - warped(person.relief), bgr, depth);
+  }
+
+  /// Of the cut-out, clockwise from its top left: it sways about its waist and looks ahead.
+  static std::array<Eigen::Vector3d, 4> corners_in_camera(const CutOut& person,
+                                                          const Stroll& stroll,
+                                                          const Pose& camera_from_first,
+                                                          double time) {
+    const double width = person.height * person.bgr.cols / person.bgr.rows;
+    const bool ahead = wave(time, stroll.period, stroll.start + std::numbers::pi / 2) < 0;
+    const double left = (ahead ? -0.5 : 0.5) * width;
+    const Eigen::AngleAxisd sway(0.07 * wave(time, 1.3), Eigen::Vector3d::UnitZ());
+    const Eigen::Vector3d waist(stroll.reach * wave(time, stroll.period, stroll.start), kWaist,
+                                stroll.depth + 0.07 * wave(time, 11));
+    std::array<Eigen::Vector3d, 4> corners = {
+        {{left, -person.height, 0}, {-left, -person.height, 0}, {-left, 0, 0}, {left, 0, 0}}};
+    for (Eigen::Vector3d& corner : corners) corner = camera_from_first * (waist + sway * corner);
+    return corners;
   }
 
   /// Nobody is rigid: every row swings to and fro.
@@ -181,14 +188,17 @@ inline void paste_people(const std::filesystem::path& recording,
       people.emplace(photos, camera, world_from_camera, seed);
       start = time;
     }
-    cv::Mat bgr = cv::imread(recording / color_file), depth;
-    cv::imread(recording / depth_file, cv::IMREAD_UNCHANGED)
-        .convertTo(depth, CV_32F, 1 / kDepthFactor);
+    cv::Mat bgr = cv::imread(recording / color_file);
+    cv::Mat depth = cv::imread(recording / depth_file, cv::IMREAD_UNCHANGED);
+    if (bgr.empty() || depth.empty())
+      throw std::runtime_error("cannot read " + color_file + " or " + depth_file);
+    depth.convertTo(depth, CV_32F, 1 / kDepthFactor);
     people->paste(world_from_camera, time - start, bgr, depth);
     depth.convertTo(depth, CV_16U, kDepthFactor);
     writer.color(time, bgr);
     writer.depth(depth_time, depth);
   }
+  if (!people) throw std::runtime_error("no pairs in " + (recording / "associations.txt").string());
   std::filesystem::copy_file(recording / "groundtruth.txt", out / "groundtruth.txt",
                              std::filesystem::copy_options::overwrite_existing);
 }
