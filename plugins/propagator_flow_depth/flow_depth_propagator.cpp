@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <opencv2/imgproc.hpp>
 
-#include "propagator_flow_depth/found_objects.hpp"
+#include "propagator_flow_depth/mask_fit.hpp"
+#include "propagator_flow_depth/mask_rim.hpp"
 #include "propagator_flow_depth/mask_warp.hpp"
 #include "propagator_flow_depth/object_matching.hpp"
 
@@ -91,6 +92,8 @@ Segmentation FlowDepthPropagator::propagate(const Segmentation& segmentation, co
   return result(now, to);
 }
 
+int FlowDepthPropagator::rim() const { return std::max(1, options_.margin / kViewScale); }
+
 View FlowDepthPropagator::spare_view() {
   View spare;
   while (history_.size() >= kHistory) {
@@ -116,7 +119,8 @@ const View& FlowDepthPropagator::followed_near(const View& view) const {
 }
 
 void FlowDepthPropagator::learn(const Segmentation& segmentation, const View& view) {
-  const FoundObjects found = found_objects(segmentation, view, options_.min_object_pixels);
+  const FoundObjects found =
+      found_objects(segmentation, view, {.min_pixels = options_.min_object_pixels, .rim = rim()});
   int all_pixels = 0;
   for (const FoundObject& object : found.objects) all_pixels += object.pixels;
   const View& before = followed_near(view);
@@ -140,16 +144,7 @@ void FlowDepthPropagator::learn(const Segmentation& segmentation, const View& vi
       object.id = next_id_++;
       object.label = sighting.label;
     }
-    object.score = sighting.score;
-    object.seen_frame = view.frame;
-    object.seen_time = view.time;
-    ++object.sightings;
-    object.misses = 0;
-    // Large objects are worth more points, because they hide more.
-    const double share = static_cast<double>(sighting.pixels) / std::max(1, all_pixels);
-    object.points =
-        std::clamp(static_cast<int>(kMostPoints * share), kFewestPoints, options_.points);
-    set_reference(object, sighting.mask, sighting.box, view);
+    see(object, sighting, static_cast<double>(sighting.pixels) / all_pixels, view);
     next.push_back(std::move(object));
   }
   for (std::size_t f = 0; f < objects_.size(); ++f) {
@@ -158,6 +153,18 @@ void FlowDepthPropagator::learn(const Segmentation& segmentation, const View& vi
     next.push_back(std::move(objects_[f]));
   }
   objects_ = std::move(next);
+}
+
+void FlowDepthPropagator::see(FollowedObject& object, const FoundObject& sighting, double share,
+                              const View& view) const {
+  object.score = sighting.score;
+  object.seen_frame = view.frame;
+  object.seen_time = view.time;
+  ++object.sightings;
+  object.misses = 0;
+  // Large objects are worth more points, because they hide more.
+  object.points = std::clamp(static_cast<int>(kMostPoints * share), kFewestPoints, options_.points);
+  set_reference(object, sighting.mask, sighting.box, view);
 }
 
 /// What was out of view could not be found.
@@ -177,9 +184,7 @@ std::optional<FollowedObject> FlowDepthPropagator::missed_part(const FollowedObj
   cv::Mat rest = carried & (found == 0);
   const double enough = kMissedShare * cv::countNonZero(carried);
   if (cv::countNonZero(rest) < enough) return std::nullopt;
-  const int rim = std::max(1, options_.margin / kViewScale);
-  const cv::Size twice(2 * rim + 1, 2 * rim + 1);
-  cv::morphologyEx(rest, rest, cv::MORPH_OPEN, cv::getStructuringElement(cv::MORPH_RECT, twice));
+  rest = without_rims(rest, rim());
   if (cv::countNonZero(rest) < enough) return std::nullopt;
   FollowedObject part = object;
   part.id = next_id_++;
@@ -218,8 +223,7 @@ void FlowDepthPropagator::bring_tracks_forward() {
 }
 
 void FlowDepthPropagator::place(FollowedObject& object, const View& view) const {
-  const int margin = std::max(1, options_.margin / kViewScale);
-  object.box = search_region(object, margin, view.size());
+  object.box = search_region(object, rim(), view.size());
   if (object.box.empty()) {
     object.mask.release();
     return;
@@ -229,7 +233,7 @@ void FlowDepthPropagator::place(FollowedObject& object, const View& view) const 
   object.layer = object.reference_layer.moved_by(median_motion(object.tracks).depth);
   const cv::Mat depth = view.depth(object.box);
   object.mask = fit_to_depth(predicted, depth, object.layer,
-                             {.margin = margin, .tolerance = options_.depth_tolerance});
+                             {.margin = rim(), .tolerance = options_.depth_tolerance});
   const int measured = cv::countNonZero(predicted & (depth > 0));
   const int kept = cv::countNonZero(object.mask & predicted & (depth > 0));
   object.support = measured > 0 ? static_cast<double>(kept) / measured : 1.0;

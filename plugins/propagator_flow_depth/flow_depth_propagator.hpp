@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "propagator_flow_depth/followed_object.hpp"
-#include "propagator_flow_depth/mask_fit.hpp"
+#include "propagator_flow_depth/found_objects.hpp"
 #include "propagator_flow_depth/view.hpp"
 #include "stillpoint/sdk.hpp"
 
@@ -36,10 +36,13 @@ class FlowDepthPropagator final : public Propagator {
                          const Frame& to) override;
 
  private:
+  int rim() const;  // px of views that outlines may be wrong by
   View spare_view();
   const View& view_of(const Frame& frame);
   const View& followed_near(const View& view) const;
   void learn(const Segmentation& segmentation, const View& view);
+  void see(FollowedObject& object, const FoundObject& sighting, double share,
+           const View& view) const;
   void miss(FollowedObject& object, const View& view) const;
   std::optional<FollowedObject> missed_part(const FollowedObject& object, const View& before,
                                             const cv::Mat& found, const View& view);

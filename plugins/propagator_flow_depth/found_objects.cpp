@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <opencv2/imgproc.hpp>
 
+#include "propagator_flow_depth/mask_rim.hpp"
 #include "stillpoint/objects.hpp"
 
 namespace stillpoint {
 namespace {
 
 constexpr double kSurfaceShare = 0.05;  // of the mask; less is no surface of its own
-constexpr int kRim = 4;                 // px: what is narrower than two of them is none either
 
 /// A box of a frame in its view.
 cv::Rect view_box(cv::Rect box, cv::Size view) {
@@ -25,15 +25,14 @@ cv::Mat inside(const cv::Mat& depth, const DepthLayer& layer) {
 }
 
 /// What of the object lies before its layer, one surface after the other.
-std::vector<FoundObject> surfaces_before(const FoundObject& object, const View& view) {
+std::vector<FoundObject> surfaces_before(const FoundObject& object, const View& view, int rim) {
   std::vector<FoundObject> surfaces;
   if (!object.layer.known()) return surfaces;
   const cv::Mat depth = view.depth(object.box);
   const double enough = kSurfaceShare * object.pixels;
   cv::Mat rest = object.mask & (depth > 0) & (depth < object.layer.near);
   if (cv::countNonZero(rest) < enough) return surfaces;
-  cv::morphologyEx(rest, rest, cv::MORPH_OPEN,
-                   cv::getStructuringElement(cv::MORPH_RECT, {2 * kRim + 1, 2 * kRim + 1}));
+  rest = without_rims(rest, rim);
   while (cv::countNonZero(rest) >= enough) {
     FoundObject surface{.label = object.label, .score = object.score, .box = object.box};
     surface.layer = depth_layer(depth, rest);
@@ -48,9 +47,10 @@ std::vector<FoundObject> surfaces_before(const FoundObject& object, const View& 
 
 }  // namespace
 
-FoundObjects found_objects(const Segmentation& segmentation, const View& view, int min_pixels) {
+FoundObjects found_objects(const Segmentation& segmentation, const View& view,
+                           const FindOptions& options) {
   Segmentation named = segmentation;
-  if (named.instances.empty()) find_objects(named, min_pixels);
+  if (named.instances.empty()) find_objects(named, options.min_pixels);
   FoundObjects found;
   cv::resize(named.instances, found.instances, view.size(), 0, 0, cv::INTER_NEAREST);
   for (std::size_t i = 0; i < named.objects.size(); ++i) {
@@ -62,7 +62,7 @@ FoundObjects found_objects(const Segmentation& segmentation, const View& view, i
     found.objects.push_back(std::move(object));
   }
   for (std::size_t i = 0; i < named.objects.size(); ++i) {
-    for (FoundObject& surface : surfaces_before(found.objects[i], view)) {
+    for (FoundObject& surface : surfaces_before(found.objects[i], view, options.rim)) {
       if (found.objects.size() == kMostObjects) return found;
       found.objects.push_back(std::move(surface));
       found.instances(found.objects.back().box)

@@ -28,8 +28,14 @@ struct FoundObjects {
   cv::Mat instances;  ///< CV_8UC1, 1 + index into `objects`, 0 = none; of the view's size
 };
 
-/// Those of the result as it is, then the surfaces. Parts of a class with fewer than `min_pixels`
-/// of the frame are left out where the result names no objects.
-FoundObjects found_objects(const Segmentation& segmentation, const View& view, int min_pixels);
+struct FindOptions {
+  int min_pixels = 100;  ///< of the frame; smaller parts of a class are no objects, where the
+                         ///< result itself names none
+  int rim = 4;           ///< px of the view that outlines are wrong by: no surfaces of their own
+};
+
+/// Those of the result as it is, then the surfaces.
+FoundObjects found_objects(const Segmentation& segmentation, const View& view,
+                           const FindOptions& options);
 
 }  // namespace stillpoint
