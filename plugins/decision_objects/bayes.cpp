@@ -11,6 +11,8 @@
 namespace stillpoint::decision {
 namespace {
 
+constexpr double kUnlikelyLogOdds = -2;  // of moving, at which a surface has its full weight
+
 std::vector<PointCount> count_points(const Segmentation& segmentation, const MovingPoints& moving) {
   std::vector<PointCount> counts(segmentation.objects.size());
   const cv::Mat& instances = segmentation.instances;
@@ -26,6 +28,23 @@ std::vector<PointCount> count_points(const Segmentation& segmentation, const Mov
   return counts;
 }
 
+/// The evidence of the map on the cells of a motion field; 0 without any.
+cv::Mat on_cells(const MapEvidence& evidence, cv::Size cells) {
+  if (evidence.log_odds.empty()) return cv::Mat::zeros(cells, CV_32F);
+  cv::Mat resized;
+  cv::resize(evidence.log_odds, resized, cells, 0, 0, cv::INTER_NEAREST);
+  return resized;
+}
+
+/// Pixels where the evidence of the map is below a limit, not 0. Single cells may be chance.
+cv::Mat standing(const cv::Mat& from_map, double limit, cv::Size size) {
+  cv::Mat cells = from_map < limit;
+  cv::morphologyEx(cells, cells, cv::MORPH_OPEN, cv::Mat::ones(3, 3, CV_8U));
+  cv::Mat pixels;
+  cv::resize(cells, pixels, size, 0, 0, cv::INTER_NEAREST);
+  return pixels;
+}
+
 }  // namespace
 
 void ClassPolicy::visit(OptionVisitor& v) {
@@ -39,6 +58,12 @@ void Bayes::Options::visit(OptionVisitor& v) {
   v("other", other, {.help = "policy of all other classes"});
   v("objects", objects, {.help = "belief that a labelled object moves"});
   v("unlabelled", unlabelled, {.help = "evidence of single points on surfaces"});
+  v("contradiction", contradiction,
+    {.min = 0,
+     .max = 100,
+     .unit = "log-odds",
+     .help = "of the map for standing still, from which on a surface is none of a class that is "
+             "never mapped"});
   v("margin", margin,
     {.min = 0, .max = 50, .unit = "px", .help = "around what moves that is not used either"});
 }
@@ -52,17 +77,19 @@ Bayes::Bayes(const Options& options, const StageContext& context)
 }
 
 StaticWeights Bayes::decide(const Frame& frame, const Segmentation& segmentation,
-                            const MovingPoints& moving) {
+                            const MovingPoints& moving, const MapEvidence& evidence) {
   StaticWeights weights;
   field_.update(frame, moving);
-  weigh_surfaces(frame, weights);
+  const cv::Mat from_map = on_cells(evidence, field_.log_odds().size());
+  weigh_surfaces(frame, from_map, weights);
   weights.map = weights.track.clone();
-  weigh_objects(frame, segmentation, moving, weights);
+  weigh_objects(frame, segmentation, moving, from_map, weights);
   return weights;
 }
 
-void Bayes::weigh_surfaces(const Frame& frame, StaticWeights& weights) const {
-  const cv::Mat& field = field_.log_odds();
+void Bayes::weigh_surfaces(const Frame& frame, const cv::Mat& from_map,
+                           StaticWeights& weights) const {
+  const cv::Mat field = field_.log_odds() + from_map;
   const double prior = log_odds(options_.unlabelled.prior);
   cv::Mat cells(field.size(), CV_8U);
   for (int y = 0; y < field.rows; ++y) {
@@ -74,7 +101,8 @@ void Bayes::weigh_surfaces(const Frame& frame, StaticWeights& weights) const {
 }
 
 void Bayes::weigh_objects(const Frame& frame, const Segmentation& segmentation,
-                          const MovingPoints& moving, StaticWeights& weights) {
+                          const MovingPoints& moving, const cv::Mat& from_map,
+                          StaticWeights& weights) {
   std::vector<double> priors;
   for (const SegmentedObject& object : segmentation.objects)
     priors.push_back(log_odds(policy_of(object).prior));
@@ -87,9 +115,19 @@ void Bayes::weigh_objects(const Frame& frame, const Segmentation& segmentation,
     const bool never = policy_of(segmentation.objects[i]).map == ClassPolicy::Map::kNever;
     weights.object_moves.push_back(moves);
     if (weight == 255 && !never) continue;
-    const ObjectMask mask = mask_of(segmentation, i, options_.margin);
-    lower(weights.track, frame.gray.size(), mask, weight);
-    lower(weights.map, frame.gray.size(), mask, never ? 0 : weight);
+    const cv::Size size = frame.gray.size();
+    const double outweighed = kUnlikelyLogOdds - beliefs[i].log_odds;
+    const ObjectMask tracked =
+        mask_of(segmentation, i, options_.margin, standing(from_map, outweighed, size));
+    lower(weights.track, size, tracked, weight);
+    if (!never) {
+      lower(weights.map, size, tracked, weight);
+      continue;
+    }
+    const double contradicted = std::min(outweighed, -options_.contradiction);
+    const ObjectMask mapped =
+        mask_of(segmentation, i, options_.margin, standing(from_map, contradicted, size));
+    lower(weights.map, size, mapped, 0);
   }
 }
 
@@ -100,7 +138,7 @@ const ClassPolicy& Bayes::policy_of(const SegmentedObject& object) const {
 /// Full weight while moving is unlikely, none when it is likely.
 std::uint8_t Bayes::weight_of(double log_odds) const {
   constexpr double kUnlikely = 0.15;
-  if (log_odds < -2) return 255;  // most surfaces: not even 0.12
+  if (log_odds < kUnlikelyLogOdds) return 255;  // most surfaces: not even 0.12
   const double p = probability(log_odds);
   const double doubt = (p - kUnlikely) / (options_.objects.moves_above - kUnlikely);
   return static_cast<std::uint8_t>(std::lround(255 * (1 - std::clamp(doubt, 0.0, 1.0))));

@@ -34,6 +34,7 @@ class Bayes final : public Decision {
     ClassPolicy other;
     ObjectMotionOptions objects;
     MotionFieldOptions unlabelled;
+    double contradiction = 5.0;
     int margin = 5;
 
     void visit(OptionVisitor& visitor);
@@ -43,13 +44,13 @@ class Bayes final : public Decision {
   Bayes(const Options& options, const StageContext& context);
 
   StaticWeights decide(const Frame& frame, const Segmentation& segmentation,
-                       const MovingPoints& moving) override;
+                       const MovingPoints& moving, const MapEvidence& evidence) override;
 
  private:
   const ClassPolicy& policy_of(const SegmentedObject& object) const;
-  void weigh_surfaces(const Frame& frame, StaticWeights& weights) const;
+  void weigh_surfaces(const Frame& frame, const cv::Mat& from_map, StaticWeights& weights) const;
   void weigh_objects(const Frame& frame, const Segmentation& segmentation,
-                     const MovingPoints& moving, StaticWeights& weights);
+                     const MovingPoints& moving, const cv::Mat& from_map, StaticWeights& weights);
   std::uint8_t weight_of(double log_odds) const;
 
   Options options_;

@@ -15,7 +15,7 @@ const cv::Rect kNowhere;
 
 TEST(SemanticOnly, RemovesTheListedClassesAndAMargin) {
   SemanticOnly decision({.margin = 5}, with_classes());
-  const StaticWeights w = decision.decide(make_frame(), make_labels(), {});
+  const StaticWeights w = decision.decide(make_frame(), make_labels(), {}, {});
   EXPECT_EQ(weight_at(w.track, 250, 200), 0);
   EXPECT_EQ(weight_at(w.track, kPerson.x - 4, 200), 0);
   EXPECT_EQ(weight_at(w.track, kPerson.x - 8, 200), 255);
@@ -25,7 +25,7 @@ TEST(SemanticOnly, RemovesTheListedClassesAndAMargin) {
 
 TEST(SemanticOnly, LeavesOtherClassesAlone) {
   SemanticOnly decision({}, with_classes());
-  const StaticWeights w = decision.decide(make_frame(), make_labels(9), {});
+  const StaticWeights w = decision.decide(make_frame(), make_labels(9), {}, {});
   EXPECT_EQ(weight_at(w.track, 250, 200), 255);
   EXPECT_EQ(w.object_moves, std::vector{false});
 }
@@ -51,10 +51,10 @@ TEST(Classes, AreCheckedAtTheStart) {
 
 TEST(ObjectVote, WhoWalksIsRemovedWhoStandsIsKept) {
   ObjectVote decision({}, with_classes());
-  const StaticWeights walks = decision.decide(make_frame(), make_labels(), make_points(kPerson));
+  const StaticWeights walks = decision.decide(make_frame(), make_labels(), make_points(kPerson), {});
   EXPECT_EQ(weight_at(walks.track, 250, 200), 0);
   EXPECT_EQ(weight_at(walks.track, 500, 200), 255);
-  const StaticWeights stands = decision.decide(make_frame(), make_labels(), make_points(kNowhere));
+  const StaticWeights stands = decision.decide(make_frame(), make_labels(), make_points(kNowhere), {});
   EXPECT_EQ(weight_at(stands.track, 250, 200), 255);
   EXPECT_EQ(stands.object_moves, std::vector{false});
 }
@@ -62,13 +62,13 @@ TEST(ObjectVote, WhoWalksIsRemovedWhoStandsIsKept) {
 TEST(ObjectVote, NeedsANumberAndAShareOfPoints) {
   const MovingPoints tenth = make_points(kPerson, 0.1);
   EXPECT_FALSE(ObjectVote({.min_moving_points = 3, .min_moving_share = 0.3}, with_classes())
-                   .decide(make_frame(), make_labels(), tenth)
+                   .decide(make_frame(), make_labels(), tenth, {})
                    .object_moves[0]);
   EXPECT_FALSE(ObjectVote({.min_moving_points = 50, .min_moving_share = 0}, with_classes())
-                   .decide(make_frame(), make_labels(), tenth)
+                   .decide(make_frame(), make_labels(), tenth, {})
                    .object_moves[0]);
   EXPECT_TRUE(ObjectVote({.min_moving_points = 3, .min_moving_share = 0.05}, with_classes())
-                  .decide(make_frame(), make_labels(), tenth)
+                  .decide(make_frame(), make_labels(), tenth, {})
                   .object_moves[0]);
 }
 
@@ -78,7 +78,7 @@ TEST(ObjectVote, UnreliablePointsLeaveItToUnsure) {
   using Unsure = ObjectVote::Unsure;
   for (const auto& [unsure, moves] : {std::pair{Unsure::kMoves, true}, {Unsure::kStatic, false}})
     EXPECT_EQ(ObjectVote({.unsure = unsure}, with_classes())
-                  .decide(make_frame(), make_labels(), points)
+                  .decide(make_frame(), make_labels(), points, {})
                   .object_moves[0],
               moves);
 }
@@ -87,7 +87,7 @@ TEST(GeometryOnly, FindsWhatMovesWithoutLabelsUpToItsEdge) {
   GeometryOnly decision({});
   StaticWeights w;
   for (std::uint32_t i = 0; i < 4; ++i)
-    w = decision.decide(make_frame(i), {}, make_points(kPerson));
+    w = decision.decide(make_frame(i), {}, make_points(kPerson), {});
   EXPECT_EQ(weight_at(w.track, 250, 200), 0);
   EXPECT_EQ(weight_at(w.track, 310, 390), 0);
   EXPECT_EQ(weight_at(w.track, kPerson.x - 8, 200), 255);  // the wall right behind
@@ -96,10 +96,10 @@ TEST(GeometryOnly, FindsWhatMovesWithoutLabelsUpToItsEdge) {
 
 TEST(GeometryOnly, ForgetsWhatStandsStillAgain) {
   GeometryOnly decision({});
-  for (std::uint32_t i = 0; i < 10; ++i) decision.decide(make_frame(i), {}, make_points(kPerson));
+  for (std::uint32_t i = 0; i < 10; ++i) decision.decide(make_frame(i), {}, make_points(kPerson), {});
   StaticWeights w;
   for (std::uint32_t i = 10; i < 25; ++i)
-    w = decision.decide(make_frame(i), {}, make_points(kNowhere));
+    w = decision.decide(make_frame(i), {}, make_points(kNowhere), {});
   EXPECT_EQ(weight_at(w.track, 250, 200), 255);
 }
 
@@ -107,16 +107,16 @@ TEST(GeometryOnly, SurvivesImagesWithoutDepthAndPoints) {
   GeometryOnly decision({});
   Frame frame = make_frame();
   frame.depth.setTo(0);
-  EXPECT_EQ(weight_at(decision.decide(frame, {}, {}).track, 10, 10), 255);
-  EXPECT_EQ(decision.decide(frame, {}, make_points(kPerson)).track.size(), frame.gray.size());
+  EXPECT_EQ(weight_at(decision.decide(frame, {}, {}, {}).track, 10, 10), 255);
+  EXPECT_EQ(decision.decide(frame, {}, make_points(kPerson), {}).track.size(), frame.gray.size());
 }
 
 TEST(Bayes, AClassWithAHighPriorIsNotUsedBeforeAnythingIsMeasured) {
   Bayes decision({}, with_classes());
-  const StaticWeights person = decision.decide(make_frame(), make_labels(15), {});
+  const StaticWeights person = decision.decide(make_frame(), make_labels(15), {}, {});
   EXPECT_EQ(weight_at(person.track, 250, 200), 0);
   EXPECT_EQ(person.object_moves, std::vector{true});
-  const StaticWeights chair = Bayes({}, with_classes()).decide(make_frame(), make_labels(9), {});
+  const StaticWeights chair = Bayes({}, with_classes()).decide(make_frame(), make_labels(9), {}, {});
   EXPECT_EQ(weight_at(chair.track, 250, 200), 255);
 }
 
@@ -126,7 +126,7 @@ TEST(Bayes, WhoSitsStillIsTrustedSlowlyAndDistrustedAtOnce) {
   int frames_until_used = 0;
   StaticWeights w;
   do {
-    w = decision.decide(make_frame(i++), make_labels(), make_points(kNowhere));
+    w = decision.decide(make_frame(i++), make_labels(), make_points(kNowhere), {});
     ++frames_until_used;
   } while (weight_at(w.track, 250, 200) == 0 && frames_until_used < 100);
   EXPECT_GT(frames_until_used, 5);
@@ -134,7 +134,7 @@ TEST(Bayes, WhoSitsStillIsTrustedSlowlyAndDistrustedAtOnce) {
   EXPECT_FALSE(w.object_moves[0]);
   EXPECT_EQ(weight_at(w.map, 250, 200), 0) << "people are never mapped";
   for (int k = 0; k < 3; ++k)
-    w = decision.decide(make_frame(i++), make_labels(), make_points(kPerson));
+    w = decision.decide(make_frame(i++), make_labels(), make_points(kPerson), {});
   EXPECT_EQ(weight_at(w.track, 250, 200), 0);
   EXPECT_TRUE(w.object_moves[0]);
 }
@@ -143,7 +143,7 @@ TEST(Bayes, AChairThatIsPushedMoves) {
   Bayes decision({}, with_classes());
   StaticWeights w;
   for (std::uint32_t i = 0; i < 6; ++i)
-    w = decision.decide(make_frame(i), make_labels(9), make_points(kPerson));
+    w = decision.decide(make_frame(i), make_labels(9), make_points(kPerson), {});
   EXPECT_TRUE(w.object_moves[0]);
   EXPECT_EQ(weight_at(w.track, 250, 200), 0);
   EXPECT_EQ(weight_at(w.map, 250, 200), 0);
@@ -153,14 +153,14 @@ TEST(Bayes, FindsUnlabelledThings) {
   Bayes decision({}, with_classes());
   StaticWeights w;
   for (std::uint32_t i = 0; i < 5; ++i)
-    w = decision.decide(make_frame(i), {}, make_points(kPerson));
+    w = decision.decide(make_frame(i), {}, make_points(kPerson), {});
   EXPECT_LT(weight_at(w.track, 250, 200), 60);
   EXPECT_EQ(weight_at(w.track, 500, 200), 255);
 }
 
 TEST(Bayes, TheOtherClassesSayNothingOfWhatHasNoLabel) {
   Bayes decision({.other = {.prior = 0.8}}, with_classes());
-  const StaticWeights w = decision.decide(make_frame(), make_labels(5), make_points(kNowhere));
+  const StaticWeights w = decision.decide(make_frame(), make_labels(5), make_points(kNowhere), {});
   EXPECT_EQ(weight_at(w.track, 250, 200), 0) << "a bottle, by its prior";
   EXPECT_EQ(weight_at(w.track, 500, 200), 255);
 }
@@ -170,7 +170,7 @@ TEST(Bayes, UnreliablePointsChangeNothing) {
   points.reliable = false;
   Bayes decision({}, with_classes());
   StaticWeights w;
-  for (std::uint32_t i = 0; i < 10; ++i) w = decision.decide(make_frame(i), make_labels(9), points);
+  for (std::uint32_t i = 0; i < 10; ++i) w = decision.decide(make_frame(i), make_labels(9), points, {});
   EXPECT_FALSE(w.object_moves[0]);
   EXPECT_EQ(weight_at(w.track, 250, 200), 255);
 }
@@ -181,13 +181,13 @@ TEST(Bayes, BeliefsFollowObjectsByTheirId) {
   labels.objects[0].id = 7;
   StaticWeights w;
   for (std::uint32_t i = 0; i < 60; ++i)
-    w = decision.decide(make_frame(i), labels, make_points(kNowhere));
+    w = decision.decide(make_frame(i), labels, make_points(kNowhere), {});
   EXPECT_FALSE(w.object_moves[0]);
   Segmentation elsewhere = make_labels(15, cv::Rect(450, 100, 120, 300));
   elsewhere.objects[0].id = 7;
-  EXPECT_FALSE(decision.decide(make_frame(60), elsewhere, make_points(kNowhere)).object_moves[0]);
+  EXPECT_FALSE(decision.decide(make_frame(60), elsewhere, make_points(kNowhere), {}).object_moves[0]);
   elsewhere.objects[0].id = 8;
-  EXPECT_TRUE(decision.decide(make_frame(61), elsewhere, make_points(kNowhere)).object_moves[0]);
+  EXPECT_TRUE(decision.decide(make_frame(61), elsewhere, make_points(kNowhere), {}).object_moves[0]);
 }
 
 TEST(Bayes, WhoWasMissedForLongIsJudgedByTheClassAgain) {
@@ -196,9 +196,9 @@ TEST(Bayes, WhoWasMissedForLongIsJudgedByTheClassAgain) {
   const auto moves_after_missing = [&](std::uint32_t missed) -> bool {
     Bayes decision({}, with_classes());
     std::uint32_t i = 0;
-    while (i < 60) decision.decide(make_frame(i++), labels, make_points(kNowhere));
-    while (i < 60 + missed) decision.decide(make_frame(i++), {}, make_points(kNowhere));
-    return decision.decide(make_frame(i), labels, make_points(kNowhere)).object_moves[0];
+    while (i < 60) decision.decide(make_frame(i++), labels, make_points(kNowhere), {});
+    while (i < 60 + missed) decision.decide(make_frame(i++), {}, make_points(kNowhere), {});
+    return decision.decide(make_frame(i), labels, make_points(kNowhere), {}).object_moves[0];
   };
   EXPECT_FALSE(moves_after_missing(3));
   EXPECT_TRUE(moves_after_missing(120));

@@ -13,7 +13,7 @@ void GeometryOnly::Options::visit(OptionVisitor& v) {
 }
 
 StaticWeights GeometryOnly::decide(const Frame& frame, const Segmentation&,
-                                   const MovingPoints& moving) {
+                                   const MovingPoints& moving, const MapEvidence&) {
   field_.update(frame, moving);
   const cv::Mat still = field_.log_odds() <= log_odds(options_.moves_above);
   StaticWeights weights;

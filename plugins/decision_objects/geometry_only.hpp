@@ -18,7 +18,7 @@ class GeometryOnly final : public Decision {
   explicit GeometryOnly(const Options& options) : options_(options), field_(options.field) {}
 
   StaticWeights decide(const Frame& frame, const Segmentation& segmentation,
-                       const MovingPoints& moving) override;
+                       const MovingPoints& moving, const MapEvidence& evidence) override;
 
  private:
   Options options_;

@@ -23,7 +23,7 @@ ObjectVote::ObjectVote(const Options& options, const StageContext& context)
     : options_(options), labels_(select_classes(context.classes, options.labels)) {}
 
 StaticWeights ObjectVote::decide(const Frame& frame, const Segmentation& segmentation,
-                                 const MovingPoints& moving) {
+                                 const MovingPoints& moving, const MapEvidence&) {
   StaticWeights weights;
   for (std::size_t i = 0; i < segmentation.objects.size(); ++i) {
     weights.object_moves.push_back(moves(segmentation, i, moving));

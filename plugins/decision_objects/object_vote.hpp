@@ -27,7 +27,7 @@ class ObjectVote final : public Decision {
   ObjectVote(const Options& options, const StageContext& context);
 
   StaticWeights decide(const Frame& frame, const Segmentation& segmentation,
-                       const MovingPoints& moving) override;
+                       const MovingPoints& moving, const MapEvidence& evidence) override;
 
  private:
   bool moves(const Segmentation& segmentation, std::size_t object,

@@ -14,7 +14,7 @@ SemanticOnly::SemanticOnly(const Options& options, const StageContext& context)
     : options_(options), labels_(select_classes(context.classes, options.labels)) {}
 
 StaticWeights SemanticOnly::decide(const Frame& frame, const Segmentation& segmentation,
-                                   const MovingPoints&) {
+                                   const MovingPoints&, const MapEvidence&) {
   StaticWeights weights;
   for (std::size_t i = 0; i < segmentation.objects.size(); ++i) {
     const bool moves = labels_[static_cast<std::size_t>(segmentation.objects[i].label)];

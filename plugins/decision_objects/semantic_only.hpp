@@ -21,7 +21,7 @@ class SemanticOnly final : public Decision {
   SemanticOnly(const Options& options, const StageContext& context);
 
   StaticWeights decide(const Frame& frame, const Segmentation& segmentation,
-                       const MovingPoints& moving) override;
+                       const MovingPoints& moving, const MapEvidence& evidence) override;
 
  private:
   Options options_;

@@ -4,7 +4,8 @@
 
 namespace stillpoint::decision {
 
-ObjectMask mask_of(const Segmentation& segmentation, std::size_t index, int margin) {
+ObjectMask mask_of(const Segmentation& segmentation, std::size_t index, int margin,
+                   const cv::Mat& except) {
   const cv::Mat& instances = segmentation.instances;
   const cv::Rect image({0, 0}, instances.size());
   const cv::Rect& box = segmentation.objects[index].box;
@@ -13,6 +14,7 @@ ObjectMask mask_of(const Segmentation& segmentation, std::size_t index, int marg
       image;
   if (grown.empty()) return {};
   ObjectMask object{grown, instances(grown) == static_cast<int>(index) + 1};
+  if (!except.empty()) object.mask.setTo(0, except(grown));
   if (margin == 0) return object;
   const int side = 2 * margin + 1;
   cv::dilate(object.mask, object.mask, cv::Mat::ones(side, side, CV_8U));

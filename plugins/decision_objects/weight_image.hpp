@@ -14,8 +14,10 @@ struct ObjectMask {
 };
 
 /// The object's pixels and those up to `margin` px away: outlines are not exact, and a feature's
-/// surroundings count as well.
-ObjectMask mask_of(const Segmentation& segmentation, std::size_t index, int margin);
+/// surroundings count as well. `except` (CV_8UC1 of the image's size, or empty) is not 0 on pixels
+/// that are none of the object's.
+ObjectMask mask_of(const Segmentation& segmentation, std::size_t index, int margin,
+                   const cv::Mat& except = {});
 
 /// Lowers the weights under the mask to at most `weight`. An empty image is full of 255.
 void lower(cv::Mat& weights, cv::Size size, const ObjectMask& object, std::uint8_t weight);

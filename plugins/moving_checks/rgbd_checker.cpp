@@ -98,6 +98,7 @@ MovingPoints RgbdChecker::check(const Frame& previous, const Frame& current) {
     result.points.push_back({.previous = o.match.previous, .current = o.match.current});
   const auto motion = camera_motion(observations, current);
   if (motion) {
+    result.camera_motion = motion->target_from_source;
     judge(observations, *motion, *current.camera, result);
     recheck(observations, motion->target_from_source, current, result);
   }

@@ -14,6 +14,7 @@ constexpr int kMinMotionMatches = 20;  // fewer: search again in a wider window
 constexpr int kMinMotionInliers = 20;  // fewer, or a smaller share: do not trust the prediction
 constexpr double kMinMotionShare = 0.5;
 constexpr double kCompany = 5.0;  // seconds: who has left the image may be back
+constexpr double kNobody = 0.02;  // of the image: less is noise of masks and of depth edges
 
 std::vector<TrackedFeature> describe(const ObservedFrame& frame) {
   std::vector<TrackedFeature> tracked(frame.features->size());
@@ -102,7 +103,7 @@ TrackResult OrbTracker::track(FramePtr, const StaticWeights& weights, const Spar
   hidden_ = unmapped_.empty()
                 ? 0.0
                 : cv::countNonZero(unmapped_) / static_cast<double>(unmapped_.total());
-  if (hidden_ > 0) last_company_ = current_.frame->time;
+  if (hidden_ > kNobody) last_company_ = current_.frame->time;
   if (!first_keyframe_) first_keyframe_ = map.keyframe_id_end();
   visible_.clear();
   if (map.empty())

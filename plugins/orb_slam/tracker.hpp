@@ -56,7 +56,7 @@ class OrbTracker final : public Tracker {
   Relocaliser relocaliser_;
   cv::Mat unmapped_;     // where the last frame's features could have no landmark: not 0, CV_8U
   double hidden_ = 0.0;  // share of the image that `unmapped_` is
-  double last_company_ = -1e300;  // seconds: time of the last frame in which it was more than none
+  double last_company_ = -1e300;  // seconds: of the last frame in which it was more than noise
 
   ObservedFrame current_;
   ObservedFrame last_;                // the last one with a pose

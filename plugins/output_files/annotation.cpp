@@ -17,7 +17,11 @@ const cv::Scalar kMoving(0, 94, 213);
 const cv::Scalar kUnmatched(170, 170, 170);
 const cv::Scalar kMovingMask(40, 60, 255);
 const cv::Scalar kStaticMask(235, 160, 60);
+const cv::Scalar kCameIn(167, 121, 204);
+const cv::Scalar kStands(233, 180, 86);
 const cv::Scalar kText(255, 255, 255);
+
+constexpr double kCertain = 4;  // log-odds of the map check
 
 void tint(cv::Mat& picture, const cv::Mat& mask, const cv::Scalar& colour) {
   cv::Mat tinted;
@@ -38,6 +42,15 @@ void draw_mask(cv::Mat& picture, const FrameReport& report) {
   if (weights.size() == picture.size()) unused = weights < 128;
   tint(picture, labelled & ~unused, kStaticMask);
   tint(picture, unused, kMovingMask);
+}
+
+// What has come in, and what stands where it stood.
+void draw_evidence(cv::Mat& picture, const cv::Mat& log_odds) {
+  if (log_odds.empty()) return;
+  cv::Mat pixels;
+  cv::resize(log_odds, pixels, picture.size(), 0, 0, cv::INTER_NEAREST);
+  tint(picture, pixels > 0, kCameIn);
+  tint(picture, pixels <= -kCertain, kStands);
 }
 
 void draw_moving(cv::Mat& picture, const MovingPoints& moving) {
@@ -89,6 +102,7 @@ void draw_text(cv::Mat& picture, const FrameReport& report) {
 cv::Mat annotated(const FrameReport& report, const AnnotationParts& parts) {
   cv::Mat picture = report.frame.bgr.clone();
   if (parts.mask) draw_mask(picture, report);
+  if (parts.evidence) draw_evidence(picture, report.evidence.log_odds);
   if (parts.features) draw_features(picture, report.result.tracked);
   if (parts.moving) draw_moving(picture, report.moving);
   if (parts.text) draw_text(picture, report);

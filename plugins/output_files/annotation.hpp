@@ -11,6 +11,7 @@ struct AnnotationParts {
   bool features = true;
   bool moving = true;
   bool mask = true;
+  bool evidence = false;  ///< of the map check
   bool text = true;
 };
 

@@ -26,6 +26,8 @@ class ImageOutput final : public Output {
         {.help = "features: green fits the pose, yellow does not, orange moves, grey unmatched"});
       v("moving", parts.moving, {.help = "moving points, with a line from where they were"});
       v("mask", parts.mask, {.help = "labelled things in blue, red what is not tracked on"});
+      v("evidence", parts.evidence,
+        {.help = "of the map check: purple what has come in, light blue what stands still"});
       v("text", parts.text, {.help = "a line with the state of tracking"});
       v("folder", folder, {.help = "name of the folder in the run folder"});
     }

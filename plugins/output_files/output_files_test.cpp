@@ -108,10 +108,13 @@ struct Report {
   Frame frame{.index = 60, .time = 1.5, .bgr = cv::Mat(120, 160, CV_8UC3, cv::Scalar(90, 90, 90))};
   Segmentation segmentation;
   MovingPoints moving;
+  MapEvidence evidence;
   StaticWeights weights;
   TrackResult result;
   std::vector<StageTime> times{{"track", 10.0, 8.0, 60}, {"map_refine", 50.0, 49.0, 48}};
-  FrameReport operator()() const { return {frame, segmentation, moving, weights, result, times}; }
+  FrameReport operator()() const {
+    return {frame, segmentation, moving, evidence, weights, result, times};
+  }
 };
 
 TEST_F(OutputFiles, TimingsAreStreamedAndComplete) {

@@ -75,7 +75,8 @@ struct FakeDecision final : Decision {
     }
   };
   explicit FakeDecision(const Options& o) : options(o) {}
-  StaticWeights decide(const Frame&, const Segmentation&, const MovingPoints&) override {
+  StaticWeights decide(const Frame&, const Segmentation&, const MovingPoints&,
+                       const MapEvidence&) override {
     return {};
   }
   Options options;

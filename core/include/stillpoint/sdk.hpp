@@ -7,6 +7,7 @@
 #include "stillpoint/contracts/local_mapper.hpp"
 #include "stillpoint/contracts/loop_closer.hpp"
 #include "stillpoint/contracts/map_backend.hpp"
+#include "stillpoint/contracts/map_checker.hpp"
 #include "stillpoint/contracts/moving_checker.hpp"
 #include "stillpoint/contracts/output.hpp"
 #include "stillpoint/contracts/propagator.hpp"

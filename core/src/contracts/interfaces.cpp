@@ -8,6 +8,7 @@ Source::~Source() = default;
 Segmenter::~Segmenter() = default;
 Propagator::~Propagator() = default;
 MovingChecker::~MovingChecker() = default;
+MapChecker::~MapChecker() = default;
 Decision::~Decision() = default;
 Tracker::~Tracker() = default;
 LocalMapper::~LocalMapper() = default;

@@ -58,6 +58,7 @@ Stages make_stages(const PipelineConfig& config, const std::filesystem::path& ou
                 .segmenter = std::move(segmenter),
                 .propagator = maker.make<Propagator>(config.propagator),
                 .moving_checker = maker.make<MovingChecker>(config.moving_checker),
+                .map_checker = maker.make<MapChecker>(config.map_checker),
                 .decision = maker.make<Decision>(config.decision),
                 .tracker = maker.make<Tracker>(config.tracker),
                 .local_mapper = maker.make<LocalMapper>(config.local_mapper),

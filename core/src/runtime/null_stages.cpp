@@ -1,5 +1,6 @@
 #include "stillpoint/runtime/null_stages.hpp"
 
+#include <span>
 #include <utility>
 
 namespace stillpoint {
@@ -24,9 +25,16 @@ class NullMovingChecker final : public MovingChecker {
   MovingPoints check(const Frame&, const Frame&) override { return {}; }
 };
 
+class NullMapChecker final : public MapChecker {
+ public:
+  MapEvidence check(const Frame&, std::span<const Pose>, const SparseMap&) override { return {}; }
+  void remember(const TrackedFrame&) override {}
+};
+
 class NullDecision final : public Decision {
  public:
-  StaticWeights decide(const Frame&, const Segmentation&, const MovingPoints&) override {
+  StaticWeights decide(const Frame&, const Segmentation&, const MovingPoints&,
+                       const MapEvidence&) override {
     return {};
   }
 };
@@ -78,6 +86,10 @@ std::shared_ptr<Propagator> make_null_stage() {
 template <>
 std::shared_ptr<MovingChecker> make_null_stage() {
   return std::make_shared<NullMovingChecker>();
+}
+template <>
+std::shared_ptr<MapChecker> make_null_stage() {
+  return std::make_shared<NullMapChecker>();
 }
 template <>
 std::shared_ptr<Decision> make_null_stage() {

@@ -34,7 +34,8 @@ Pipeline::Pipeline(Stages stages, const RuntimeOptions& runtime,
       feed_(std::move(stages.source), runtime, *clock_, stop_, times_),
       segmentation_(std::move(stages.segmenter), std::move(stages.propagator), segmentation,
                     runtime.mode, stop_, times_),
-      motion_(std::move(stages.moving_checker), segmentation_, runtime.mode, stop_, times_),
+      motion_(std::move(stages.moving_checker), std::move(stages.map_checker), segmentation_,
+              runtime.mode, stop_, times_),
       mapping_(std::move(stages.local_mapper), std::move(stages.loop_closer),
                std::move(stages.map_backend), std::move(stages.known_map), runtime.mode, stop_,
                times_) {
@@ -60,17 +61,18 @@ void Pipeline::process(const FramePtr& frame) {
   const std::uint32_t index = frame->index;
   const ScopedTime time(times_, "track_thread", index);
   segmentation_.offer(frame);                                 // thread 2
-  motion_.offer(frame);                                       // moving points, labels of this frame
+  motion_.offer(frame, mapping_.snapshot());                  // moving points, labels of this frame
   tracker_.call("prepare", index, &Tracker::prepare, frame);  // overlaps both
-  const auto [moving, labels] = motion_.at(frame);
+  const auto [moving, evidence, labels] = motion_.at(frame);
   if (!labels) return;  // stopped meanwhile
   const auto weights = std::make_shared<const StaticWeights>(
-      decision_.call("decision", index, &Decision::decide, *frame, *labels, moving));
+      decision_.call("decision", index, &Decision::decide, *frame, *labels, moving, evidence));
   const auto result =
       tracker_.call("track", index, &Tracker::track, frame, *weights, *mapping_.snapshot(),
                     TrackHints{mapping_.waiting(), localise_only_});
   if (result.keyframe) mapping_.push(new_keyframe(*result.keyframe, frame, labels, weights));
-  report({*frame, *labels, moving, *weights, result, times_.take()});
+  motion_.tracked(frame, weights, result, mapping_.snapshot());
+  report({*frame, *labels, moving, evidence, *weights, result, times_.take()});
 }
 
 void Pipeline::report(const FrameReport& report) {

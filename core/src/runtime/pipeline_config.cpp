@@ -29,6 +29,7 @@ constexpr StageSection kStages[] = {
     {"segmenter", &PipelineConfig::segmenter},
     {"propagator", &PipelineConfig::propagator},
     {"moving_checker", &PipelineConfig::moving_checker},
+    {"map_checker", &PipelineConfig::map_checker},
     {"decision", &PipelineConfig::decision},
     {"tracker", &PipelineConfig::tracker},
     {"local_mapper", &PipelineConfig::local_mapper},

@@ -12,8 +12,9 @@ namespace stillpoint {
 namespace {
 
 constexpr const char* kKinds[] = {
-    Source::kKind,  Segmenter::kKind,   Propagator::kKind, MovingChecker::kKind, Decision::kKind,
-    Tracker::kKind, LocalMapper::kKind, LoopCloser::kKind, MapBackend::kKind,    Output::kKind};
+    Source::kKind,     Segmenter::kKind, Propagator::kKind,  MovingChecker::kKind,
+    MapChecker::kKind, Decision::kKind,  Tracker::kKind,     LocalMapper::kKind,
+    LoopCloser::kKind, MapBackend::kKind, Output::kKind};
 
 std::string check_entry(const PluginEntry& entry) {
   if (!entry.kind || !entry.type || !entry.summary || !entry.describe || !entry.create)

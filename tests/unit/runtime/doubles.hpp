@@ -132,7 +132,7 @@ class FakeDecision final : public Decision {
  public:
   explicit FakeDecision(Journal& journal) : journal_(journal) {}
   StaticWeights decide(const Frame& frame, const Segmentation& segmentation,
-                       const MovingPoints&) override {
+                       const MovingPoints&, const MapEvidence&) override {
     journal_.write("decide", frame.index);
     return {.object_moves = std::vector<bool>(segmentation.known() ? 1 : 0, true)};
   }

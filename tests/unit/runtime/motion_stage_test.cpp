@@ -24,14 +24,16 @@ struct Fixture {
       stop,
       times};
   Stage<MovingChecker> checker{std::make_shared<testing::FakeChecker>(journal), "lk"};
+  Stage<MapChecker> map_checker;
+  MapStore::Snapshot map = std::make_shared<const SparseMap>();
 
   std::unique_ptr<MotionStage> make(Mode mode) {
-    return std::make_unique<MotionStage>(checker, segmentation, mode, stop, times);
+    return std::make_unique<MotionStage>(checker, map_checker, segmentation, mode, stop, times);
   }
   FramePtr offer(MotionStage& stage, std::uint32_t index) {
     auto frame = std::make_shared<const Frame>(testing::make_frame(index));
     segmentation.offer(frame);
-    stage.offer(frame);
+    stage.offer(frame, map);
     return frame;
   }
 };

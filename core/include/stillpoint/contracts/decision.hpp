@@ -2,6 +2,7 @@
 #pragma once
 
 #include "stillpoint/contracts/frame.hpp"
+#include "stillpoint/contracts/map_evidence.hpp"
 #include "stillpoint/contracts/moving_points.hpp"
 #include "stillpoint/contracts/segmentation.hpp"
 #include "stillpoint/contracts/static_weights.hpp"
@@ -16,7 +17,7 @@ class STILLPOINT_EXPORT Decision {
 
   /// Called once per frame, in order. Weight images have the frame's size or are empty.
   virtual StaticWeights decide(const Frame& frame, const Segmentation& segmentation,
-                               const MovingPoints& moving) = 0;
+                               const MovingPoints& moving, const MapEvidence& evidence) = 0;
 };
 
 }  // namespace stillpoint

@@ -2,7 +2,10 @@
 #pragma once
 
 #include <opencv2/core/types.hpp>
+#include <optional>
 #include <vector>
+
+#include "stillpoint/pose_math.hpp"
 
 namespace stillpoint {
 
@@ -19,6 +22,8 @@ struct MovingPoints {
   /// False when the check could not tell (first frame, too few points, degenerate motion); nothing
   /// may be decided from such points.
   bool reliable = false;
+  /// The camera's own motion, current_from_previous, where the check has found it.
+  std::optional<Pose> camera_motion;
 };
 
 }  // namespace stillpoint

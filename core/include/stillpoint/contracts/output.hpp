@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "stillpoint/contracts/frame.hpp"
+#include "stillpoint/contracts/map_evidence.hpp"
 #include "stillpoint/contracts/moving_points.hpp"
 #include "stillpoint/contracts/segmentation.hpp"
 #include "stillpoint/contracts/source.hpp"
@@ -29,6 +30,7 @@ struct FrameReport {
   const Frame& frame;
   const Segmentation& segmentation;
   const MovingPoints& moving;
+  const MapEvidence& evidence;
   const StaticWeights& weights;
   const TrackResult& result;
   /// What ended since the last report: stages of this frame, of other threads, and the outputs of

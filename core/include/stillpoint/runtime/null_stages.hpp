@@ -8,7 +8,8 @@
 
 namespace stillpoint {
 
-/// No labels; no propagation; no moving points; full weights; no tracking; a map of key frames and
+/// No labels; no propagation; no moving points; no evidence of the map; full
+/// weights; no tracking; a map of key frames and
 /// the landmarks they come with; no loops; no dense map.
 template <class Interface>
 std::shared_ptr<Interface> make_null_stage() {
@@ -21,6 +22,8 @@ template <>
 std::shared_ptr<Propagator> make_null_stage();
 template <>
 std::shared_ptr<MovingChecker> make_null_stage();
+template <>
+std::shared_ptr<MapChecker> make_null_stage();
 template <>
 std::shared_ptr<Decision> make_null_stage();
 template <>

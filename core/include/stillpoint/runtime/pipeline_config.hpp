@@ -89,6 +89,7 @@ struct PipelineConfig {
   SegmentationOptions segmentation;
   std::optional<StageSpec> propagator;
   std::optional<StageSpec> moving_checker;
+  std::optional<StageSpec> map_checker;
   std::optional<StageSpec> decision;
   std::optional<StageSpec> tracker;
   std::optional<StageSpec> local_mapper;

@@ -30,6 +30,7 @@ struct Stages {
   Stage<Segmenter> segmenter;
   Stage<Propagator> propagator;
   Stage<MovingChecker> moving_checker;
+  Stage<MapChecker> map_checker;
   Stage<Decision> decision;
   Stage<Tracker> tracker;
   Stage<LocalMapper> local_mapper;

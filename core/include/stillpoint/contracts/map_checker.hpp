@@ -1,0 +1,46 @@
+// Contract: does what is seen stand where earlier frames saw it? (DynaSLAM's multi-view geometry; not
+// in the DS-SLAM paper.) Beside thread 1.
+#pragma once
+
+#include <memory>
+#include <span>
+
+#include "stillpoint/contracts/frame.hpp"
+#include "stillpoint/contracts/map_evidence.hpp"
+#include "stillpoint/contracts/sparse_map.hpp"
+#include "stillpoint/contracts/static_weights.hpp"
+#include "stillpoint/export.hpp"
+
+namespace stillpoint {
+
+/// A frame that has been tracked, with what was decided about it.
+struct TrackedFrame {
+  FramePtr frame;
+  std::shared_ptr<const StaticWeights> weights;
+  KeyFrameId reference = kNoId;
+  Pose reference_from_camera = Pose::Identity();
+  Pose world_from_camera = Pose::Identity();  ///< at the time of tracking
+
+  /// Its present world_from_camera: it moves with its reference, which may not be in the map yet.
+  Pose pose_in(const SparseMap& map) const {
+    return reference < map.keyframe_id_end()
+               ? map.world_from_keyframe(reference) * reference_from_camera
+               : world_from_camera;
+  }
+};
+
+class STILLPOINT_EXPORT MapChecker {
+ public:
+  static constexpr const char* kKind = "map_checker";
+  virtual ~MapChecker();
+
+  /// Before a frame is tracked. `guesses` are poses it may have (world_from_camera), the likeliest
+  /// first, at least one.
+  virtual MapEvidence check(const Frame& frame, std::span<const Pose> guesses,
+                            const SparseMap& map) = 0;
+
+  /// After each frame that has been tracked, in order, before the next one is checked.
+  virtual void remember(const TrackedFrame& frame) = 0;
+};
+
+}  // namespace stillpoint

@@ -1,0 +1,34 @@
+// Map check `depth_consistency`: the depth image against the surfaces that earlier frames saw.
+#pragma once
+
+#include "map_checks/surface_verdicts.hpp"
+#include "map_checks/view_alignment.hpp"
+
+namespace stillpoint {
+
+/// Nearer than a surface that was seen through here: something has come in. Where it was, from
+/// another viewpoint or after a second: it stands still. Needs neither labels nor a motion that most
+/// of the image agrees on (after DynaSLAM's multi-view geometry, Bescos et al., RA-L 2018, III-B).
+class DepthConsistency final : public MapChecker {
+ public:
+  struct Options {
+    MemoryOptions memory;
+    VerdictOptions verdict;
+    double min_agreement = 0.3;
+
+    void visit(OptionVisitor& visitor);
+  };
+
+  explicit DepthConsistency(const Options& options)
+      : options_(options), memory_(options.memory) {}
+
+  MapEvidence check(const Frame& frame, std::span<const Pose> guesses,
+                    const SparseMap& map) override;
+  void remember(const TrackedFrame& frame) override { memory_.add(frame); }
+
+ private:
+  Options options_;
+  ViewMemory memory_;
+};
+
+}  // namespace stillpoint

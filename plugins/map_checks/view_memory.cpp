@@ -1,0 +1,101 @@
+#include "map_checks/view_memory.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <numbers>
+#include <opencv2/imgproc.hpp>
+
+namespace stillpoint {
+namespace {
+
+constexpr int kUsed = 128;  // weight from which a surface was used
+
+/// 255 in the cells of which a weight image uses the middle.
+cv::Mat used_cells(const cv::Mat& weight, cv::Size size) {
+  if (weight.empty()) return {size, CV_8U, cv::Scalar(255)};
+  cv::Mat cells;
+  cv::resize(weight, cells, size, 0, 0, cv::INTER_NEAREST);
+  return cells >= kUsed;
+}
+
+cv::Mat trust_in(const StaticWeights& weights, cv::Size size) {
+  const cv::Mat tracked = used_cells(weights.track, size);
+  cv::Mat trust(size, CV_8U, cv::Scalar(kUntrusted));
+  trust.setTo(kTracked, tracked);
+  trust.setTo(kMapped, tracked & used_cells(weights.map, size));
+  return trust;
+}
+
+View make_view(const TrackedFrame& tracked) {
+  const Frame& frame = *tracked.frame;
+  View view{.tracked = tracked, .time = frame.time, .camera = CellCamera(*frame.camera)};
+  view.depth = sample_depth(frame.depth);
+  view.bounds = depth_bounds(view.depth);
+  view.normals = surface_normals(view.depth, view.camera);
+  view.trust = trust_in(*tracked.weights, view.depth.size());
+  view.world_from_camera = tracked.world_from_camera;
+  view.tracked.frame = nullptr;
+  view.tracked.weights = nullptr;
+  return view;
+}
+
+}  // namespace
+
+void MemoryOptions::visit(OptionVisitor& v) {
+  v("views", views, {.min = 2, .max = 100, .help = "earlier frames that are kept"});
+  v("interval", interval,
+    {.min = 0, .max = 60, .unit = "s", .help = "after which a frame is kept in any case"});
+  v("angle", angle,
+    {.min = 0.1, .max = 180, .unit = "degrees", .help = "from all that are kept: kept at once"});
+  v("distance", distance,
+    {.min = 0.001, .max = 10, .unit = "m", .help = "from all that are kept: kept at once"});
+}
+
+void ViewMemory::add(const TrackedFrame& frame) {
+  if (!worth_keeping(frame)) return;
+  if (views_.size() == static_cast<std::size_t>(options_.views)) drop_one();
+  views_.insert(views_.begin(), make_view(frame));
+}
+
+const std::vector<View>& ViewMemory::views_in(const SparseMap& map) {
+  for (View& view : views_) view.world_from_camera = view.tracked.pose_in(map);
+  return views_;
+}
+
+bool ViewMemory::worth_keeping(const TrackedFrame& frame) const {
+  if (views_.empty()) return true;
+  if (frame.frame->time - views_.front().time >= options_.interval) return true;
+  return std::ranges::all_of(views_, [&](const View& view) {
+    return novelty(view.world_from_camera, frame.world_from_camera) >= 1;
+  });
+}
+
+/// How far two viewpoints are apart: 1 is a new one.
+double ViewMemory::novelty(const Pose& a, const Pose& b) const {
+  const Pose apart = a.inverse() * b;
+  const double degrees = rotation_angle(apart) * 180 / std::numbers::pi;
+  return degrees / options_.angle + apart.translation().norm() / options_.distance;
+}
+
+/// The one whose neighbour in time says most of what it says: near to it for its age, and seen from
+/// the same place.
+void ViewMemory::drop_one() {
+  std::size_t spare = 1;
+  double least = std::numeric_limits<double>::max();
+  const double now = views_.front().time;
+  for (std::size_t i = 1; i + 1 < views_.size(); ++i) {
+    const View& view = views_[i];
+    const double age = now - view.time + options_.interval;
+    for (const std::size_t j : {i - 1, i + 1}) {
+      const View& other = views_[j];
+      const double difference = std::abs(view.time - other.time) / age +
+                                novelty(view.world_from_camera, other.world_from_camera);
+      if (difference >= least) continue;
+      least = difference;
+      spare = i;
+    }
+  }
+  views_.erase(views_.begin() + static_cast<std::ptrdiff_t>(spare));
+}
+
+}  // namespace stillpoint

@@ -1,0 +1,57 @@
+// The frames that later ones are compared with.
+#pragma once
+
+#include <vector>
+
+#include "map_checks/depth_cells.hpp"
+
+namespace stillpoint {
+
+/// How far a surface was trusted when it was seen.
+enum Trust : std::uint8_t {
+  kUntrusted = 0,  ///< it moved, as far as was known
+  kTracked = 1,    ///< it stood still, but is of a kind that is not mapped
+  kMapped = 2
+};
+
+/// What a tracked frame saw.
+struct View {
+  TrackedFrame tracked;  ///< without images
+  double time = 0.0;     ///< seconds
+  CellCamera camera;
+  cv::Mat depth;    ///< CV_32FC1, see sample_depth
+  cv::Mat bounds;   ///< CV_32FC2, see depth_bounds
+  cv::Mat normals;  ///< CV_32FC3, see surface_normals
+  cv::Mat trust;    ///< CV_8UC1, a Trust
+  Pose world_from_camera = Pose::Identity();  ///< at present
+};
+
+struct MemoryOptions {
+  int views = 10;           ///< kept
+  double interval = 0.33;   ///< s, after which a frame is kept in any case
+  double angle = 10.0;      ///< degrees, and
+  double distance = 0.15;   ///< m from every view kept: then a frame is kept at once
+
+  void visit(OptionVisitor& visitor);
+};
+
+/// Few views for much: dense in the time just past, ever sparser before, and of different
+/// viewpoints.
+class ViewMemory {
+ public:
+  explicit ViewMemory(const MemoryOptions& options) : options_(options) {}
+
+  void add(const TrackedFrame& frame);
+  /// Moves all views to their poses in `map`. Newest first.
+  const std::vector<View>& views_in(const SparseMap& map);
+
+ private:
+  bool worth_keeping(const TrackedFrame& frame) const;
+  double novelty(const Pose& a, const Pose& b) const;
+  void drop_one();
+
+  MemoryOptions options_;
+  std::vector<View> views_;  // newest first
+};
+
+}  // namespace stillpoint
