@@ -17,7 +17,7 @@
 
 #include "stillpoint/contracts/camera.hpp"
 #include "support/recording_writer.hpp"
-#include "support/true_pose.hpp"
+#include "evaluation/trajectory.hpp"
 
 namespace stillpoint::testing {
 

@@ -1,0 +1,22 @@
+// The light of a photograph and that of a scene.
+#pragma once
+
+#include <opencv2/core.hpp>
+
+#include "people/layer.hpp"
+
+namespace stillpoint::people {
+
+/// Sum and number of the pixels around somebody: what light they stand in.
+struct Surroundings {
+  cv::Scalar sum = cv::Scalar::all(0);
+  double count = 0;
+
+  void add(const Layer& layer, const cv::Mat& bgr);
+};
+
+/// What a person's colours, photographed in `own_light`, are multiplied with to belong there. Light
+/// and colour of a background are only in part those of the lamps, so neither is taken over in full.
+cv::Scalar gain_for(const Surroundings& surroundings, const cv::Scalar& own_light);
+
+}  // namespace stillpoint::people
