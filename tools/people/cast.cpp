@@ -91,7 +91,7 @@ void Cast::light_figures(const RecordingPlan& plan) {
     for (std::size_t k = 0; k < figures_.size(); ++k) around[k].add(layers[k], bgr);
   }
   for (std::size_t k = 0; k < figures_.size(); ++k)
-    figures_[k].relight(gain_for(around[k], figures_[k].light()));
+    figures_[k].relight(gain_for(around[k], figures_[k].cut()));
 }
 
 Pose Cast::level_from_camera(double time) const {

@@ -37,7 +37,7 @@ cv::Mat filled_depth(const cv::Mat& depth) {
   cv::Mat guess;
   cv::resize(cv::countNonZero(coarse) < static_cast<int>(coarse.total()) ? filled_depth(coarse)
                                                                          : coarse,
-             guess, calm.size(), 0, 0, cv::INTER_NEAREST);
+             guess, calm.size(), 0, 0, cv::INTER_LINEAR);
   guess.copyTo(calm, calm == 0);
   return calm;
 }

@@ -47,6 +47,19 @@ void add_grain(cv::Mat& bgr, double enlargement, int seed) {
   bgr += three(grain).mul(bgr + cv::Scalar::all(12));
 }
 
+double highlights_of(const cv::Mat& photo, const cv::Mat& mask) {
+  cv::Mat gray, counts;
+  cv::cvtColor(photo, gray, cv::COLOR_BGR2GRAY);
+  const float range[] = {0, 256};
+  const float* ranges = range;
+  const int bins = 256, channel = 0;
+  cv::calcHist(&gray, 1, &channel, mask, counts, 1, &bins, &ranges);
+  double left = 0.1 * cv::countNonZero(mask);
+  int value = 255;
+  while (value > 0 && (left -= counts.at<float>(value)) > 0) --value;
+  return value;
+}
+
 cv::Mat relief_of(const cv::Mat& mask) {
   cv::Mat relief;
   cv::distanceTransform(mask, relief, cv::DIST_L2, cv::DIST_MASK_5);
@@ -59,7 +72,7 @@ cv::Mat relief_of(const cv::Mat& mask) {
 CutOut cut_out(const cv::Mat& photo, const cv::Mat& mask, int seed) {
   const cv::Rect box = cv::boundingRect(mask);
   const double enlargement = std::max(1.0, static_cast<double>(kHeight) / box.height);
-  CutOut person{.light = cv::mean(photo, mask == 0)};
+  CutOut person{.light = cv::mean(photo, mask == 0), .highlights = highlights_of(photo, mask)};
   cv::Mat bgr, drawn, inner;
   cv::resize(photo(box), bgr, {}, enlargement, enlargement, cv::INTER_LANCZOS4);
   cv::resize(mask(box), drawn, bgr.size(), 0, 0, cv::INTER_CUBIC);
@@ -83,7 +96,7 @@ std::vector<CutOut> levels_of(CutOut cut) {
   std::vector<CutOut> levels = {std::move(cut)};
   while (levels.back().alpha.rows > 60) {
     const CutOut& above = levels.back();
-    CutOut half{.light = above.light};
+    CutOut half{.light = above.light, .highlights = above.highlights};
     cv::resize(above.bgr, half.bgr, {}, 0.5, 0.5, cv::INTER_AREA);
     cv::resize(above.alpha, half.alpha, {}, 0.5, 0.5, cv::INTER_AREA);
     cv::resize(above.relief, half.relief, {}, 0.5, 0.5, cv::INTER_AREA);

@@ -13,6 +13,7 @@ struct CutOut {
   cv::Mat alpha;     ///< CV_32FC1, 0 outside … 1
   cv::Mat relief;    ///< CV_32FC1, heights of the person towards the camera
   cv::Scalar light;  ///< mean colour of the photograph around the person
+  double highlights = 0;  ///< the brightest tenth of the person is brighter, 0…255
 };
 
 /// `photo`: CV_8UC3; `mask`: CV_8UC1, 255 on the person, whose box is cut out. Small photographs are

@@ -22,7 +22,7 @@ class Figure {
   /// The same without colours.
   Layer shape_from(const Pose& level_from_camera, const Rays& rays, double time) const;
 
-  const cv::Scalar& light() const { return levels_.front().light; }
+  const CutOut& cut() const { return levels_.front(); }
   /// Multiplies all colours.
   void relight(const cv::Scalar& gain);
 

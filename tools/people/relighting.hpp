@@ -3,6 +3,7 @@
 
 #include <opencv2/core.hpp>
 
+#include "people/cut_out.hpp"
 #include "people/layer.hpp"
 
 namespace stillpoint::people {
@@ -15,8 +16,9 @@ struct Surroundings {
   void add(const Layer& layer, const cv::Mat& bgr);
 };
 
-/// What a person's colours, photographed in `own_light`, are multiplied with to belong there. Light
-/// and colour of a background are only in part those of the lamps, so neither is taken over in full.
-cv::Scalar gain_for(const Surroundings& surroundings, const cv::Scalar& own_light);
+/// What a person's colours are multiplied with to belong there. Brightness and colour of a background
+/// are only in part those of the lamps, so neither is taken over in full, and bright clothes are not
+/// washed out.
+cv::Scalar gain_for(const Surroundings& surroundings, const CutOut& person);
 
 }  // namespace stillpoint::people
