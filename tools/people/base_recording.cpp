@@ -5,6 +5,7 @@
 #include <fstream>
 #include <opencv2/imgcodecs.hpp>
 
+#include "simulation/mesh.hpp"
 #include "stillpoint/error.hpp"
 
 namespace stillpoint::people {
@@ -58,9 +59,26 @@ cv::Mat BaseRecording::depth(const BasePair& pair) const {
   return metres;
 }
 
+/// What the depth image shows between the two heights of the plan.
+cv::Mat BaseRecording::desk_of(const BasePair& pair) const {
+  const cv::Mat z = depth(pair);
+  cv::Mat desk = cv::Mat::zeros(z.size(), CV_8U);
+  const Pose pose = world_from_camera(pair.depth_time);
+  for (int y = 0; y < z.rows; ++y) {
+    for (int x = 0; x < z.cols; ++x) {
+      const cv::Vec2f& ray = rays_.at(y, x);
+      const double height = (pose * (z.at<float>(y, x) * Eigen::Vector3d(ray[0], ray[1], 1))).z();
+      const bool on_desk = z.at<float>(y, x) > 0 && height >= plan_.desk[0] && height <= plan_.desk[1];
+      if (on_desk) desk.at<std::uint8_t>(y, x) = simulation::kDiningTable;
+    }
+  }
+  return desk;
+}
+
 cv::Mat BaseRecording::labels(const BasePair& pair) const {
   const fs::path file = fs::path(plan_.folder) / "labels" / pair.color.filename();
   if (fs::exists(file)) return read_image(file, cv::IMREAD_GRAYSCALE);
+  if (!plan_.desk.empty()) return rays_.rectified(desk_of(pair)).clone();
   const Camera ideal = camera_.undistorted();
   return cv::Mat::zeros(ideal.height, ideal.width, CV_8U);
 }

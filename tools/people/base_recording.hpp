@@ -39,6 +39,8 @@ class BaseRecording {
   cv::Mat labels(const BasePair& pair) const;
 
  private:
+  cv::Mat desk_of(const BasePair& pair) const;
+
   BasePlan plan_;
   CameraModel camera_;
   Rays rays_;

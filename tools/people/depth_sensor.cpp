@@ -53,6 +53,7 @@ float measured(float z, float noise) {
 }  // namespace
 
 void measure(const cv::Mat& z, std::uint32_t seed, std::uint32_t frame, cv::Mat& depth) {
+  if (cv::countNonZero(z) == 0) return;
   cv::Mat inner;
   cv::erode(z > 0, inner, cv::Mat::ones(3, 3, CV_8U));
   const cv::Mat noise = disparity_noise(z.size(), seed, frame);

@@ -76,21 +76,40 @@ Figure::Board Figure::board_at(const Pose& level_from_camera, const Stance& stan
           .normal = camera_from_level * away};
 }
 
-/// Where in the standing picture (in its heights, across from its middle and up) the place `across`
-/// and `up` (m) of the person as they are now comes from. Legs swing when they walk; what is above
-/// the knees is never quite still, hands least of all.
-Vector2d Figure::own_place(double across, double up, const Stance& stance, double time) const {
-  const double height = plan_.height;
-  double x = across / height;
-  const double own_up = unfolded(up / height, stance.seated);
-  const double leg = std::clamp((kHips - own_up) / kHips, 0.0, 1.0);
-  x /= 1 + 0.3 * stance.walking * leg * std::sin(stance.stride + rhythm_);
-  x += 0.03 * stance.walking * leg * std::sin(2 * stance.stride);
-  const double upper = std::clamp((own_up - kKnees) / 0.2, 0.0, 1.0);
-  const double hands = std::clamp(std::abs(x) / 0.12, 0.0, 1.0);
-  x += (0.003 + 0.004 * stance.walking) * upper * std::sin(9 * own_up + 4 * time + rhythm_);
-  const double lift = 0.012 * upper * hands * std::sin(3.1 * time + rhythm_ + (x > 0 ? 2 : 0));
-  return {stance.to_the_left ? -x : x, own_up + lift};
+/// Who walks swings the legs; what is above the knees is never quite still, hands least of all.
+struct Figure::Swing {
+  double height;  // m
+  double seated;
+  bool mirrored;
+  double spread;      // of the legs, relative
+  double shift;       // of the feet, heights
+  double ripple;      // heights
+  double phase;       // rad
+  double left, right;  // lift of the hands, heights
+
+  /// Where in the standing picture (in its heights, across from its middle and up) the place
+  /// `across` and `up` (m) of the person as they are now comes from.
+  Vector2d own_place(double across, double up) const {
+    const double own_up = unfolded(up / height, seated);
+    const double leg = std::clamp((kHips - own_up) / kHips, 0.0, 1.0);
+    double x = across / height / (1 + spread * leg) + shift * leg;
+    const double upper = std::clamp((own_up - kKnees) / 0.2, 0.0, 1.0);
+    x += ripple * upper * std::sin(9 * own_up + phase);
+    const double hands = std::clamp(std::abs(x) / 0.12, 0.0, 1.0);
+    return {mirrored ? -x : x, own_up + upper * hands * (x > 0 ? right : left)};
+  }
+};
+
+Figure::Swing Figure::swing_at(const Stance& stance, double time) const {
+  return {.height = plan_.height,
+          .seated = stance.seated,
+          .mirrored = stance.to_the_left,
+          .spread = 0.3 * stance.walking * std::sin(stance.stride + rhythm_),
+          .shift = 0.03 * stance.walking * std::sin(2 * stance.stride),
+          .ripple = 0.003 + 0.004 * stance.walking,
+          .phase = 4 * time + rhythm_,
+          .left = 0.012 * std::sin(3.1 * time + rhythm_),
+          .right = 0.012 * std::sin(3.1 * time + rhythm_ + 2)};
 }
 
 /// Which place of which cut-out every pixel of the layer sees.
@@ -135,6 +154,7 @@ cv::Rect Figure::rough_box(const Board& board, const Rays& rays) const {
 Figure::Traced Figure::trace(const Pose& level_from_camera, const Rays& rays, double time) const {
   const Stance stance = stance_at(plan_, time);
   const Board board = board_at(level_from_camera, stance, time);
+  const Swing swing = swing_at(stance, time);
   const double distance = board.normal.dot(board.foot);
   if (distance < kNearest) return {};
   const cv::Rect box = rough_box(board, rays);
@@ -151,7 +171,7 @@ Figure::Traced Figure::trace(const Pose& level_from_camera, const Rays& rays, do
       const bool off = at.z() < kNearest || at.y() < 0 || at.y() > 1.05 * plan_.height ||
                        std::abs(at.x()) > kWidest * plan_.height;
       if (off) continue;
-      const Vector2d own = own_place(at.x(), at.y(), stance, time);
+      const Vector2d own = swing.own_place(at.x(), at.y());
       traced.map.at<cv::Vec2f>(y - box.y, x - box.x) = {
           static_cast<float>(own.x() * scale + 0.5 * cut.alpha.cols - 0.5),
           static_cast<float>((1 - own.y()) * scale - 0.5)};

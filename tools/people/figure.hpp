@@ -28,13 +28,14 @@ class Figure {
 
  private:
   struct Board;
+  struct Swing;
   struct Traced;
   Traced trace(const Pose& level_from_camera, const Rays& rays, double time) const;
   Layer shape_of(const Traced& traced) const;
   const CutOut& level_for(double distance, double focal) const;
   cv::Rect rough_box(const Board& board, const Rays& rays) const;
   Board board_at(const Pose& level_from_camera, const Stance& stance, double time) const;
-  Eigen::Vector2d own_place(double across, double up, const Stance& stance, double time) const;
+  Swing swing_at(const Stance& stance, double time) const;
 
   PersonPlan plan_;
   std::vector<CutOut> levels_;

@@ -49,6 +49,10 @@ void BasePlan::visit(OptionVisitor& v) {
   v("floor", floor, {.unit = "m", .help = "height of the floor in the world of the ground truth"});
   v("blur", blur, {.min = 0, .max = 5, .unit = "px", .help = "standard deviation: its sharpness"});
   v("exposure", exposure, {.min = 0, .max = 0.1, .unit = "s", .help = "of a colour image"});
+  v("desk", desk,
+    {.unit = "m",
+     .help = "lowest, highest: what lies between is labelled a table where there are no labels"});
+  v.require(desk.empty() || desk.size() == 2, "desk takes two heights");
 }
 
 void RecordingPlan::visit(OptionVisitor& v) {

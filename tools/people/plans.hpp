@@ -41,6 +41,8 @@ struct BasePlan {
   double floor = 0;        ///< m, its height in the world of groundtruth.txt, whose z points upwards
   double blur = 0.7;       ///< px, standard deviation: how sharp the recording is
   double exposure = 0.01;  ///< s
+  std::vector<double> desk;  ///< m, lowest and highest of what is labelled a table where the base
+                             ///< has no labels, in the world of groundtruth.txt; empty: nothing
 
   void visit(OptionVisitor& v);
 };
