@@ -38,7 +38,7 @@ TEST(RealRecording, WithRealPeopleIsTrackedAsWell) {
     GTEST_SKIP() << "no " << recording << " or " << photos;
   const TemporaryFolder folder;
   const fs::path with_people = folder.path() / "with_people";
-  paste_people(recording, photos, 1, 250, 150, with_people);
+  paste_two_people(recording, photos, 250, 150, with_people);
   std::map<std::string, double> error;
   for (const std::string pipeline : {"orb_baseline", "stillpoint"}) {
     const fs::path out = folder.path() / pipeline;
