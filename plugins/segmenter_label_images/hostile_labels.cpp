@@ -36,8 +36,7 @@ cv::Mat HostileLabels::apply(const cv::Mat& labels, std::uint32_t period) const 
   cv::Mat result = kind_ == Kind::kNone ? labels.clone() : cv::Mat::zeros(labels.size(), CV_8UC1);
   if (kind_ == Kind::kBlobs) {
     cv::RNG random = frame_random(seed_, Purpose::kBlobs, period);
-    for (int i = 0; i < kBlobs; ++i)
-      result.setTo(false_label_, random_blob(labels.size(), random));
+    for (int i = 0; i < kBlobs; ++i) result.setTo(false_label_, random_blob(labels.size(), random));
   }
   if (kind_ == Kind::kNone)
     for (const int label : mistaken_) result.setTo(false_label_, labels == label);

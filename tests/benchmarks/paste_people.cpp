@@ -44,8 +44,8 @@ int run(const std::vector<std::string>& arguments) {
   const testing::PeopleList list = testing::load_people_list(arguments.at(0));
   const fs::path out = arguments.at(1);
   const int threads = arguments.size() > 2 ? std::stoi(arguments[2]) : 2;
-  const std::set<std::string> names(arguments.begin() + std::min<std::ptrdiff_t>(3, std::ssize(arguments)),
-                                    arguments.end());
+  const std::set<std::string> names(
+      arguments.begin() + std::min<std::ptrdiff_t>(3, std::ssize(arguments)), arguments.end());
   const people::Sources sources = sources_of(list);
   std::cout << sources.people.size() << " people, " << sources.pictures.size() << " pictures\n";
   fs::create_directories(out);

@@ -7,14 +7,12 @@
 namespace stillpoint::people {
 namespace {
 
-constexpr double kHeight = 1.8;    // m
+constexpr double kHeight = 1.8;  // m
 constexpr double kDistance = 4;  // m
 constexpr double kRelief = 0.07 * kHeight;
 
 /// Stands still at x = 0.
-PersonPlan standing() {
-  return {.walk = {0, 0, kDistance, 10, 0, kDistance}, .height = kHeight};
-}
+PersonPlan standing() { return {.walk = {0, 0, kDistance, 10, 0, kDistance}, .height = kHeight}; }
 
 class FigureTest : public ::testing::Test {
  protected:

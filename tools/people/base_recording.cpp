@@ -23,7 +23,8 @@ std::vector<BasePair> read_pairs(const fs::path& folder) {
     pairs.push_back(pair);
   }
   if (pairs.empty())
-    throw Error(Fault::kData, "there are no pairs of images", (folder / "associations.txt").string(),
+    throw Error(Fault::kData, "there are no pairs of images",
+                (folder / "associations.txt").string(),
                 "expected lines 'time rgb/FILE time depth/FILE'");
   return pairs;
 }
@@ -68,7 +69,8 @@ cv::Mat BaseRecording::desk_of(const BasePair& pair) const {
     for (int x = 0; x < z.cols; ++x) {
       const cv::Vec2f& ray = rays_.at(y, x);
       const double height = (pose * (z.at<float>(y, x) * Eigen::Vector3d(ray[0], ray[1], 1))).z();
-      const bool on_desk = z.at<float>(y, x) > 0 && height >= plan_.desk[0] && height <= plan_.desk[1];
+      const bool on_desk =
+          z.at<float>(y, x) > 0 && height >= plan_.desk[0] && height <= plan_.desk[1];
       if (on_desk) desk.at<std::uint8_t>(y, x) = simulation::kDiningTable;
     }
   }

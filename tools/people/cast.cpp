@@ -16,8 +16,7 @@ namespace fs = std::filesystem;
 cv::Rect part_of(const PersonPlan& plan, cv::Size photo) {
   if (plan.part.empty()) return {{}, photo};
   const std::vector<double>& p = plan.part;
-  return cv::Rect(cvRound(p[0]), cvRound(p[1]), cvRound(p[2]), cvRound(p[3])) &
-         cv::Rect({}, photo);
+  return cv::Rect(cvRound(p[0]), cvRound(p[1]), cvRound(p[2]), cvRound(p[3])) & cv::Rect({}, photo);
 }
 
 CutOut named_person(const PersonPlan& plan, int seed) {
@@ -63,8 +62,7 @@ std::vector<BasePair> pairs_of(const RecordingPlan& plan, const BaseRecording& b
 
 Cast::Cast(const RecordingPlan& plan, const BaseRecording& base, const Sources& sources)
     : base_(base), start_(pairs_of(plan, base).front().time) {
-  level_from_world_ =
-      world_from_level(base.world_from_camera(start_), base.plan().floor).inverse();
+  level_from_world_ = world_from_level(base.world_from_camera(start_), base.plan().floor).inverse();
   const std::vector<PersonPhoto> drawn = draw_people(sources.people, plan.people, plan.seed);
   auto next = drawn.begin();
   int seed = 1000 * plan.seed;
@@ -79,7 +77,8 @@ Cast::Cast(const RecordingPlan& plan, const BaseRecording& base, const Sources& 
   light_figures(plan);
 }
 
-/// By some frames from all of the recording; their light stays the same then, as that of a room does.
+/// By some frames from all of the recording; their light stays the same then, as that of a room
+/// does.
 void Cast::light_figures(const RecordingPlan& plan) {
   constexpr std::size_t kLooks = 12;
   std::vector<Surroundings> around(figures_.size());
@@ -116,8 +115,8 @@ std::vector<Layer> Cast::seen_at(double time) const {
   for (const Thing& thing : things_)
     layers.push_back(thing.seen_from(pose, base_.rays(), time - start_));
   const double exposure = base_.plan().exposure;
-  const Pose camera_at_end_from_begin = level_from_camera(time + exposure / 2).inverse() *
-                                        level_from_camera(time - exposure / 2);
+  const Pose camera_at_end_from_begin =
+      level_from_camera(time + exposure / 2).inverse() * level_from_camera(time - exposure / 2);
   for (Layer& layer : layers)
     smear(layer, camera_at_end_from_begin, base_.rays(), base_.plan().blur);
   return layers;

@@ -14,7 +14,7 @@ namespace stillpoint::people {
 
 /// Where the people and the pictures on things come from.
 struct Sources {
-  std::vector<PersonPhoto> people;             ///< held_out_people()
+  std::vector<PersonPhoto> people;              ///< held_out_people()
   std::vector<std::filesystem::path> pictures;  ///< for the sides of things
 };
 

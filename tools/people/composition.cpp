@@ -7,8 +7,8 @@
 namespace stillpoint::people {
 namespace {
 
-constexpr float kOwns = 0.5F;      // share of a pixel from which it is a layer's
-constexpr double kMargin = 0.02;   // m by which the scene may seem nearer without hiding somebody
+constexpr float kOwns = 0.5F;     // share of a pixel from which it is a layer's
+constexpr double kMargin = 0.02;  // m by which the scene may seem nearer without hiding somebody
 
 /// Farthest layers first.
 std::vector<std::size_t> far_to_near(const std::vector<Layer>& layers) {
@@ -35,9 +35,9 @@ cv::Mat filled_depth(const cv::Mat& depth) {
   coarse.setTo(0, coarse_weight < 1e-3);
   if (cv::countNonZero(coarse) == 0) return calm;
   cv::Mat guess;
-  cv::resize(cv::countNonZero(coarse) < static_cast<int>(coarse.total()) ? filled_depth(coarse)
-                                                                         : coarse,
-             guess, calm.size(), 0, 0, cv::INTER_LINEAR);
+  cv::resize(
+      cv::countNonZero(coarse) < static_cast<int>(coarse.total()) ? filled_depth(coarse) : coarse,
+      guess, calm.size(), 0, 0, cv::INTER_LINEAR);
   guess.copyTo(calm, calm == 0);
   return calm;
 }

@@ -81,7 +81,8 @@ CutOut cut_out(const cv::Mat& photo, const cv::Mat& mask, int seed) {
   // Outlines drawn by hand take in a seam of the background.
   const int seam = std::max(1, cvRound(1.2 * enlargement));
   cv::copyMakeBorder(drawn, drawn, seam, seam, seam, seam, cv::BORDER_CONSTANT, 0);
-  cv::erode(drawn, inner, cv::getStructuringElement(cv::MORPH_ELLIPSE, {2 * seam + 1, 2 * seam + 1}));
+  cv::erode(drawn, inner,
+            cv::getStructuringElement(cv::MORPH_ELLIPSE, {2 * seam + 1, 2 * seam + 1}));
   inner = inner(cv::Rect({seam, seam}, bgr.size())).clone();
   bgr.convertTo(person.bgr, CV_32F);
   spread_colours(person.bgr, inner);

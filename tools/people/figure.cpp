@@ -66,7 +66,8 @@ Figure::Board Figure::board_at(const Pose& level_from_camera, const Stance& stan
   Vector3d away = foot - level_from_camera.translation();
   away.z() = 0;
   away.normalize();
-  const double sway = 0.012 * std::sin(2.1 * time + rhythm_) + 0.02 * stance.walking * std::sin(stance.stride);
+  const double sway =
+      0.012 * std::sin(2.1 * time + rhythm_) + 0.02 * stance.walking * std::sin(stance.stride);
   const Eigen::AngleAxisd leaning(sway, away);
   const Eigen::Matrix3d camera_from_level = level_from_camera.linear().transpose();
   const Vector3d up = leaning * Vector3d::UnitZ();
@@ -81,10 +82,10 @@ struct Figure::Swing {
   double height;  // m
   double seated;
   bool mirrored;
-  double spread;      // of the legs, relative
-  double shift;       // of the feet, heights
-  double ripple;      // heights
-  double phase;       // rad
+  double spread;       // of the legs, relative
+  double shift;        // of the feet, heights
+  double ripple;       // heights
+  double phase;        // rad
   double left, right;  // lift of the hands, heights
 
   /// Where in the standing picture (in its heights, across from its middle and up) the place

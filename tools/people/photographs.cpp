@@ -30,8 +30,8 @@ bool shows_one_person(const cv::Mat& mask) {
   }
   if (all == 0 || largest < kOnePiece * all) return false;
   const cv::Rect box = cv::boundingRect(mask);
-  const bool whole = box.y > 1 && box.br().y < mask.rows - 1 && box.x > 1 &&
-                     box.br().x < mask.cols - 1;
+  const bool whole =
+      box.y > 1 && box.br().y < mask.rows - 1 && box.x > 1 && box.br().x < mask.cols - 1;
   return whole && box.height >= kSmallest && box.height >= kSlender * box.width;
 }
 
@@ -106,8 +106,8 @@ std::vector<PersonPhoto> draw_people(const std::vector<PersonPhoto>& photos,
     if (fit.empty())
       throw Error(Fault::kData, "there are too few held-out people with such clothes", "",
                   "name folders with more photographs");
-    const std::size_t chosen = fit[static_cast<std::size_t>(
-        random.uniform(0, static_cast<int>(fit.size())))];
+    const std::size_t chosen =
+        fit[static_cast<std::size_t>(random.uniform(0, static_cast<int>(fit.size())))];
     drawn.push_back(left[chosen]);
     left.erase(left.begin() + static_cast<std::ptrdiff_t>(chosen));
   }

@@ -9,8 +9,8 @@
 
 namespace stillpoint::people {
 
-/// Every tenth image of a source, the first one among them, is for measuring; the training takes the
-/// others. In order of name.
+/// Every tenth image of a source, the first one among them, is for measuring; the training takes
+/// the others. In order of name.
 std::vector<std::filesystem::path> held_out_images(const std::filesystem::path& folder);
 
 struct PersonPhoto {

@@ -22,10 +22,12 @@ void PersonPlan::visit(OptionVisitor& v) {
      .required = true});
   v("again", again, {.help = "the walk begins anew when it is over"});
   v("sits", sits, {.unit = "s", .help = "from, to, from, to, …"});
-  v("height", height, {.min = 0.2, .max = 2.3, .unit = "m", .help = "of what the photograph shows"});
+  v("height", height,
+    {.min = 0.2, .max = 2.3, .unit = "m", .help = "of what the photograph shows"});
   v("elevation", elevation,
     {.min = 0, .max = 3, .unit = "m", .help = "of the photograph's lower end above the floor"});
-  v("photo", photo, {.help = "this person; the mask is beside it, as NAME_gt.png", .is_path = true});
+  v("photo", photo,
+    {.help = "this person; the mask is beside it, as NAME_gt.png", .is_path = true});
   v("part", part, {.unit = "px", .help = "x, y, width, height of the photograph; empty: all"});
   v.require(is_timetable(walk, 3), "walk takes time, x, y, …, and times that grow");
   v.require(sits.size() % 2 == 0, "sits takes pairs from, to");
@@ -43,7 +45,8 @@ void ThingPlan::visit(OptionVisitor& v) {
 
 void BasePlan::visit(OptionVisitor& v) {
   v("folder", folder,
-    {.help = "recording with associations.txt and groundtruth.txt", .required = true,
+    {.help = "recording with associations.txt and groundtruth.txt",
+     .required = true,
      .is_path = true});
   v("camera", camera, {.help = "camera file; empty: camera.yaml in the folder", .is_path = true});
   v("floor", floor, {.unit = "m", .help = "height of the floor in the world of the ground truth"});

@@ -19,7 +19,7 @@ void Surroundings::add(const Layer& layer, const cv::Mat& bgr) {
 }
 
 cv::Scalar gain_for(const Surroundings& surroundings, const CutOut& person) {
-  constexpr double kTaken = 0.4;       // exponent
+  constexpr double kTaken = 0.4;      // exponent
   constexpr double kBrightest = 225;  // that highlights become
   if (surroundings.count == 0) return cv::Scalar::all(1);
   cv::Scalar gain;

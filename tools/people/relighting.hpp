@@ -16,9 +16,9 @@ struct Surroundings {
   void add(const Layer& layer, const cv::Mat& bgr);
 };
 
-/// What a person's colours are multiplied with to belong there. Brightness and colour of a background
-/// are only in part those of the lamps, so neither is taken over in full, and bright clothes are not
-/// washed out.
+/// What a person's colours are multiplied with to belong there. Brightness and colour of a
+/// background are only in part those of the lamps, so neither is taken over in full, and bright
+/// clothes are not washed out.
 cv::Scalar gain_for(const Surroundings& surroundings, const CutOut& person);
 
 }  // namespace stillpoint::people

@@ -28,7 +28,8 @@ cv::Mat line_kernel(cv::Point2d way) {
   const cv::Point2d unit = way * (1 / std::max(1e-9, std::hypot(way.x, way.y)));
   for (int i = 0; i < steps; ++i) {
     const cv::Point2d at = unit * (length * (static_cast<double>(i) / (steps - 1) - 0.5));
-    kernel.at<float>(reach + cvRound(at.y), reach + cvRound(at.x)) += 1.0F / static_cast<float>(steps);
+    kernel.at<float>(reach + cvRound(at.y), reach + cvRound(at.x)) +=
+        1.0F / static_cast<float>(steps);
   }
   return kernel;
 }

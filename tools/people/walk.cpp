@@ -70,7 +70,8 @@ Stance stance_at(const PersonPlan& plan, double time) {
   stance.stride = std::numbers::pi * way_until(plan.walk, now) / kStepLength;
   // Who stands still looks where they came from no longer, but where they went.
   for (double moment = now; moment > plan.walk.front() - kMoment; moment -= kMoment) {
-    const double step = at_time(plan.walk, 3, moment).x() - at_time(plan.walk, 3, moment - kMoment).x();
+    const double step =
+        at_time(plan.walk, 3, moment).x() - at_time(plan.walk, 3, moment - kMoment).x();
     if (std::abs(step) < 1e-3) continue;
     stance.to_the_left = step < 0;
     break;

@@ -42,8 +42,8 @@ Album::Album(const fs::path& folder) {
 }
 
 cv::Mat Album::one(cv::Size size, cv::RNG& random) const {
-  const cv::Mat& photo =
-      photographs_[static_cast<std::size_t>(random.uniform(0, static_cast<int>(photographs_.size())))];
+  const cv::Mat& photo = photographs_[static_cast<std::size_t>(
+      random.uniform(0, static_cast<int>(photographs_.size())))];
   const double scale = std::max(static_cast<double>(size.width) / photo.cols,
                                 static_cast<double>(size.height) / photo.rows);
   const cv::Size part(std::min(photo.cols, cvRound(size.width / scale)),
@@ -64,7 +64,8 @@ cv::Mat Album::many(cv::Size size, int rows, cv::RNG& random) const {
     const int height = size.height * (row + 1) / rows - top;
     for (int x = 0; x < size.width;) {
       int width = height * random.uniform(70, 160) / 100;
-      if (size.width - x - width < height / 2) width = size.width - x;  // no narrow strip at the end
+      if (size.width - x - width < height / 2)
+        width = size.width - x;  // no narrow strip at the end
       one({width, height}, random).copyTo(result(cv::Rect(x, top, width, height)));
       x += width;
     }

@@ -9,8 +9,8 @@ namespace stillpoint::simulation {
 
 class Album {
  public:
-  /// Every image of the folder (JPEG, PNG, WebP) in order of name. Throws Error(kUsage) when there is
-  /// none, or one that cannot be read.
+  /// Every image of the folder (JPEG, PNG, WebP) in order of name. Throws Error(kUsage) when there
+  /// is none, or one that cannot be read.
   explicit Album(const std::filesystem::path& folder);
 
   /// A photograph that `random` draws, cut to fill `size`. CV_8UC3.
