@@ -15,9 +15,13 @@ std::filesystem::path label_folder(const std::string& path, const StageContext& 
               "name it as 'path' of the segmenter");
 }
 
-/// Only asked for when there are to be false objects, because other lists may lack the default.
-int false_label(const NetworkErrorOptions& options, const ClassNames& classes) {
-  return options.false_objects > 0 ? class_id(classes, options.false_class) : 0;
+/// Only asked for when something is to be of it, because other lists may lack the default.
+int false_label(const LabelImageSegmenter::Options& options, const ClassNames& classes) {
+  using Kind = HostileOptions::Kind;
+  const bool wanted = options.errors.false_objects > 0 || !options.hostile.mistaken.empty() ||
+                      options.hostile.hostile == Kind::kEverything ||
+                      options.hostile.hostile == Kind::kBlobs;
+  return wanted ? class_id(classes, options.errors.false_class) : 0;
 }
 
 void check_size(const cv::Mat& labels, cv::Size frame, const std::filesystem::path& file) {
@@ -41,13 +45,15 @@ void LabelImageSegmenter::Options::visit(OptionVisitor& v) {
   v("min_object_pixels", min_object_pixels,
     {.min = 1, .unit = "px", .help = "smaller objects become background"});
   errors.visit(v);
+  hostile.visit(v);
 }
 
 LabelImageSegmenter::LabelImageSegmenter(Options options, const StageContext& context)
     : options_(std::move(options)),
       classes_(classes_of(options_.classes)),
       files_(label_folder(options_.path, context)),
-      errors_(options_.errors, false_label(options_.errors, classes_), context.seed),
+      errors_(options_.errors, false_label(options_, classes_), context.seed),
+      hostile_(options_.hostile, classes_, false_label(options_, classes_), context.seed),
       log_(context.log) {
   // A folder of something else shall be found out before the run begins.
   const std::filesystem::path& first = files_.entries().front().file;
@@ -59,18 +65,26 @@ LabelImageSegmenter::LabelImageSegmenter(Options options, const StageContext& co
 
 Segmentation LabelImageSegmenter::segment(const Frame& frame) {
   Segmentation result{.frame = frame.index};
-  const LabelFiles::Entry& nearest = files_.nearest(frame.time);
-  if (std::abs(nearest.time - frame.time) > options_.max_difference) {
-    report_missing(frame, nearest);
-    return result;
-  }
-  ++found_;
-  const cv::Mat labels = read_labels(nearest.file, classes_.size());
-  check_size(labels, frame.gray.size(), nearest.file);
+  const LabelFiles::Entry* entry = entry_for(frame);
+  if (!entry) return result;
+  cv::Mat labels = read_labels(entry->file, classes_.size());
+  check_size(labels, frame.gray.size(), entry->file);
+  if (hostile_.any()) labels = hostile_.apply(labels, errors_.period_of(frame.index));
   result.labels =
       errors_.any() ? errors_.apply(labels, frame.index, options_.min_object_pixels) : labels;
   find_objects(result, options_.min_object_pixels);
   return result;
+}
+
+/// Null: there is none. Labels that are to be late are the first ones until they can be.
+const LabelFiles::Entry* LabelImageSegmenter::entry_for(const Frame& frame) {
+  const LabelFiles::Entry& own = files_.nearest(frame.time);
+  if (std::abs(own.time - frame.time) > options_.max_difference) {
+    report_missing(frame, own);
+    return nullptr;
+  }
+  ++found_;
+  return options_.hostile.late > 0 ? &files_.nearest(frame.time - options_.hostile.late) : &own;
 }
 
 void LabelImageSegmenter::report_missing(const Frame& frame, const LabelFiles::Entry& nearest) {

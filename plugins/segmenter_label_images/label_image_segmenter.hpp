@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "segmenter_label_images/hostile_labels.hpp"
 #include "segmenter_label_images/label_files.hpp"
 #include "segmenter_label_images/network_errors.hpp"
 #include "stillpoint/sdk.hpp"
@@ -21,6 +22,7 @@ class LabelImageSegmenter final : public Segmenter {
     double max_difference = 0.001;  ///< seconds between an image's stamp and the frame's
     int min_object_pixels = 100;    ///< smaller objects become background
     NetworkErrorOptions errors;
+    HostileOptions hostile;
 
     void visit(OptionVisitor& visitor);
   };
@@ -31,12 +33,14 @@ class LabelImageSegmenter final : public Segmenter {
   Segmentation segment(const Frame& frame) override;
 
  private:
+  const LabelFiles::Entry* entry_for(const Frame& frame);
   void report_missing(const Frame& frame, const LabelFiles::Entry& nearest);
 
   Options options_;
   ClassNames classes_;
   LabelFiles files_;
   NetworkErrors errors_;
+  HostileLabels hostile_;
   std::function<void(LogLevel, std::string_view)> log_;
   std::size_t found_ = 0;    // frames with labels so far
   std::size_t missing_ = 0;  // and without

@@ -212,6 +212,62 @@ TEST_F(LabelImageSegmenterTest, ErrorsDependOnSeedAndFrameOnly) {
   EXPECT_LT(equal, 5);
 }
 
+TEST_F(LabelImageSegmenterTest, EverythingOrNobodyIsAPerson) {
+  using Kind = HostileOptions::Kind;
+  write(1.0, room_labels());
+  options_.hostile.hostile = Kind::kEverything;
+  const Segmentation everything = open().segment(frame_at(1.0));
+  EXPECT_EQ(count(everything.labels, kPerson), kSize.area());
+  ASSERT_EQ(everything.objects.size(), 1U);
+  EXPECT_EQ(everything.objects[0].pixels, kSize.area());
+  options_.hostile.hostile = Kind::kNobody;
+  const Segmentation nobody = open().segment(frame_at(1.0));
+  EXPECT_TRUE(nobody.known());
+  EXPECT_EQ(cv::countNonZero(nobody.labels), 0);
+}
+
+TEST_F(LabelImageSegmenterTest, BlobsAreAnywhereAndLastAsLongAsAsked) {
+  write(1.0, room_labels());
+  options_.hostile.hostile = HostileOptions::Kind::kBlobs;
+  options_.errors.error_frames = 3;
+  LabelImageSegmenter segmenter = open();
+  cv::Mat before;
+  double covered = 0;
+  for (std::uint32_t i = 0; i < 60; ++i) {
+    const cv::Mat labels = segmenter.segment(frame_at(1.0, i)).labels;
+    covered += count(labels, kPerson) / 60.0 / kSize.area();
+    EXPECT_EQ(count(labels, kChair), 0);
+    if (i == 0) before = labels;
+    EXPECT_EQ(cv::norm(labels, before, cv::NORM_INF) > 0, i > 0 && i % 3 == 0) << i;
+    before = labels;
+  }
+  EXPECT_NEAR(covered, 0.3, 0.1);
+}
+
+TEST_F(LabelImageSegmenterTest, StaticThingsAreTakenForPeople) {
+  write(1.0, room_labels());
+  options_.hostile.mistaken = {"chair"};
+  const Segmentation labels = open().segment(frame_at(1.0));
+  EXPECT_EQ(count(labels.labels, kPerson), kPersonBox.area() + kChairBox.area());
+  EXPECT_EQ(count(labels.labels, kChair), 0);
+  options_.hostile.mistaken = {"chiar"};
+  EXPECT_THAT(message_of([&] { open(); }, Fault::kUsage), HasSubstr("did you mean 'chair'?"));
+}
+
+TEST_F(LabelImageSegmenterTest, LabelsAreLate) {
+  for (int i = 0; i < 5; ++i) {
+    cv::Mat labels(kSize, CV_8UC1, cv::Scalar(0));
+    labels(cv::Rect(20 * i, 10, 20, 20)).setTo(kPerson);
+    write(1.0 + i, labels);
+  }
+  options_.hostile.late = 2;
+  LabelImageSegmenter segmenter = open();
+  EXPECT_EQ(segmenter.segment(frame_at(5.0, 4)).objects[0].box.x, 40);
+  EXPECT_EQ(segmenter.segment(frame_at(3.0, 2)).objects[0].box.x, 0);
+  EXPECT_EQ(segmenter.segment(frame_at(2.0, 1)).objects[0].box.x, 0);  // nothing is older
+  EXPECT_FALSE(segmenter.segment(frame_at(2.5, 1)).known());
+}
+
 TEST_F(LabelImageSegmenterTest, AFrameWithoutImageHasNoLabels) {
   write(1.0, room_labels());
   LabelImageSegmenter segmenter = open();

@@ -4,22 +4,14 @@
 #include <opencv2/core.hpp>
 #include <opencv2/imgproc.hpp>
 
+#include "segmenter_label_images/frame_random.hpp"
 #include "stillpoint/objects.hpp"
 
 namespace stillpoint {
 namespace {
 
-enum Purpose : std::uint32_t { kMisses, kOutlines, kFalseObjects, kHoles };
-
 /// px along an outline over which its error stays about the same.
 constexpr int kWobbleCell = 16;
-
-// Finaliser of SplitMix64: close numbers give unrelated streams.
-std::uint64_t mixed(std::uint64_t value) {
-  value = (value ^ (value >> 30)) * 0xbf58476d1ce4e5b9u;
-  value = (value ^ (value >> 27)) * 0x94d049bb133111ebu;
-  return value ^ (value >> 31);
-}
 
 /// The object with its outline moved outwards by `shift` (px; CV_32F of the image's size), inside
 /// `region`, which is the object's box with room around it.
@@ -61,19 +53,15 @@ void NetworkErrorOptions::visit(OptionVisitor& v) {
     {.min = 1, .unit = "frames", .help = "how long misses and false objects last"});
 }
 
-cv::RNG NetworkErrors::generator(std::uint32_t period, std::uint32_t purpose) const {
-  return cv::RNG(mixed(mixed(seed_ + purpose) + period));
-}
-
 cv::Mat NetworkErrors::apply(const cv::Mat& labels, std::uint32_t frame,
                              int min_object_pixels) const {
   Segmentation truth{.labels = labels};
   find_objects(truth, min_object_pixels);
-  const std::uint32_t period = frame / static_cast<std::uint32_t>(options_.error_frames);
-  cv::RNG misses = generator(period, kMisses);
+  const std::uint32_t period = period_of(frame);
+  cv::RNG misses = frame_random(seed_, Purpose::kMisses, period);
   const bool moves_outlines = options_.boundary != 0 || options_.wobble > 0;
   const cv::Mat shift = moves_outlines ? outline_shift(labels.size(), frame) : cv::Mat();
-  cv::RNG holes = generator(frame, kHoles);
+  cv::RNG holes = frame_random(seed_, Purpose::kHoles, frame);
   const int room = static_cast<int>(std::ceil(std::abs(options_.boundary) + options_.wobble)) + 2;
 
   cv::Mat result(labels.size(), CV_8UC1, cv::Scalar(0));
@@ -109,7 +97,7 @@ void NetworkErrors::spoil(cv::Mat& mask, const cv::Rect& box, cv::RNG& random) c
 cv::Mat NetworkErrors::outline_shift(cv::Size size, std::uint32_t frame) const {
   if (options_.wobble == 0) return {size, CV_32F, cv::Scalar(options_.boundary)};
   cv::Mat coarse(size.height / kWobbleCell + 2, size.width / kWobbleCell + 2, CV_32F);
-  cv::RNG random = generator(frame, kOutlines);
+  cv::RNG random = frame_random(seed_, Purpose::kOutlines, frame);
   random.fill(coarse, cv::RNG::UNIFORM, options_.boundary - options_.wobble,
               options_.boundary + options_.wobble);
   cv::Mat shift;
@@ -118,15 +106,9 @@ cv::Mat NetworkErrors::outline_shift(cv::Size size, std::uint32_t frame) const {
 }
 
 void NetworkErrors::add_false_object(cv::Mat& labels, std::uint32_t period) const {
-  cv::RNG random = generator(period, kFalseObjects);
+  cv::RNG random = frame_random(seed_, Purpose::kFalseObjects, period);
   if (random.uniform(0.0, 1.0) >= options_.false_objects) return;
-  const cv::Point centre(random.uniform(0, labels.cols), random.uniform(0, labels.rows));
-  const int unit = std::max(labels.rows, 16);
-  const cv::Size half_axes(random.uniform(unit / 16, unit / 4),
-                           random.uniform(unit / 16, unit / 4));
-  cv::Mat blob(labels.size(), CV_8UC1, cv::Scalar(0));
-  cv::ellipse(blob, centre, half_axes, random.uniform(0.0, 180.0), 0, 360, 255, cv::FILLED);
-  labels.setTo(false_label_, blob & (labels == 0));
+  labels.setTo(false_label_, random_blob(labels.size(), random) & (labels == 0));
 }
 
 }  // namespace stillpoint

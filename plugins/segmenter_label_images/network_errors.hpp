@@ -29,6 +29,10 @@ class NetworkErrors {
   NetworkErrors(NetworkErrorOptions options, int false_label, std::uint64_t seed)
       : options_(std::move(options)), false_label_(false_label), seed_(seed) {}
 
+  /// Frames with the same number share misses and false objects.
+  std::uint32_t period_of(std::uint32_t frame) const {
+    return frame / static_cast<std::uint32_t>(options_.error_frames);
+  }
   bool any() const {
     return options_.miss_rate > 0 || options_.boundary != 0 || options_.wobble > 0 ||
            options_.missing_legs > 0 || options_.holes > 0 || options_.floor > 0 ||
@@ -38,7 +42,6 @@ class NetworkErrors {
   cv::Mat apply(const cv::Mat& labels, std::uint32_t frame, int min_object_pixels) const;
 
  private:
-  cv::RNG generator(std::uint32_t period, std::uint32_t purpose) const;
   cv::Mat outline_shift(cv::Size size, std::uint32_t frame) const;
   void spoil(cv::Mat& mask, const cv::Rect& box, cv::RNG& random) const;
   void add_false_object(cv::Mat& labels, std::uint32_t period) const;

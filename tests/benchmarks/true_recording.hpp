@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "stillpoint/contracts/frame.hpp"
-#include "support/true_pose.hpp"
+#include "evaluation/trajectory.hpp"
 
 namespace stillpoint {
 

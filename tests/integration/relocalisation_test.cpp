@@ -11,7 +11,7 @@
 
 #include "evaluation/trajectory.hpp"
 #include "support/simulated_recording.hpp"
-#include "support/true_pose.hpp"
+#include "evaluation/trajectory.hpp"
 
 namespace stillpoint::testing {
 namespace {

@@ -101,6 +101,15 @@ Trajectory read_trajectory(const std::filesystem::path& file) {
   return trajectory;
 }
 
+Pose pose_at(const Trajectory& trajectory, double time) {
+  if (trajectory.poses.size() == 1) return trajectory.poses.front().world_from_camera;
+  std::size_t i = 1;
+  while (i + 1 < trajectory.poses.size() && trajectory.poses[i].time < time) ++i;
+  const auto& [before, a] = trajectory.poses[i - 1];
+  const auto& [after, b] = trajectory.poses[i];
+  return interpolate(a, b, std::clamp((time - before) / (after - before), 0.0, 1.0));
+}
+
 std::vector<double> times_of(const Trajectory& trajectory) {
   std::vector<double> times;
   for (const StampedPose& pose : trajectory.poses) times.push_back(pose.time);

@@ -31,6 +31,9 @@ struct Trajectory {
 /// as described above.
 Trajectory read_trajectory(const std::filesystem::path& file);
 
+/// Where the camera was at any time (seconds): between two rows, or at the nearer end.
+Pose pose_at(const Trajectory& trajectory, double time);
+
 std::vector<double> times_of(const Trajectory& trajectory);
 
 /// Median time in seconds between successive poses; 0 for a single one.

@@ -6,7 +6,7 @@ using Eigen::Vector3f;
 
 Furnisher::Furnisher(World& world, int seed)
     : world_(world),
-      painter_(100 + seed),
+      painter_(100 + seed, world.album),
       wood_(texture(painter_.wood({1024, 512}, {150, 178, 200}, 0.10), 2.0F, 1.0F)),
       birch_(texture(painter_.wood({1024, 512}, {110, 165, 205}, 0.14), 1.2F, 0.6F)),
       board_(texture(painter_.plaster({1024, 1024}, {105, 140, 165}, 0.05), 1.6F, 1.6F)),

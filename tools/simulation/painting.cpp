@@ -78,17 +78,20 @@ void Painter::picture(cv::Mat image) {
 }
 
 cv::Mat Painter::plaster(cv::Size size, cv::Scalar base, double contrast) {
+  if (album_) return album_->many(size, 3, random_);
   const cv::Mat field = noise(size, {24, 16}, 6, 0.8);
   return tint(field, base, contrast);
 }
 
 cv::Mat Painter::wood(cv::Size size, cv::Scalar base, double contrast) {
+  if (album_) return album_->many(size, 2, random_);
   const cv::Mat grain = noise(size, {2, 24}, 5, 0.7);
   const cv::Mat pores = noise(size, {size.width / 32, size.height / 4}, 2, 0.6);
   return tint(0.7 * grain + 0.5 * pores, base, contrast);
 }
 
 cv::Mat Painter::carpet(cv::Size size) {
+  if (album_) return album_->many(size, 4, random_);
   cv::Mat field = noise(size, {6, 6}, 9, 0.78);
   cv::Mat image = tint(field, {118, 112, 108}, 0.16);
   const int specks = size.area() / 900;
@@ -101,6 +104,7 @@ cv::Mat Painter::carpet(cv::Size size) {
 }
 
 cv::Mat Painter::poster(cv::Size size) {
+  if (album_) return album_->one(size, random_);
   cv::Mat image = tint(noise(size, {2, 3}, 4), color(150, 245), 0.08);
   const int margin = size.width / 20;
   const cv::Scalar dark = color(10, 90);
@@ -141,6 +145,7 @@ cv::Mat Painter::paper(cv::Size size) {
 }
 
 cv::Mat Painter::whiteboard(cv::Size size) {
+  if (album_) return album_->one(size, random_);
   cv::Mat image = tint(noise(size, {4, 3}, 4), {228, 230, 230}, 0.03);
   const std::array<cv::Scalar, 4> pens = {
       {{160, 60, 30}, {40, 40, 40}, {50, 40, 170}, {60, 120, 30}}};
@@ -161,6 +166,7 @@ cv::Mat Painter::whiteboard(cv::Size size) {
 }
 
 cv::Mat Painter::books(cv::Size size) {
+  if (album_) return album_->one(size, random_);
   cv::Mat image(size, CV_8UC3, cv::Scalar(38, 42, 46));
   for (int x = 2; x < size.width - 8;) {
     const int width = std::min(uniform(14, 46), size.width - 2 - x);
@@ -201,6 +207,7 @@ cv::Mat Painter::keyboard(cv::Size size) {
 }
 
 cv::Mat Painter::screen(cv::Size size, bool on) {
+  if (album_ && on) return album_->one(size, random_);
   cv::Mat image = tint(noise(size, {3, 2}, 3), {26, 24, 22}, on ? 0.1 : 0.35);
   if (!on) return image;
   image.setTo(cv::Scalar(60, 48, 40));
@@ -212,6 +219,7 @@ cv::Mat Painter::screen(cv::Size size, bool on) {
 }
 
 cv::Mat Painter::cardboard(cv::Size size) {
+  if (album_) return album_->one(size, random_);
   cv::Mat image = tint(noise(size, {4, 32}, 5, 0.6), {105, 145, 180}, 0.1);
   const int band = size.height / 8;
   cv::rectangle(image, cv::Rect(0, size.height / 2 - band / 2, size.width, band), {130, 175, 205},

@@ -1,13 +1,18 @@
 // Pictures for textures, painted from a seed. Sizes in px; all are CV_8UC3, BGR.
 #pragma once
 
+#include <memory>
 #include <opencv2/core.hpp>
+
+#include "simulation/album.hpp"
 
 namespace stillpoint::simulation {
 
 class Painter {
  public:
-  explicit Painter(int seed) : random_(static_cast<std::uint64_t>(seed) * 7919 + 17) {}
+  /// With an album, photographs take the place of what covers walls, floors and large things.
+  explicit Painter(int seed, std::shared_ptr<const Album> album = nullptr)
+      : random_(static_cast<std::uint64_t>(seed) * 7919 + 17), album_(std::move(album)) {}
 
   cv::Mat plaster(cv::Size size, cv::Scalar color, double contrast);
   cv::Mat wood(cv::Size size, cv::Scalar color, double contrast);
@@ -40,6 +45,7 @@ class Painter {
   void picture(cv::Mat image);
 
   cv::RNG random_;
+  std::shared_ptr<const Album> album_;
 };
 
 }  // namespace stillpoint::simulation

@@ -11,6 +11,9 @@ void RoomOptions::visit(OptionVisitor& v) {
   v("furnished", furnished, {.help = "desks, chairs, monitors, shelves and what lies on them"});
   v("alike", alike, {.help = "every room of a suite is furnished as the others are"});
   v("seed", seed, {.min = 0, .help = "of what is printed on posters, papers and books"});
+  v("photographs", photographs,
+    {.help = "folder of images that cover walls, floor, boards, desks and boxes; empty: painted",
+     .is_path = true});
 }
 
 void MotionOptions::visit(OptionVisitor& v) {

@@ -15,6 +15,8 @@ struct RoomOptions {
   bool furnished = true;
   bool alike = false;  ///< the rooms of a suite
   int seed = 1;        ///< of what is printed on posters, papers and books
+  std::string
+      photographs;  ///< folder: they cover walls, floor, boards, desks and boxes; empty: none
 
   void visit(OptionVisitor& v);
 };

@@ -7,7 +7,7 @@ namespace stillpoint::simulation {
 using Eigen::Vector3f;
 
 ShellSkins shell_skins(World& world, int seed) {
-  Painter painter(seed);
+  Painter painter(seed, world.album);
   const auto wall = [&](cv::Scalar color) {
     const cv::Mat image = painter.plaster({2048, 1024}, color, 0.035);
     return Skin{.texture = world.add_texture({image, {6.0F, 3.0F}})};

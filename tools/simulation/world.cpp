@@ -25,6 +25,8 @@ std::uint8_t World::add_instance() {
 
 World build_world(const SceneOptions& scene) {
   World world;
+  if (!scene.room.photographs.empty())
+    world.album = std::make_shared<const Album>(scene.room.photographs);
   if (scene.room.plan == RoomOptions::Plan::kSuite)
     add_suite(world, scene.room);
   else

@@ -2,8 +2,10 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <vector>
 
+#include "simulation/album.hpp"
 #include "simulation/mesh.hpp"
 #include "simulation/scene_options.hpp"
 #include "simulation/texture.hpp"
@@ -23,6 +25,7 @@ struct Lamp {
 };
 
 struct World {
+  std::shared_ptr<const Album> album;  ///< to paint the room with; null: none
   std::vector<Texture> textures;
   std::vector<Lamp> lamps;
   Mesh room;

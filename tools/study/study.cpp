@@ -25,6 +25,8 @@ void Sequence::visit(OptionVisitor& v) {
   v("set", set, {.help = "changes of the scene, as in [source.seed=2]"});
   v("camera", camera,
     {.help = "a file, or a name from configs/cameras; empty: the recording's own"});
+  v("twin", twin,
+    {.help = "sequence that is the same without anything that moves; left out: NAME_empty"});
   v.require(dataset.empty() != scene.empty(),
             "needs either 'dataset', the folder of a recording, or 'scene', to be simulated");
   v.require(dataset.empty() || (frames == 0 && set.empty()),

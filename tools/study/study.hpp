@@ -16,6 +16,7 @@ struct Sequence {
   int frames = 0;                ///< of the scene; 0: as many as it says
   std::vector<std::string> set;  ///< `key.sub=value` for the scene
   std::string camera;            ///< a file, or a name from configs/cameras; empty: the recording's
+  std::string twin;              ///< the sequence without anything that moves; empty: NAME_empty
 
   void visit(OptionVisitor& visitor);
 };

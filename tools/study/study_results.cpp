@@ -52,7 +52,8 @@ std::size_t StudyResults::missing() const {
 std::optional<double> dynamic_penalty(const StudyResults& results, std::size_t sequence,
                                       std::size_t variant) {
   const std::vector<Sequence>& sequences = results.study.sequences;
-  const auto twin = index_of(sequences, sequences[sequence].name + "_empty");
+  const Sequence& own = sequences[sequence];
+  const auto twin = index_of(sequences, own.twin.empty() ? own.name + "_empty" : own.twin);
   if (!twin) return std::nullopt;
   return ratio(results.spread(sequence, variant, kAte), results.spread(*twin, variant, kAte));
 }

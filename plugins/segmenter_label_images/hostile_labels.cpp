@@ -1,0 +1,46 @@
+#include "segmenter_label_images/hostile_labels.hpp"
+
+#include <opencv2/core.hpp>
+
+#include "segmenter_label_images/frame_random.hpp"
+
+namespace stillpoint {
+namespace {
+
+constexpr int kBlobs = 6;  // they cover about a third of the image
+
+}  // namespace
+
+void HostileOptions::visit(OptionVisitor& v) {
+  v.choice("hostile", hostile,
+           {{"none", Kind::kNone},
+            {"everything", Kind::kEverything},
+            {"nobody", Kind::kNobody},
+            {"blobs", Kind::kBlobs}},
+           {.help = "instead of the labels: all of the image is of the false class; nothing is; "
+                    "ellipses anywhere are"});
+  v("mistaken", mistaken, {.help = "classes whose objects are taken for the false class"});
+  v("late", late,
+    {.min = 0, .max = 60, .unit = "s", .help = "labels are those of the image so long before"});
+}
+
+HostileLabels::HostileLabels(const HostileOptions& options, const ClassNames& classes,
+                             int false_label, std::uint64_t seed)
+    : kind_(options.hostile), false_label_(false_label), seed_(seed) {
+  for (const std::string& name : options.mistaken) mistaken_.push_back(class_id(classes, name));
+}
+
+cv::Mat HostileLabels::apply(const cv::Mat& labels, std::uint32_t period) const {
+  using Kind = HostileOptions::Kind;
+  if (kind_ == Kind::kEverything) return {labels.size(), CV_8UC1, cv::Scalar(false_label_)};
+  cv::Mat result = kind_ == Kind::kNone ? labels.clone() : cv::Mat::zeros(labels.size(), CV_8UC1);
+  if (kind_ == Kind::kBlobs) {
+    cv::RNG random = frame_random(seed_, Purpose::kBlobs, period);
+    for (int i = 0; i < kBlobs; ++i) result.setTo(false_label_, random_blob(labels.size(), random));
+  }
+  if (kind_ == Kind::kNone)
+    for (const int label : mistaken_) result.setTo(false_label_, labels == label);
+  return result;
+}
+
+}  // namespace stillpoint

@@ -1,0 +1,41 @@
+// Labels that have nothing to do with what a network makes of an image: what the rest of a pipeline
+// must survive.
+#pragma once
+
+#include <cstdint>
+#include <opencv2/core/mat.hpp>
+#include <string>
+#include <vector>
+
+#include "stillpoint/class_names.hpp"
+#include "stillpoint/options.hpp"
+
+namespace stillpoint {
+
+struct HostileOptions {
+  enum class Kind { kNone, kEverything, kNobody, kBlobs } hostile = Kind::kNone;
+  std::vector<std::string> mistaken;  ///< classes whose objects are taken for the false class
+  double late = 0;                    ///< seconds
+
+  void visit(OptionVisitor& visitor);
+};
+
+/// They depend on the seed and on the frame alone.
+class HostileLabels {
+ public:
+  /// `false_label`: what there is instead. Throws Error(kUsage) when `mistaken` has no such class.
+  HostileLabels(const HostileOptions& options, const ClassNames& classes, int false_label,
+                std::uint64_t seed);
+
+  bool any() const { return kind_ != HostileOptions::Kind::kNone || !mistaken_.empty(); }
+  /// `period`: frames with the same number have the same blobs.
+  cv::Mat apply(const cv::Mat& labels, std::uint32_t period) const;
+
+ private:
+  HostileOptions::Kind kind_;
+  std::vector<int> mistaken_;
+  int false_label_;
+  std::uint64_t seed_;
+};
+
+}  // namespace stillpoint
