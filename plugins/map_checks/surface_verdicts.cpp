@@ -3,12 +3,15 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
+#include <opencv2/core/hal/intrin.hpp>
 #include <opencv2/imgproc.hpp>
 #include <vector>
 
 namespace stillpoint {
 namespace {
 
+constexpr int kLanes = cv::v_float32::nlanes;
 constexpr float kMinDepth = 0.1F;  // m before a view
 // Nearest and farthest of the neighbours this many tolerances apart: an edge, between two surfaces.
 constexpr float kEdge = 5.0F;
@@ -30,22 +33,24 @@ class Judge {
         verdicts_(depth.total()),
         margin_(static_cast<float>(options.margin)),
         tolerance_(static_cast<float>(options.tolerance)),
-        noise_(static_cast<float>(options.noise)) {}
+        noise_(static_cast<float>(options.noise)),
+        columns_(static_cast<std::size_t>(cv::alignSize(depth.cols, kLanes))),
+        row_(columns_.size()),
+        cells_(columns_.size()),
+        z_(columns_.size()) {
+    std::iota(columns_.begin(), columns_.end(), 0.0F);
+  }
 
   void ask(const View& view, const Pose& world_from_camera, double time) {
     const Pose view_from_camera = view.world_from_camera.inverse() * world_from_camera;
     const auto age = static_cast<float>(time - view.time);
     const bool tells_rest = age >= options_.min_age ||
                             view_from_camera.translation().norm() >= options_.min_parallax;
-    const Eigen::Matrix3f rotation = view_from_camera.linear().cast<float>();
-    const Eigen::Vector3f translation = view_from_camera.translation().cast<float>();
-    const Eigen::Vector3f per_column = rotation.col(0) / camera_.fx;
     for (int y = 0; y < depth_.rows; ++y) {
-      const auto* depth = depth_.ptr<float>(y);
+      project_row(y, view, view_from_camera);
       Verdict* verdict = &verdicts_[static_cast<std::size_t>(y) * depth_.cols];
-      Eigen::Vector3f ray = rotation * camera_.unproject(0, static_cast<float>(y), 1);
-      for (int x = 0; x < depth_.cols; ++x, ray += per_column)
-        if (depth[x] > 0) ask(view, depth[x] * ray + translation, age, tells_rest, verdict[x]);
+      for (std::size_t x = 0; x < static_cast<std::size_t>(depth_.cols); ++x)
+        if (cells_[x] >= 0) ask(view, cells_[x], z_[x], age, tells_rest, verdict[x]);
     }
   }
 
@@ -59,28 +64,62 @@ class Judge {
   }
 
  private:
-  void ask(const View& view, const Eigen::Vector3f& point, float age, bool tells_rest,
+  // Fills cells_ and z_: where the view sees the cells of a row, and how far from it they are.
+  void project_row(int y, const View& view, const Pose& view_from_camera) {
+    const Eigen::Matrix3f r = view_from_camera.linear().cast<float>();
+    const Eigen::Vector3f t = view_from_camera.translation().cast<float>();
+    // Rays of the row in cells of the view, so that (x, y) / z is a place in it; rounded below.
+    Eigen::Matrix3f calibration = Eigen::Matrix3f::Identity();
+    calibration << view.camera.fx, 0, view.camera.cx + 0.5F,  //
+        0, view.camera.fy, view.camera.cy + 0.5F, 0, 0, 1;
+    const Eigen::Vector3f first =
+        calibration * r * camera_.unproject(0, static_cast<float>(y), 1);
+    const Eigen::Vector3f step = calibration * r.col(0) / camera_.fx;
+    const Eigen::Vector3f offset = calibration * t;
+    std::copy_n(depth_.ptr<float>(y), depth_.cols, row_.begin());
+    const cv::v_float32 zero = cv::vx_setzero_f32();
+    const cv::v_float32 width = cv::vx_setall_f32(static_cast<float>(view.depth.cols));
+    const cv::v_float32 height = cv::vx_setall_f32(static_cast<float>(view.depth.rows));
+    const cv::v_float32 nearest = cv::vx_setall_f32(kMinDepth);
+    const cv::v_int32 row_length = cv::vx_setall_s32(view.depth.cols);
+    const cv::v_int32 none = cv::vx_setall_s32(-1);
+    const auto along = [&](int axis, const cv::v_float32& d, const cv::v_float32& column) {
+      const auto all = [](float value) { return cv::vx_setall_f32(value); };
+      return d * (all(first[axis]) + column * all(step[axis])) + all(offset[axis]);
+    };
+    for (int x = 0; x < depth_.cols; x += kLanes) {
+      const cv::v_float32 column = cv::vx_load(&columns_[static_cast<std::size_t>(x)]);
+      const cv::v_float32 d = cv::vx_load(&row_[static_cast<std::size_t>(x)]);
+      const cv::v_float32 z = along(2, d, column);
+      const cv::v_float32 inverse = cv::vx_setall_f32(1) / cv::v_max(z, nearest);
+      const cv::v_float32 u = along(0, d, column) * inverse, v = along(1, d, column) * inverse;
+      const cv::v_float32 inside = (d > zero) & (z > nearest) & (u >= zero) & (v >= zero) &
+                                   (u < width) & (v < height);
+      const cv::v_int32 cell = cv::v_trunc(v) * row_length + cv::v_trunc(u);
+      cv::v_store(&cells_[static_cast<std::size_t>(x)],
+                  cv::v_select(cv::v_reinterpret_as_s32(inside), cell, none));
+      cv::v_store(&z_[static_cast<std::size_t>(x)], z);
+    }
+  }
+
+  void ask(const View& view, int cell, float z, float age, bool tells_rest,
            Verdict& verdict) const {
-    if (point.z() < kMinDepth) return;
-    const float scale = 1 / point.z();
-    const int u = cvRound(view.camera.fx * point.x() * scale + view.camera.cx);
-    const int v = cvRound(view.camera.fy * point.y() * scale + view.camera.cy);
-    if (u < 0 || v < 0 || u >= view.bounds.cols || v >= view.bounds.rows) return;
-    const auto [near, far] = view.bounds.at<cv::Vec2f>(v, u).val;
+    const auto [near, far] = view.bounds.ptr<cv::Vec2f>()[cell].val;
     if (far <= 0) return;
-    const float noise = noise_ * point.z() * point.z();
-    if (point.z() < near - margin_ - noise) {
+    const float noise = noise_ * z * z;
+    if (z < near - margin_ - noise) {
       if (verdict.resting < options_.rest_time) ++verdict.came_in;
       return;
     }
     const float tolerance = tolerance_ + noise;
-    if (point.z() < near - tolerance || point.z() > far + tolerance) return;
-    const auto off = [&](float surface) { return std::abs(point.z() - surface) > tolerance; };
-    if (far - near > kEdge * tolerance && off(near) && off(far) && off(view.depth.at<float>(v, u)))
+    if (z < near - tolerance || z > far + tolerance) return;
+    const auto off = [&](float surface) { return std::abs(z - surface) > tolerance; };
+    if (far - near > kEdge * tolerance && off(near) && off(far) &&
+        off(view.depth.ptr<float>()[cell]))
       return;
     if (verdict.came_in == 0) verdict.resting = std::max(verdict.resting, age);
     if (!tells_rest) return;
-    ++verdict.same[view.trust.at<std::uint8_t>(v, u)];
+    ++verdict.same[view.trust.ptr<std::uint8_t>()[cell]];
   }
 
   float evidence_of(const Verdict& verdict) const {
@@ -96,6 +135,11 @@ class Judge {
   const VerdictOptions& options_;
   std::vector<Verdict> verdicts_;
   float margin_, tolerance_, noise_;
+  // Of one row, as long as vectors need.
+  std::vector<float> columns_;  // 0, 1, 2 …
+  std::vector<float> row_;      // m, depth
+  std::vector<int> cells_;      // in the view; -1: none
+  std::vector<float> z_;        // m, from the view
 };
 
 /// Single cells that stand out are noise at edges.

@@ -16,7 +16,7 @@ struct VerdictOptions {
   double min_parallax = 0.1;  ///< m between the viewpoints; then younger ones do
   double came_in = 3.0;       ///< log-odds, of each view that looked through the place
   double same_mapped = 1.5;     ///< log-odds, of each view that saw it there and mapped it
-  double same_tracked = 0.75;   ///< log-odds, of each that only tracked it
+  double same_tracked = 0.3;    ///< log-odds, of each that only tracked it
   double same_untrusted = 0.3;  ///< log-odds, of each that did neither
   double range = 8.0;         ///< log-odds, most
   double reach = 0.5;         ///< m, along a surface from where it has come in to where nobody knows

@@ -8,7 +8,7 @@
 namespace stillpoint {
 namespace {
 
-constexpr int kStep = 3;         // cells between the points used
+constexpr int kStep = 4;         // cells between the points used
 constexpr int kIterations = 4;   // of ICP
 constexpr std::size_t kMostViews = 3;
 constexpr float kFirstGate = 0.15F;  // m off a surface; later ones are nearer
@@ -59,7 +59,7 @@ class Aligner {
       const Vector6d offset = log_se3(guess.inverse() * pose);
       sum.hessian.diagonal() += prior;
       sum.gradient += prior.cwiseProduct(offset);
-      const Vector6d step = sum.hessian.ldlt().solve(-sum.gradient);
+      const Vector6d step = sum.hessian.selfadjointView<Eigen::Lower>().ldlt().solve(-sum.gradient);
       if (!step.allFinite()) return guess;
       pose = pose * exp_se3(step);
     }
@@ -99,7 +99,7 @@ class Aligner {
       const Eigen::Vector3f in_camera = rotation.transpose() * normal;
       jacobian.head<3>() = in_camera.cast<double>();
       jacobian.tail<3>() = point.cross(in_camera).cast<double>();
-      sum.hessian.noalias() += weight * jacobian * jacobian.transpose();
+      sum.hessian.selfadjointView<Eigen::Lower>().rankUpdate(jacobian, weight);
       sum.gradient.noalias() += weight * distance * jacobian;
     }
   }

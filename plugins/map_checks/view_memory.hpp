@@ -27,7 +27,7 @@ struct View {
 };
 
 struct MemoryOptions {
-  int views = 10;           ///< kept
+  int views = 8;            ///< kept
   double interval = 0.33;   ///< s, after which a frame is kept in any case
   double angle = 10.0;      ///< degrees, and
   double distance = 0.15;   ///< m from every view kept: then a frame is kept at once
