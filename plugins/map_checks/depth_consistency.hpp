@@ -14,7 +14,7 @@ class DepthConsistency final : public MapChecker {
   struct Options {
     MemoryOptions memory;
     VerdictOptions verdict;
-    double min_agreement = 0.3;
+    double min_agreement = 0.5;
 
     void visit(OptionVisitor& visitor);
   };

@@ -15,16 +15,16 @@ constexpr float kFirstGate = 0.15F;  // m off a surface; later ones are nearer
 constexpr float kLastGate = 0.05F;
 constexpr float kOnSurface = 0.04F;  // m
 // Neighbouring points err together (registration, calibration): so many of them count as one.
-constexpr double kCorrelated = 20.0;
+constexpr double kCorrelated = 5.0;
 constexpr double kSurfaceSigma = 0.01;  // m at 1 m
-constexpr double kGuessPosition = 0.02;  // m, standard deviation of the guess
-constexpr double kGuessAngle = 0.02;     // rad
+constexpr double kGuessPosition = 0.05;  // m, standard deviation of the guess
+constexpr double kGuessAngle = 0.05;     // rad
 
 struct Normal {
   Matrix6d hessian = Matrix6d::Zero();
   Vector6d gradient = Vector6d::Zero();
-  int on_trusted = 0;  // points that a trusted surface is seen at the place of
-  int on_surface = 0;  // of those, that lie on it
+  int on_surface = 0;  // points that lie on a trusted surface
+  int behind = 0;      // points seen through one
 };
 
 std::vector<Eigen::Vector3f> points_of(const cv::Mat& depth, const CellCamera& camera) {
@@ -86,8 +86,8 @@ class Aligner {
       const float distance =
           normal.dot(p - view.camera.unproject(x, y, view.depth.at<float>(cell)));
       const float scale = std::max(1.0F, p.z() * p.z() / 4);  // noise grows with the distance
-      ++sum.on_trusted;
       sum.on_surface += std::abs(distance) < kOnSurface * scale;
+      sum.behind += distance <= -kOnSurface * scale;  // normals look at the camera
       const float limit = gate * scale;
       if (std::abs(distance) >= limit) continue;
       // Tukey's weight; d distance / d (translation, rotation) of the camera's own frame.
@@ -108,9 +108,10 @@ class Aligner {
   std::span<const View* const> views_;
 };
 
+// What stands before a surface may have come in, but nothing is seen through one that has not gone.
 double agreement(const Normal& sum) {
   constexpr double kFewest = 50;  // points
-  return sum.on_surface / std::max(kFewest, static_cast<double>(sum.on_trusted));
+  return sum.on_surface / std::max(kFewest, static_cast<double>(sum.on_surface + sum.behind));
 }
 
 }  // namespace
@@ -119,16 +120,18 @@ ViewAlignment align(const cv::Mat& depth, const CellCamera& camera, std::span<co
                     std::span<const View* const> views) {
   const std::vector<Eigen::Vector3f> points = points_of(depth, camera);
   const Aligner aligner(points, views);
-  ViewAlignment best;
+  const Pose* best = &guesses.front();
+  int most = -1;
   for (const Pose& guess : guesses) {
-    const double share = agreement(aligner.compare(guess, kFirstGate));
-    if (&guess != &guesses.front() && share <= best.agreement) continue;
-    best = {guess, share};
+    const int on_surface = aligner.compare(guess, kFirstGate).on_surface;
+    if (on_surface <= most) continue;
+    best = &guess;
+    most = on_surface;
   }
-  const Pose refined = aligner.refine(best.world_from_camera);
-  const double share = agreement(aligner.compare(refined, kLastGate));
-  if (share >= best.agreement) best = {refined, share};
-  return best;
+  const Pose refined = aligner.refine(*best);
+  const Normal at_refined = aligner.compare(refined, kLastGate);
+  if (at_refined.on_surface >= most) return {refined, agreement(at_refined)};
+  return {*best, agreement(aligner.compare(*best, kLastGate))};
 }
 
 }  // namespace stillpoint

@@ -1,0 +1,212 @@
+#include "map_checks/depth_consistency.hpp"
+
+#include <gtest/gtest.h>
+
+#include <numbers>
+#include <optional>
+
+#include "map_checks/test_room.hpp"
+
+namespace stillpoint {
+namespace {
+
+constexpr double kRate = 10;  // frames per second
+const TestBox kPerson{{-0.3, -0.6, 1.8}, {0.3, 1.2, 2.1}};
+const TestBox kCrowd{{-0.75, -0.8, 1.2}, {0.55, 1.2, 1.4}};  // most of the picture
+
+Pose pose(double x, double y, double z, double degrees = 0) {
+  Pose result = Pose::Identity();
+  result.linear() = exp_so3({0, degrees * std::numbers::pi / 180, 0});
+  result.translation() = Eigen::Vector3d(x, y, z);
+  return result;
+}
+
+/// Share of the cells of a mask in which a test holds.
+double share(const cv::Mat& condition, const cv::Mat& mask) {
+  return cv::countNonZero(condition & mask) / static_cast<double>(cv::countNonZero(mask));
+}
+
+/// A check whose frames are tracked where the camera truly is.
+class World {
+ public:
+  TestRoom room;
+  StaticWeights weights;
+  double time = 0;
+
+  explicit World(const DepthConsistency::Options& options = {}, cv::Size size = {320, 240})
+      : room(size), check_(options) {}
+
+  /// The camera's way: to and fro, 0.2 m.
+  Pose way() const { return pose(0.1 * std::sin(time), 0, 0, 2 * std::cos(time)); }
+
+  MapEvidence next(std::optional<std::vector<Pose>> guesses = std::nullopt) {
+    const auto frame = room.see(way(), time);
+    const std::vector<Pose> poses = guesses ? *guesses : std::vector<Pose>{way()};
+    const MapEvidence evidence = check_.check(*frame, poses, map_);
+    check_.remember({.frame = frame,
+                     .weights = std::make_shared<const StaticWeights>(weights),
+                     .world_from_camera = way()});
+    time += 1 / kRate;
+    return evidence;
+  }
+  MapEvidence after(double seconds) {
+    for (int i = 1; i < seconds * kRate; ++i) next();
+    return next();
+  }
+
+ private:
+  DepthConsistency check_;
+  SparseMap map_;
+};
+
+TEST(DepthConsistency, KnowsNothingAtFirst) { EXPECT_TRUE(World().next().log_odds.empty()); }
+
+TEST(DepthConsistency, WhatStandsIsStatic) {
+  World world;
+  const cv::Mat log_odds = world.after(4).log_odds;
+  const cv::Mat all(log_odds.size(), CV_8U, cv::Scalar(255));
+  EXPECT_GT(share(log_odds <= -4, all), 0.9);
+  EXPECT_LT(share(log_odds > 0, all), 0.002);
+}
+
+TEST(DepthConsistency, WhoComesInIsSeenAtOnce) {
+  World world;
+  world.after(3);
+  world.room.boxes.push_back(kPerson);
+  const cv::Mat person = world.room.cells_of(kPerson, world.way(), kCell);
+  const cv::Mat log_odds = world.next().log_odds;
+  EXPECT_GT(share(log_odds > 3, person), 0.95);
+  EXPECT_LT(share(log_odds > 0, ~person), 0.01);
+}
+
+TEST(DepthConsistency, WhereSomebodyWasTheRoomIsStatic) {
+  World world;
+  world.after(2);
+  world.room.boxes.push_back(kPerson);
+  world.weights.track = world.weights.map = cv::Mat(240, 320, CV_8U, cv::Scalar(255));
+  world.after(0.5);
+  world.room.boxes.pop_back();
+  const cv::Mat log_odds = world.next().log_odds;
+  EXPECT_LT(share(log_odds > 0, cv::Mat(log_odds.size(), CV_8U, cv::Scalar(255))), 0.002);
+}
+
+// Most of the picture moves, and the first guess follows it: the surfaces of before outvote both.
+TEST(DepthConsistency, ACrowdDoesNotTakeTheCameraAlong) {
+  World world;
+  world.after(3);
+  world.room.boxes.push_back(kCrowd);
+  const cv::Mat crowd = world.room.cells_of(kCrowd, world.way(), kCell);
+  ASSERT_GT(cv::countNonZero(crowd), 0.55 * crowd.total());
+  const Pose true_pose = world.way();
+  const cv::Mat log_odds =
+      world.next({{true_pose * pose(0.15, 0.02, 0.1, 5), true_pose * pose(0.01, 0.005, 0.01, 0.8)}})
+          .log_odds;
+  ASSERT_FALSE(log_odds.empty());
+  EXPECT_GT(share(log_odds > 3, crowd), 0.95);
+  EXPECT_GT(share(log_odds <= -4, ~crowd), 0.75);
+}
+
+TEST(DepthConsistency, APoseThatDoesNotFitSaysNothing) {
+  World world;
+  world.after(3);
+  EXPECT_TRUE(world.next({{world.way() * pose(0.8, -0.4, 0.9, 35)}}).log_odds.empty());
+}
+
+TEST(DepthConsistency, WhatIsPutDownIsBelievedInTime) {
+  DepthConsistency::Options options;
+  options.verdict.rest_time = 2;
+  World world(options);
+  world.after(3);
+  world.room.boxes.push_back(kPerson);
+  const auto share_of_mover = [&](const MapEvidence& evidence) {
+    return share(evidence.log_odds > 0, world.room.cells_of(kPerson, world.way(), kCell));
+  };
+  world.weights.map = cv::Mat(240, 320, CV_8U, cv::Scalar(255));
+  world.weights.map.setTo(0);  // whoever it is, it is not mapped while it is new
+  EXPECT_GT(share_of_mover(world.after(1)), 0.9);
+  EXPECT_LT(share_of_mover(world.after(2.5)), 0.1);
+}
+
+TEST(DepthConsistency, WhatWasNotTrustedSaysLittle) {
+  World world;
+  world.weights.track = world.weights.map = cv::Mat(240, 320, CV_8U, cv::Scalar(0));
+  const cv::Mat log_odds = world.after(3).log_odds;
+  if (!log_odds.empty()) {
+    double lowest = 0;
+    cv::minMaxLoc(log_odds, &lowest);
+    EXPECT_GT(lowest, -1);
+  }
+}
+
+TEST(DepthConsistency, TakesImagesOfAnySize) {
+  World world({}, {251, 187});
+  const cv::Mat log_odds = world.after(2).log_odds;
+  EXPECT_EQ(log_odds.size(), cv::Size(251 / kCell, 187 / kCell));
+  EXPECT_GT(share(log_odds < 0, cv::Mat(log_odds.size(), CV_8U, cv::Scalar(255))), 0.8);
+}
+
+TEST(DepthConsistency, NoDepthIsNoEvidence) {
+  World world;
+  world.after(2);
+  const auto frame = std::const_pointer_cast<Frame>(world.room.see(world.way(), world.time));
+  frame->depth.setTo(0);
+  DepthConsistency check({});
+  const Pose here = world.way();
+  EXPECT_TRUE(check.check(*frame, {&here, 1}, {}).log_odds.empty());
+}
+
+TEST(DepthConsistency, TheSameFramesGiveTheSameEvidence) {
+  World a, b;
+  const cv::Mat first = a.after(2).log_odds, second = b.after(2).log_odds;
+  EXPECT_EQ(cv::countNonZero(first != second), 0);
+}
+
+TEST(ViewMemory, KeepsTheOldAndTheNew) {
+  TestRoom room({64, 48});
+  ViewMemory memory({.views = 5});
+  const auto weights = std::make_shared<const StaticWeights>();
+  for (int i = 0; i < 300; ++i)
+    memory.add({.frame = room.see(Pose::Identity(), i / 30.0), .weights = weights});
+  const auto& views = memory.views_in({});
+  ASSERT_EQ(views.size(), 5u);
+  EXPECT_GT(views.front().time, 9.0);
+  EXPECT_LT(views.back().time, 1.0);
+  for (std::size_t i = 1; i < views.size(); ++i) EXPECT_LT(views[i].time, views[i - 1].time);
+}
+
+TEST(ViewMemory, ViewsMoveWithTheMap) {
+  TestRoom room({64, 48});
+  ViewMemory memory({});
+  KeyFrame keyframe{.id = 0};
+  keyframe.features = std::make_shared<const Features>();
+  keyframe.world_from_camera = pose(1, 2, 3);
+  MapEdit edit({});
+  edit.add_keyframe(keyframe);
+  const SparseMap map = std::move(edit).finish();
+  memory.add({.frame = room.see(Pose::Identity(), 0),
+              .weights = std::make_shared<const StaticWeights>(),
+              .reference = 0,
+              .reference_from_camera = pose(0.5, 0, 0)});
+  EXPECT_TRUE(memory.views_in(map)[0].world_from_camera.isApprox(pose(1.5, 2, 3)));
+}
+
+TEST(ViewAlignment, FindsThePoseToMillimetres) {
+  TestRoom room;
+  ViewMemory memory({});
+  memory.add({.frame = room.see(Pose::Identity(), 0),
+              .weights = std::make_shared<const StaticWeights>()});
+  const View& view = memory.views_in({})[0];
+  const View* const views[] = {&view};
+  const Pose true_pose = pose(0.05, -0.02, 0.04, 2);
+  const auto frame = room.see(true_pose, 1);
+  const Pose guess = true_pose * pose(0.02, 0.01, -0.015, 1);
+  const ViewAlignment found =
+      align(sample_depth(frame->depth), CellCamera(*frame->camera), {&guess, 1}, views);
+  const Pose off = true_pose.inverse() * found.world_from_camera;
+  EXPECT_LT(off.translation().norm(), 0.012);
+  EXPECT_LT(rotation_angle(off), 0.005);
+  EXPECT_GT(found.agreement, 0.9);
+}
+
+}  // namespace
+}  // namespace stillpoint
