@@ -7,19 +7,28 @@ from torch.utils.data import Dataset
 
 from camera import Camera, colours
 from samples import load
-from scene import add_clutter, any_shape, log_uniform, placed_person, plain, view
+from scene import add_clutter, any_shape, checked, log_uniform, placed_person, plain, view
 
 # Shares of the kinds of images.
 KINDS = {
-    'people': 0.30,  # as photographed
-    'pasted': 0.22,  # people in rooms
-    'people_clutter': 0.14,  # people behind or in front of drawn clutter
-    'clutter': 0.14,  # the same without people
-    'room': 0.12,  # nobody
-    'close': 0.08,  # a small part of a room fills the image
+    'people': 0.34,  # as photographed
+    'pasted': 0.16,  # people in rooms
+    'people_clutter': 0.25,  # people behind or in front of drawn clutter
+    'clutter': 0.15,  # the same without people
+    'room': 0.05,  # nobody
+    'close': 0.05,  # a small part of a room fills the image
 }
 # How often photographs of a source are taken, for those with people in them.
-WEIGHTS = {'clothing': 1.0, 'pennfudan': 1.5, 'rooms': 2.0, 'sport': 1.0}
+WEIGHTS = {'clothing': 1.0, 'pennfudan': 1.5, 'rooms': 3.0, 'sport': 2.0}
+# The same for people to cut out: few photographs of sport have good outlines.
+CUT_OUT_WEIGHTS = {'clothing': 1.0, 'pennfudan': 1.0, 'sport': 1.5}
+# Of those without people the few by an RGB-D camera are most like what the network will see.
+EMPTY_WEIGHTS = {'kitchen': 3.0, 'rooms': 1.0}
+
+
+def shares(entries, weights):
+    found = np.array([weights[entry.photo.source] for entry in entries])
+    return found / found.sum()
 
 
 def piece_of(sample):
@@ -38,8 +47,9 @@ class Maker:
 
     def __init__(self, collection):
         self.collection, self.camera = collection, Camera()
-        weights = np.array([WEIGHTS[entry.photo.source] for entry in collection.people])
-        self.people_shares = weights / weights.sum()
+        self.people_shares = shares(collection.people, WEIGHTS)
+        self.empty_shares = shares(collection.empty, EMPTY_WEIGHTS)
+        self.cut_out_shares = shares(collection.cut_outs, CUT_OUT_WEIGHTS)
 
     def make(self, rng):
         """An 8-bit BGR image, its target and weight."""
@@ -64,7 +74,7 @@ class Maker:
         return self.camera.photograph(rng, scene.image), scene.target, scene.weight
 
     def _empty(self, rng):
-        return self.collection.empty[int(rng.integers(len(self.collection.empty)))].photo
+        return self.collection.empty[rng.choice(len(self.empty_shares), p=self.empty_shares)].photo
 
     def _people(self, rng):
         entry = self.collection.people[rng.choice(len(self.people_shares), p=self.people_shares)]
@@ -81,7 +91,8 @@ class Maker:
         return view(rng, load(self._empty(rng)), zoom)
 
     def _cut_out(self, rng, any_turn=False):
-        entry = self.collection.cut_outs[int(rng.integers(len(self.collection.cut_outs)))]
+        entry = self.collection.cut_outs[rng.choice(len(self.cut_out_shares),
+                                                    p=self.cut_out_shares)]
         return placed_person(rng, load(entry.photo), entry.box, any_turn)
 
     def _filling(self, rng, sample):
@@ -92,7 +103,7 @@ class Maker:
 
     def _decoy(self, rng, scene, sample):
         """Something that has the outline of a person, or any, and is none."""
-        opacity = self._cut_out(rng, True)[1] if rng.random() < 0.5 else any_shape(rng)
+        opacity = self._cut_out(rng, True)[1] if rng.random() < 0.25 else any_shape(rng)
         scene.cover(self._filling(rng, sample), opacity)
 
     def _paste_person(self, rng, scene):
@@ -101,6 +112,8 @@ class Maker:
         image = colours(rng, image)
         if rng.random() < 0.25:
             image = np.ascontiguousarray(image[:, :, rng.permutation(3)])
+        if rng.random() < 0.2:
+            image = checked(rng, image)
         mine = np.mean(cv2.mean(image, (opacity > 0.5).astype(np.uint8))[:3])
         theirs = np.mean(cv2.mean(scene.image)[:3])
         gain = np.clip(theirs / max(12, mine), 0.3, 3) ** rng.uniform(0, 1)

@@ -1,7 +1,8 @@
 #!/usr/bin/python3
 """Measures person networks: overlap with true masks, false positives without people, time.
 
-Nothing that is measured here was trained on. Sets that are not there are left out."""
+The photographs are those that training holds out, see sources.py. Sets that are not there are left
+out."""
 
 import argparse
 import sys

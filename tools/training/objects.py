@@ -208,8 +208,31 @@ def chair(rng, _):
     return lit(rng, image), opacity
 
 
+def bundle(rng, texture):
+    """Pens in a mug, flowers in a vase, brushes, cutlery."""
+    pot, opacity = cylinder(rng, texture)
+    height, width = opacity.shape
+    above = int(height * rng.uniform(0.4, 1.2))
+    image = np.vstack([filled(width * 2, above, 0), np.zeros((height, width * 2, 3), np.uint8)])
+    cover = np.zeros(image.shape[:2], np.uint8)
+    left = width // 2
+    for _ in range(int(rng.integers(3, 16))):
+        foot = left + int(rng.integers(width // 4, width * 3 // 4 + 1)), above + height // 2
+        tip = left + int(rng.uniform(-0.4, 1.4) * width), int(rng.uniform(0, 0.7) * above)
+        thick = int(rng.integers(1, 6))
+        cv2.line(image, foot, tip, colour(rng), thick)
+        cv2.line(cover, foot, tip, 255, thick)
+        if rng.random() < 0.3:
+            cv2.circle(image, tip, thick * 2, colour(rng), -1)
+            cv2.circle(cover, tip, thick * 2, 255, -1)
+    front = opacity > 0
+    image[above:, left:left + width][front] = pot[front]
+    cover[above:, left:left + width][front] = 255
+    return image, cover
+
+
 KINDS = (sheet, sheet, keyboard, monitor, carton, carton, cylinder, lump, lump, lump, plant,
-         row_of_books, chair)
+         bundle, bundle, row_of_books, chair)
 
 
 def any_object(rng, texture):

@@ -105,7 +105,7 @@ def placed_person(rng, sample, box, any_turn=False):
     low, high = sorted((canvas_height - tall / 2, tall / 2))
     x = rng.uniform(-0.08, 1.08) * WIDTH
     y = rng.uniform(low - 0.25 * canvas_height, high + 0.3 * canvas_height)
-    turn = rng.normal(0, 0.13)
+    turn = rng.normal(0, 0.5 if rng.random() < 0.25 else 0.13)  # some bend down
     if box[3] > 0.97:  # cut off below in the photograph: below the edge here too
         y, turn = max(y, canvas_height - (y1 - y0) / 2 * scales[1] + 2), turn * 0.3
     if any_turn:
@@ -115,6 +115,18 @@ def placed_person(rng, sample, box, any_turn=False):
     image = warped(sample.image, matrix, cv2.BORDER_REPLICATE)
     target = warped(sample.target, matrix, cv2.BORDER_CONSTANT)
     return image, np.clip((target - 0.3) / 0.4, 0, 1)
+
+
+def checked(rng, image):
+    """The image with stripes or checks, as of clothes."""
+    y, x = np.mgrid[:HEIGHT, :WIDTH].astype(np.float32)
+    turn, period = rng.uniform(0, np.pi), log_uniform(rng, 3, 30)
+    u, v = x * np.cos(turn) + y * np.sin(turn), y * np.cos(turn) - x * np.sin(turn)
+    pattern = np.clip(np.sin(2 * np.pi / period * u) * rng.uniform(1, 4), -1, 1)
+    if rng.random() < 0.6:
+        pattern = pattern + np.clip(np.sin(2 * np.pi / period * v) * rng.uniform(1, 4), -1, 1)
+    change = pattern[:, :, None] * rng.uniform(-60, 60) * rng.uniform(0.3, 1, 3)
+    return cv2.add(image, change.astype(np.float32), dtype=cv2.CV_8U)
 
 
 def half_plane(rng, lowest=0.1, highest=0.95):
@@ -209,7 +221,7 @@ def add_clutter(scene, rng, texture):
     horizon = rng.uniform(-0.4, 0.75)
     if rng.random() < 0.8:
         scene.cover(table_top(rng, texture), half_plane(rng, horizon - 0.02, horizon + 0.02))
-    near = log_uniform(rng, 0.6, 2.2)
+    near = log_uniform(rng, 0.6, 3.5)
     rows = np.sort(rng.uniform(max(horizon, 0) - 0.05, 1.1, int(rng.integers(4, 18))))
     for row in rows:
         size = near * (30 + 55 * max(0.0, row - min(horizon, 0.3))) * log_uniform(rng, 0.5, 1.8)
