@@ -22,15 +22,16 @@ from teachers import VOC_PERSON, enlarge  # noqa: E402
 FR1_EVERY = 5
 TIMED_RUNS = 60
 ROOMS = 200  # empty rooms looked at
-THRESHOLDS = (-2, -1, -0.5, 0, 0.5, 1, 1.5, 2, 3)
+THRESHOLDS = (-2, -1.5, -1.25, -1, -0.75, -0.5, 0, 0.5, 1, 2, 3)
 
 
 class Network:
-    """A network, its input, and the score of a pixel: a person where it is above 0."""
+    """A network, its input, and the score of a pixel: a person where it is above the margin."""
 
-    def __init__(self, path, size, scale, mean, score, output=None):
+    def __init__(self, path, size, scale, mean, score, output=None, margin=0.0):
         self.name, self.size, self.scale, self.mean = Path(path).stem, size, scale, mean
         self.reader, self.output, self.score_of = cv2.dnn.readNet(str(path)), output, score
+        self.margin = margin
 
     def forward(self, image):
         blob = cv2.dnn.blobFromImage(image, self.scale, self.size, (self.mean,) * 3, True)
@@ -57,8 +58,9 @@ def from_classes(planes, network_size, size):
     return person - large.max(axis=0)
 
 
-def own_network(path):
-    return Network(path, (INPUT_WIDTH, INPUT_HEIGHT), 1 / 128, 128, from_logits)
+def own_network(path, margin):
+    size = (INPUT_WIDTH, INPUT_HEIGHT)
+    return Network(path, size, 1 / 128, 128, from_logits, margin=margin)
 
 
 def known_networks(folder):
@@ -153,8 +155,9 @@ def empty_sets(args):
     return {name: images for name, images in sets.items() if images}
 
 
-def overlaps(network, images, thresholds=(0,)):
-    """One Overlap per threshold of the score."""
+def overlaps(network, images, thresholds=None):
+    """One Overlap per threshold of the score; of the network's margin when none is given."""
+    thresholds = thresholds or (network.margin,)
     results = [Overlap() for _ in thresholds]
     for image, truth, known in images:
         scores = network.scores(image)
@@ -163,7 +166,8 @@ def overlaps(network, images, thresholds=(0,)):
     return results
 
 
-def shares(network, images, thresholds=(0,)):
+def shares(network, images, thresholds=None):
+    thresholds = thresholds or (network.margin,)
     results = [Share() for _ in thresholds]
     for image in images:
         scores = network.scores(image)
@@ -175,7 +179,7 @@ def shares(network, images, thresholds=(0,)):
 def agreement(network, other, images):
     result = Overlap()
     for image in images:
-        result.add(network.scores(image) > 0, other.scores(image) > 0)
+        result.add(network.scores(image) > network.margin, other.scores(image) > other.margin)
     return result
 
 
@@ -232,6 +236,8 @@ def arguments():
     parser.add_argument('--shared', type=Path, help='shared folder: data, photos')
     parser.add_argument('--compare', type=Path, action='append', default=[],
                         help='folder with published networks, by their names')
+    parser.add_argument('--margin', type=float, default=-0.75,
+                        help='least logit of a person for the own networks, as in person.yaml')
     parser.add_argument('--sweep', action='store_true', help='thresholds of the own networks, too')
     parser.add_argument('--time', action='store_true', help='time instead of accuracy')
     parser.add_argument('--threads', type=int, default=2)
@@ -241,7 +247,7 @@ def arguments():
 def main():
     args = arguments()
     cv2.setNumThreads(args.threads)
-    own = [own_network(path) for path in args.onnx]
+    own = [own_network(path, args.margin) for path in args.onnx]
     networks = own + [network for folder in args.compare for network in known_networks(folder)]
     if args.time:
         image = np.random.RandomState(0).randint(0, 256, (480, 640, 3), np.uint8)
