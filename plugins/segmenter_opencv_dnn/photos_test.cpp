@@ -103,6 +103,18 @@ TEST_F(Photos, TheShippedNetworkIsAsGoodInAMirror) {
   }
 }
 
+TEST_F(Photos, PersonNetwork) {
+  Options options;  // as configs/segmenters/person.yaml has them
+  options.network = {.model = shipped_model().replace_filename("person_320x256.onnx"),
+                     .width = 320,
+                     .height = 256,
+                     .scale = {1.0 / 128},
+                     .mean = {128}};
+  options.rule.result = ResultKind::kLogit;
+  options.rule.margin = -0.75;
+  EXPECT_NEAR(total_iou(options), 0.775, kTolerance);
+}
+
 TEST_F(Photos, SquareSelfieNetwork) {
   Options options;
   options.network.model = shared_data() / "models/selfie_segmentation.onnx";

@@ -40,6 +40,19 @@ OpenCvDnnSegmenter::Options refined() {
   return options;
 }
 
+/// As configs/segmenters/person.yaml has it.
+OpenCvDnnSegmenter::Options person() {
+  OpenCvDnnSegmenter::Options options;
+  options.network = {.model = std::string(kModels) + "person_320x256.onnx",
+                     .width = 320,
+                     .height = 256,
+                     .scale = {1.0 / 128},
+                     .mean = {128}};
+  options.rule.result = ResultKind::kLogit;
+  options.rule.margin = -0.75;
+  return options;
+}
+
 OpenCvDnnSegmenter::Options deeplab() {
   OpenCvDnnSegmenter::Options options;
   options.network = {.model = std::string(kSharedModels) + "deeplabv3_mnv2_voc21.onnx",
@@ -72,6 +85,12 @@ BENCHMARK_CAPTURE(segment, shipped, shipped())
     ->UseRealTime()
     ->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(segment, refined, refined())
+    ->Arg(1)
+    ->Arg(2)
+    ->MeasureProcessCPUTime()
+    ->UseRealTime()
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(segment, person, person())
     ->Arg(1)
     ->Arg(2)
     ->MeasureProcessCPUTime()

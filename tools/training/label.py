@@ -1,0 +1,50 @@
+#!/usr/bin/python3
+"""Labels photographs with the teachers. What has been labelled before is left as it is."""
+
+import argparse
+import os
+import sys
+import time
+from pathlib import Path
+
+sys.dont_write_bytecode = True
+
+import cv2  # noqa: E402
+
+from sources import SOURCES, photographs  # noqa: E402
+from teachers import Teachers  # noqa: E402
+
+
+def arguments():
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument('work', type=Path, help='working folder, see prepare.py')
+    parser.add_argument('models', type=Path,
+                        help='folder with deeplabv3_mnv2_voc21.onnx, bodypix_mnv1_075_person.onnx')
+    parser.add_argument('--source', action='append', choices=SOURCES, help='default: all, in turn')
+    parser.add_argument('--masked', action='store_true', help='those with a true mask, too')
+    parser.add_argument('--threads', type=int, default=2)
+    return parser.parse_args()
+
+
+def write_whole(path, image):
+    """Never leaves half a file behind."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    unfinished = path.with_suffix('.part.png')
+    cv2.imwrite(str(unfinished), image)
+    os.replace(unfinished, path)
+
+
+def main():
+    args = arguments()
+    cv2.setNumThreads(args.threads)
+    teachers = Teachers(args.models)
+    missing = [photo for photo in photographs(args.work, args.source or SOURCES)
+               if not photo.teachers_path.exists() and (args.masked or not photo.mask_path)]
+    start = time.monotonic()
+    for count, photo in enumerate(missing, 1):
+        write_whole(photo.teachers_path, teachers.label(cv2.imread(str(photo.path))))
+        if count % 200 == 0 or count == len(missing):
+            print(f'{count} of {len(missing)}, {time.monotonic() - start:.0f} s', flush=True)
+
+
+main()
