@@ -51,10 +51,12 @@ TEST(Classes, AreCheckedAtTheStart) {
 
 TEST(ObjectVote, WhoWalksIsRemovedWhoStandsIsKept) {
   ObjectVote decision({}, with_classes());
-  const StaticWeights walks = decision.decide(make_frame(), make_labels(), make_points(kPerson), {});
+  const StaticWeights walks =
+      decision.decide(make_frame(), make_labels(), make_points(kPerson), {});
   EXPECT_EQ(weight_at(walks.track, 250, 200), 0);
   EXPECT_EQ(weight_at(walks.track, 500, 200), 255);
-  const StaticWeights stands = decision.decide(make_frame(), make_labels(), make_points(kNowhere), {});
+  const StaticWeights stands =
+      decision.decide(make_frame(), make_labels(), make_points(kNowhere), {});
   EXPECT_EQ(weight_at(stands.track, 250, 200), 255);
   EXPECT_EQ(stands.object_moves, std::vector{false});
 }
@@ -96,7 +98,8 @@ TEST(GeometryOnly, FindsWhatMovesWithoutLabelsUpToItsEdge) {
 
 TEST(GeometryOnly, ForgetsWhatStandsStillAgain) {
   GeometryOnly decision({});
-  for (std::uint32_t i = 0; i < 10; ++i) decision.decide(make_frame(i), {}, make_points(kPerson), {});
+  for (std::uint32_t i = 0; i < 10; ++i)
+    decision.decide(make_frame(i), {}, make_points(kPerson), {});
   StaticWeights w;
   for (std::uint32_t i = 10; i < 25; ++i)
     w = decision.decide(make_frame(i), {}, make_points(kNowhere), {});
@@ -116,7 +119,8 @@ TEST(Bayes, AClassWithAHighPriorIsNotUsedBeforeAnythingIsMeasured) {
   const StaticWeights person = decision.decide(make_frame(), make_labels(15), {}, {});
   EXPECT_EQ(weight_at(person.track, 250, 200), 0);
   EXPECT_EQ(person.object_moves, std::vector{true});
-  const StaticWeights chair = Bayes({}, with_classes()).decide(make_frame(), make_labels(9), {}, {});
+  const StaticWeights chair =
+      Bayes({}, with_classes()).decide(make_frame(), make_labels(9), {}, {});
   EXPECT_EQ(weight_at(chair.track, 250, 200), 255);
 }
 
@@ -158,6 +162,39 @@ TEST(Bayes, FindsUnlabelledThings) {
   EXPECT_EQ(weight_at(w.track, 500, 200), 255);
 }
 
+// Somebody in dark clothes, whom the network overlooks.
+TEST(Bayes, WhatHasComeInIsNotUsed) {
+  Bayes decision({}, with_classes());
+  const StaticWeights w =
+      decision.decide(make_frame(), make_labels(5, {0, 0, 40, 40}), {}, make_evidence(kPerson, 6));
+  EXPECT_EQ(weight_at(w.track, 250, 200), 0);
+  EXPECT_EQ(weight_at(w.map, 250, 200), 0);
+  EXPECT_EQ(weight_at(w.track, 500, 200), 255);
+}
+
+// A desk that is called a person for a second: the map has long known it.
+TEST(Bayes, TheMapContradictsLabels) {
+  Bayes decision({}, with_classes());
+  const cv::Rect upper(kPerson.x, kPerson.y, kPerson.width, kPerson.height / 2);
+  const StaticWeights w =
+      decision.decide(make_frame(), make_labels(), {}, make_evidence(upper, -6));
+  EXPECT_EQ(weight_at(w.track, 250, 180), 255);
+  EXPECT_EQ(weight_at(w.map, 250, 180), 255);
+  EXPECT_EQ(weight_at(w.track, 250, 350), 0) << "of this half the map knows nothing";
+  EXPECT_EQ(weight_at(w.map, 250, 350), 0);
+}
+
+// Who sits still is where the map saw them, but they are never mapped.
+TEST(Bayes, WhoOnlySitsStillIsNotMapped) {
+  Bayes decision({}, with_classes());
+  StaticWeights w;
+  for (std::uint32_t i = 0; i < 60; ++i)
+    w = decision.decide(make_frame(i), make_labels(), make_points(kNowhere),
+                        make_evidence(kPerson, -2.4F));
+  EXPECT_EQ(weight_at(w.track, 250, 200), 255);
+  EXPECT_EQ(weight_at(w.map, 250, 200), 0);
+}
+
 TEST(Bayes, TheOtherClassesSayNothingOfWhatHasNoLabel) {
   Bayes decision({.other = {.prior = 0.8}}, with_classes());
   const StaticWeights w = decision.decide(make_frame(), make_labels(5), make_points(kNowhere), {});
@@ -170,7 +207,8 @@ TEST(Bayes, UnreliablePointsChangeNothing) {
   points.reliable = false;
   Bayes decision({}, with_classes());
   StaticWeights w;
-  for (std::uint32_t i = 0; i < 10; ++i) w = decision.decide(make_frame(i), make_labels(9), points, {});
+  for (std::uint32_t i = 0; i < 10; ++i)
+    w = decision.decide(make_frame(i), make_labels(9), points, {});
   EXPECT_FALSE(w.object_moves[0]);
   EXPECT_EQ(weight_at(w.track, 250, 200), 255);
 }
@@ -185,9 +223,11 @@ TEST(Bayes, BeliefsFollowObjectsByTheirId) {
   EXPECT_FALSE(w.object_moves[0]);
   Segmentation elsewhere = make_labels(15, cv::Rect(450, 100, 120, 300));
   elsewhere.objects[0].id = 7;
-  EXPECT_FALSE(decision.decide(make_frame(60), elsewhere, make_points(kNowhere), {}).object_moves[0]);
+  EXPECT_FALSE(
+      decision.decide(make_frame(60), elsewhere, make_points(kNowhere), {}).object_moves[0]);
   elsewhere.objects[0].id = 8;
-  EXPECT_TRUE(decision.decide(make_frame(61), elsewhere, make_points(kNowhere), {}).object_moves[0]);
+  EXPECT_TRUE(
+      decision.decide(make_frame(61), elsewhere, make_points(kNowhere), {}).object_moves[0]);
 }
 
 TEST(Bayes, WhoWasMissedForLongIsJudgedByTheClassAgain) {

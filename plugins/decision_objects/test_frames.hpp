@@ -51,6 +51,15 @@ inline MovingPoints make_points(const cv::Rect& moving_box, double moving_share 
   return points;
 }
 
+/// The same log-odds everywhere inside a box, none outside.
+inline MapEvidence make_evidence(const cv::Rect& box, float log_odds) {
+  constexpr int kCell = 4;  // px
+  MapEvidence evidence{cv::Mat(480 / kCell, 640 / kCell, CV_32FC1, cv::Scalar(0))};
+  evidence.log_odds(cv::Rect(box.x / kCell, box.y / kCell, box.width / kCell, box.height / kCell)) =
+      log_odds;
+  return evidence;
+}
+
 inline StageContext with_classes(const char* list = "voc21") {
   StageContext context;
   if (*list) context.classes = named_classes(list);

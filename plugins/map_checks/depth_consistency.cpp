@@ -38,8 +38,9 @@ void DepthConsistency::Options::visit(OptionVisitor& v) {
   v("min_agreement", min_agreement,
     {.min = 0,
      .max = 1,
-     .help = "of the points on or behind trusted surfaces, share that must lie on them, else nothing "
-             "is said"});
+     .help =
+         "of the points on or behind trusted surfaces, share that must lie on them, else nothing "
+         "is said"});
 }
 
 MapEvidence DepthConsistency::check(const Frame& frame, std::span<const Pose> guesses,

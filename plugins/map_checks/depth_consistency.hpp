@@ -7,8 +7,9 @@
 namespace stillpoint {
 
 /// Nearer than a surface that was seen through here: something has come in. Where it was, from
-/// another viewpoint or after a second: it stands still. Needs neither labels nor a motion that most
-/// of the image agrees on (after DynaSLAM's multi-view geometry, Bescos et al., RA-L 2018, III-B).
+/// another viewpoint or after a second: it stands still. Needs neither labels nor a motion that
+/// most of the image agrees on (after DynaSLAM's multi-view geometry, Bescos et al., RA-L 2018,
+/// III-B).
 class DepthConsistency final : public MapChecker {
  public:
   struct Options {
@@ -19,8 +20,7 @@ class DepthConsistency final : public MapChecker {
     void visit(OptionVisitor& visitor);
   };
 
-  explicit DepthConsistency(const Options& options)
-      : options_(options), memory_(options.memory) {}
+  explicit DepthConsistency(const Options& options) : options_(options), memory_(options.memory) {}
 
   MapEvidence check(const Frame& frame, std::span<const Pose> guesses,
                     const SparseMap& map) override;

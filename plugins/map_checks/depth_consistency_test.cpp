@@ -193,8 +193,8 @@ TEST(ViewMemory, ViewsMoveWithTheMap) {
 TEST(ViewAlignment, FindsThePoseToMillimetres) {
   TestRoom room;
   ViewMemory memory({});
-  memory.add({.frame = room.see(Pose::Identity(), 0),
-              .weights = std::make_shared<const StaticWeights>()});
+  memory.add(
+      {.frame = room.see(Pose::Identity(), 0), .weights = std::make_shared<const StaticWeights>()});
   const View& view = memory.views_in({})[0];
   const View* const views[] = {&view};
   const Pose true_pose = pose(0.05, -0.02, 0.04, 2);

@@ -5,7 +5,8 @@
 using stillpoint::MapChecker;
 using stillpoint::provide;
 
-STILLPOINT_PLUGIN(map_checks, "0.1.0",
-                  provide<MapChecker, stillpoint::DepthConsistency>(
-                      "depth_consistency",
-                      "depth against the surfaces that earlier frames saw, at their present poses"));
+STILLPOINT_PLUGIN(
+    map_checks, "0.1.0",
+    provide<MapChecker, stillpoint::DepthConsistency>(
+        "depth_consistency",
+        "depth against the surfaces that earlier frames saw, at their present poses"));

@@ -44,8 +44,8 @@ class Judge {
   void ask(const View& view, const Pose& world_from_camera, double time) {
     const Pose view_from_camera = view.world_from_camera.inverse() * world_from_camera;
     const auto age = static_cast<float>(time - view.time);
-    const bool tells_rest = age >= options_.min_age ||
-                            view_from_camera.translation().norm() >= options_.min_parallax;
+    const bool tells_rest =
+        age >= options_.min_age || view_from_camera.translation().norm() >= options_.min_parallax;
     for (int y = 0; y < depth_.rows; ++y) {
       project_row(y, view, view_from_camera);
       Verdict* verdict = &verdicts_[static_cast<std::size_t>(y) * depth_.cols];
@@ -72,8 +72,7 @@ class Judge {
     Eigen::Matrix3f calibration = Eigen::Matrix3f::Identity();
     calibration << view.camera.fx, 0, view.camera.cx + 0.5F,  //
         0, view.camera.fy, view.camera.cy + 0.5F, 0, 0, 1;
-    const Eigen::Vector3f first =
-        calibration * r * camera_.unproject(0, static_cast<float>(y), 1);
+    const Eigen::Vector3f first = calibration * r * camera_.unproject(0, static_cast<float>(y), 1);
     const Eigen::Vector3f step = calibration * r.col(0) / camera_.fx;
     const Eigen::Vector3f offset = calibration * t;
     std::copy_n(depth_.ptr<float>(y), depth_.cols, row_.begin());
@@ -93,8 +92,8 @@ class Judge {
       const cv::v_float32 z = along(2, d, column);
       const cv::v_float32 inverse = cv::vx_setall_f32(1) / cv::v_max(z, nearest);
       const cv::v_float32 u = along(0, d, column) * inverse, v = along(1, d, column) * inverse;
-      const cv::v_float32 inside = (d > zero) & (z > nearest) & (u >= zero) & (v >= zero) &
-                                   (u < width) & (v < height);
+      const cv::v_float32 inside =
+          (d > zero) & (z > nearest) & (u >= zero) & (v >= zero) & (u < width) & (v < height);
       const cv::v_int32 cell = cv::v_trunc(v) * row_length + cv::v_trunc(u);
       cv::v_store(&cells_[static_cast<std::size_t>(x)],
                   cv::v_select(cv::v_reinterpret_as_s32(inside), cell, none));
@@ -124,10 +123,9 @@ class Judge {
 
   float evidence_of(const Verdict& verdict) const {
     const double untrusted = verdict.resting >= options_.rest_time ? options_.same_untrusted : 0.0;
-    return static_cast<float>(options_.came_in * verdict.came_in -
-                              options_.same_mapped * verdict.same[kMapped] -
-                              options_.same_tracked * verdict.same[kTracked] -
-                              untrusted * verdict.same[kUntrusted]);
+    return static_cast<float>(
+        options_.came_in * verdict.came_in - options_.same_mapped * verdict.same[kMapped] -
+        options_.same_tracked * verdict.same[kTracked] - untrusted * verdict.same[kUntrusted]);
   }
 
   const cv::Mat& depth_;
@@ -196,13 +194,19 @@ void VerdictOptions::visit(OptionVisitor& v) {
   v("rest_time", rest_time,
     {.min = 0, .max = 600, .unit = "s", .help = "until what has come in counts as resting"});
   v("min_age", min_age,
-    {.min = 0, .max = 600, .unit = "s", .help = "of a view from the same place, to tell who rests"});
+    {.min = 0,
+     .max = 600,
+     .unit = "s",
+     .help = "of a view from the same place, to tell who rests"});
   v("min_parallax", min_parallax,
     {.min = 0, .max = 100, .unit = "m", .help = "between two viewpoints, to tell who rests"});
   v("came_in", came_in,
     {.min = 0, .max = 100, .unit = "log-odds", .help = "of each view that looked through"});
   v("same_mapped", same_mapped,
-    {.min = 0, .max = 100, .unit = "log-odds", .help = "of each view that saw and mapped it there"});
+    {.min = 0,
+     .max = 100,
+     .unit = "log-odds",
+     .help = "of each view that saw and mapped it there"});
   v("same_tracked", same_tracked,
     {.min = 0, .max = 100, .unit = "log-odds", .help = "of each that saw and only tracked it"});
   v("same_untrusted", same_untrusted,

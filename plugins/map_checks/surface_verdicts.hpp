@@ -8,18 +8,18 @@
 namespace stillpoint {
 
 struct VerdictOptions {
-  double margin = 0.04;       ///< m at 0 m, by which something must stand before what was seen
-  double tolerance = 0.015;   ///< m at 0 m, within which it stands where it stood
-  double noise = 0.01;        ///< m at 1 m that both grow by, with the square of the depth
-  double rest_time = 5.0;     ///< s, after which what has come in and stays counts as staying
-  double min_age = 1.0;       ///< s; younger views from the same place do not tell who rests
-  double min_parallax = 0.1;  ///< m between the viewpoints; then younger ones do
-  double came_in = 3.0;       ///< log-odds, of each view that looked through the place
+  double margin = 0.04;         ///< m at 0 m, by which something must stand before what was seen
+  double tolerance = 0.015;     ///< m at 0 m, within which it stands where it stood
+  double noise = 0.01;          ///< m at 1 m that both grow by, with the square of the depth
+  double rest_time = 5.0;       ///< s, after which what has come in and stays counts as staying
+  double min_age = 1.0;         ///< s; younger views from the same place do not tell who rests
+  double min_parallax = 0.1;    ///< m between the viewpoints; then younger ones do
+  double came_in = 3.0;         ///< log-odds, of each view that looked through the place
   double same_mapped = 1.5;     ///< log-odds, of each view that saw it there and mapped it
   double same_tracked = 0.3;    ///< log-odds, of each that only tracked it
   double same_untrusted = 0.3;  ///< log-odds, of each that did neither
-  double range = 8.0;         ///< log-odds, most
-  double reach = 0.5;         ///< m, along a surface from where it has come in to where nobody knows
+  double range = 8.0;           ///< log-odds, most
+  double reach = 0.5;  ///< m, along a surface from where it has come in to where nobody knows
 
   void visit(OptionVisitor& visitor);
 };

@@ -8,15 +8,15 @@
 namespace stillpoint {
 namespace {
 
-constexpr int kStep = 4;         // cells between the points used
-constexpr int kIterations = 4;   // of ICP
+constexpr int kStep = 4;        // cells between the points used
+constexpr int kIterations = 4;  // of ICP
 constexpr std::size_t kMostViews = 3;
 constexpr float kFirstGate = 0.15F;  // m off a surface; later ones are nearer
 constexpr float kLastGate = 0.05F;
 constexpr float kOnSurface = 0.04F;  // m
 // Neighbouring points err together (registration, calibration): so many of them count as one.
 constexpr double kCorrelated = 5.0;
-constexpr double kSurfaceSigma = 0.01;  // m at 1 m
+constexpr double kSurfaceSigma = 0.01;   // m at 1 m
 constexpr double kGuessPosition = 0.05;  // m, standard deviation of the guess
 constexpr double kGuessAngle = 0.05;     // rad
 

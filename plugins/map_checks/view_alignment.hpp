@@ -11,7 +11,8 @@ namespace stillpoint {
 /// Where a depth image lies among the views.
 struct ViewAlignment {
   Pose world_from_camera = Pose::Identity();
-  double agreement = 0.0;  ///< of the points on and behind trusted surfaces, share that lies on them
+  double agreement =
+      0.0;  ///< of the points on and behind trusted surfaces, share that lies on them
 };
 
 /// The guess that agrees best with the trusted surfaces of the views, moved by point-to-plane ICP

@@ -19,18 +19,18 @@ struct View {
   TrackedFrame tracked;  ///< without images
   double time = 0.0;     ///< seconds
   CellCamera camera;
-  cv::Mat depth;    ///< CV_32FC1, see sample_depth
-  cv::Mat bounds;   ///< CV_32FC2, see depth_bounds
-  cv::Mat normals;  ///< CV_32FC3, see surface_normals
-  cv::Mat trust;    ///< CV_8UC1, a Trust
+  cv::Mat depth;                              ///< CV_32FC1, see sample_depth
+  cv::Mat bounds;                             ///< CV_32FC2, see depth_bounds
+  cv::Mat normals;                            ///< CV_32FC3, see surface_normals
+  cv::Mat trust;                              ///< CV_8UC1, a Trust
   Pose world_from_camera = Pose::Identity();  ///< at present
 };
 
 struct MemoryOptions {
-  int views = 8;            ///< kept
-  double interval = 0.33;   ///< s, after which a frame is kept in any case
-  double angle = 10.0;      ///< degrees, and
-  double distance = 0.15;   ///< m from every view kept: then a frame is kept at once
+  int views = 8;           ///< kept
+  double interval = 0.33;  ///< s, after which a frame is kept in any case
+  double angle = 10.0;     ///< degrees, and
+  double distance = 0.15;  ///< m from every view kept: then a frame is kept at once
 
   void visit(OptionVisitor& visitor);
 };

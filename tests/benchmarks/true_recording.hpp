@@ -11,8 +11,8 @@
 #include <string>
 #include <vector>
 
-#include "stillpoint/contracts/frame.hpp"
 #include "evaluation/trajectory.hpp"
+#include "stillpoint/contracts/frame.hpp"
 
 namespace stillpoint {
 

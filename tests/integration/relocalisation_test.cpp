@@ -11,7 +11,6 @@
 
 #include "evaluation/trajectory.hpp"
 #include "support/simulated_recording.hpp"
-#include "evaluation/trajectory.hpp"
 
 namespace stillpoint::testing {
 namespace {

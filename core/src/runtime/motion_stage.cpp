@@ -45,8 +45,8 @@ void MotionStage::find(const Job& job) {
   const Frame& frame = *job.frame;
   found_ = {};
   if (previous_)
-    found_.points = moving_checker_.call("moving_check", frame.index, &MovingChecker::check,
-                                         *previous_, frame);
+    found_.points =
+        moving_checker_.call("moving_check", frame.index, &MovingChecker::check, *previous_, frame);
   found_.evidence = compare_with_map(job);
   found_.labels = segmentation_.at(job.frame);  // waits (paper), or propagates the newest
   previous_ = job.frame;
@@ -57,8 +57,7 @@ MapEvidence MotionStage::compare_with_map(const Job& job) {
   const std::uint32_t index = job.frame->index;
   if (const auto tracked = std::exchange(to_remember_, std::nullopt))
     map_checker_.call("map_check", index, &MapChecker::remember, *tracked);
-  const std::vector<Pose> guesses =
-      prediction_.guesses(job.frame->time, found_.points, *job.map);
+  const std::vector<Pose> guesses = prediction_.guesses(job.frame->time, found_.points, *job.map);
   if (guesses.empty()) return {};
   return map_checker_.call("map_check", index, &MapChecker::check, *job.frame, guesses, *job.map);
 }

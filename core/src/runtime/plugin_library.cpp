@@ -11,10 +11,10 @@
 namespace stillpoint {
 namespace {
 
-constexpr const char* kKinds[] = {
-    Source::kKind,     Segmenter::kKind, Propagator::kKind,  MovingChecker::kKind,
-    MapChecker::kKind, Decision::kKind,  Tracker::kKind,     LocalMapper::kKind,
-    LoopCloser::kKind, MapBackend::kKind, Output::kKind};
+constexpr const char* kKinds[] = {Source::kKind,        Segmenter::kKind,   Propagator::kKind,
+                                  MovingChecker::kKind, MapChecker::kKind,  Decision::kKind,
+                                  Tracker::kKind,       LocalMapper::kKind, LoopCloser::kKind,
+                                  MapBackend::kKind,    Output::kKind};
 
 std::string check_entry(const PluginEntry& entry) {
   if (!entry.kind || !entry.type || !entry.summary || !entry.describe || !entry.create)

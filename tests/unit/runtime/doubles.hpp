@@ -128,11 +128,29 @@ class FakeChecker final : public MovingChecker {
   Journal& journal_;
 };
 
+/// Says how many guesses it was given: as log-odds of a single cell.
+class FakeMapChecker final : public MapChecker {
+ public:
+  explicit FakeMapChecker(Journal& journal) : journal_(journal) {}
+  MapEvidence check(const Frame& frame, std::span<const Pose> guesses, const SparseMap&) override {
+    journal_.write("compare", frame.index);
+    for (const Pose& guess : guesses) last_guesses.push_back(guess.translation().x());
+    return {cv::Mat(1, 1, CV_32FC1, cv::Scalar(static_cast<double>(guesses.size())))};
+  }
+  void remember(const TrackedFrame& frame) override {
+    journal_.write("remember", frame.frame->index);
+  }
+  std::vector<double> last_guesses;  // metres along x, of all calls
+
+ private:
+  Journal& journal_;
+};
+
 class FakeDecision final : public Decision {
  public:
   explicit FakeDecision(Journal& journal) : journal_(journal) {}
-  StaticWeights decide(const Frame& frame, const Segmentation& segmentation,
-                       const MovingPoints&, const MapEvidence&) override {
+  StaticWeights decide(const Frame& frame, const Segmentation& segmentation, const MovingPoints&,
+                       const MapEvidence&) override {
     journal_.write("decide", frame.index);
     return {.object_moves = std::vector<bool>(segmentation.known() ? 1 : 0, true)};
   }

@@ -30,6 +30,12 @@ struct Fixture {
   std::unique_ptr<MotionStage> make(Mode mode) {
     return std::make_unique<MotionStage>(checker, map_checker, segmentation, mode, stop, times);
   }
+  /// The camera is one metre farther along x in every frame.
+  void track(MotionStage& stage, const FramePtr& frame) {
+    TrackResult result{.state = TrackState::kTracking};
+    result.world_from_camera = Pose(Eigen::Translation3d(frame->index, 0.0, 0.0));
+    stage.tracked(frame, std::make_shared<const StaticWeights>(), result, map);
+  }
   FramePtr offer(MotionStage& stage, std::uint32_t index) {
     auto frame = std::make_shared<const Frame>(testing::make_frame(index));
     segmentation.offer(frame);
@@ -114,6 +120,40 @@ TEST_P(MotionStageInBothModes, WithoutACheckThereAreLabelsOnly) {
     EXPECT_TRUE(motion.labels && motion.labels->known());
   }
   for (const StageTime& time : f.times.take()) EXPECT_NE(time.stage, "motion_wait");
+}
+
+TEST_P(MotionStageInBothModes, TheMapIsComparedWhereTheCameraMayBe) {
+  Fixture f;
+  const auto checker = std::make_shared<testing::FakeMapChecker>(f.journal);
+  f.map_checker = {checker, "depth"};
+  const auto stage = f.make(GetParam());
+  for (std::uint32_t i = 0; i < 3; ++i) {
+    const FramePtr frame = f.offer(*stage, i);
+    EXPECT_EQ(stage->at(frame).evidence.log_odds.empty(), i == 0) << "nothing was tracked before";
+    f.track(*stage, frame);
+  }
+  EXPECT_EQ(f.journal.entries("compare"), (Strings{"compare 1", "compare 2"}));
+  EXPECT_EQ(f.journal.entries("remember"), (Strings{"remember 0", "remember 1"}));
+  // With the velocity of before, and without motion.
+  ASSERT_EQ(checker->last_guesses.size(), 4u);
+  const std::vector<double> expected = {0.0, 0.0, 2.0, 1.0};
+  for (std::size_t i = 0; i < expected.size(); ++i)
+    EXPECT_NEAR(checker->last_guesses[i], expected[i], 1e-6);
+}
+
+TEST_P(MotionStageInBothModes, ALostCameraIsComparedWithNothing) {
+  Fixture f;
+  f.map_checker = {std::make_shared<testing::FakeMapChecker>(f.journal), "depth"};
+  const auto stage = f.make(GetParam());
+  const FramePtr first = f.offer(*stage, 0);
+  stage->at(first);
+  f.track(*stage, first);
+  const FramePtr second = f.offer(*stage, 1);
+  stage->at(second);
+  stage->tracked(second, std::make_shared<const StaticWeights>(), {.state = TrackState::kLost},
+                 f.map);
+  EXPECT_TRUE(stage->at(f.offer(*stage, 2)).evidence.log_odds.empty());
+  EXPECT_EQ(f.journal.entries("remember"), (Strings{"remember 0"}));
 }
 
 TEST(MotionStage, WaitingIsMeasured) {
