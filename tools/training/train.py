@@ -41,7 +41,7 @@ def arguments():
                         help='exported weights to train further; default: from scratch')
     parser.add_argument('--iterations', type=int, default=3000)
     parser.add_argument('--batch', type=int, default=16)
-    parser.add_argument('--rate', type=float, default=2e-3,
+    parser.add_argument('--rate', type=float, default=1e-3,
                         help='largest learning rate, see README')
     parser.add_argument('--warm-up', type=int, default=100, help='iterations')
     parser.add_argument('--average', type=int, default=300, help='iterations of the average')
