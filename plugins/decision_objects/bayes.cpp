@@ -28,6 +28,12 @@ std::vector<PointCount> count_points(const Segmentation& segmentation, const Mov
   return counts;
 }
 
+double labelled_share(const Segmentation& segmentation) {
+  if (segmentation.instances.empty()) return 0;
+  return cv::countNonZero(segmentation.instances) /
+         static_cast<double>(segmentation.instances.total());
+}
+
 /// The evidence of the map on the cells of a motion field; 0 without any.
 cv::Mat on_cells(const MapEvidence& evidence, cv::Size cells) {
   if (evidence.log_odds.empty()) return cv::Mat::zeros(cells, CV_32F);
@@ -64,6 +70,10 @@ void Bayes::Options::visit(OptionVisitor& v) {
      .unit = "log-odds",
      .help = "of the map for standing still, from which on a surface is none of a class that is "
              "never mapped"});
+  v("most_labelled", most_labelled,
+    {.min = 0,
+     .max = 1,
+     .help = "of the image: labels of more are not believed, as they leave nothing to track by"});
   v("margin", margin,
     {.min = 0, .max = 50, .unit = "px", .help = "around what moves that is not used either"});
 }
@@ -80,10 +90,12 @@ StaticWeights Bayes::decide(const Frame& frame, const Segmentation& segmentation
                             const MovingPoints& moving, const MapEvidence& evidence) {
   StaticWeights weights;
   field_.update(frame, moving);
+  const bool believed = labelled_share(segmentation) <= options_.most_labelled;
   const cv::Mat from_map = on_cells(evidence, field_.log_odds().size());
   weigh_surfaces(frame, from_map, weights);
   weights.map = weights.track.clone();
-  weigh_objects(frame, segmentation, moving, from_map, weights);
+  weigh_objects(frame, believed ? segmentation : Segmentation{}, moving, from_map, weights);
+  weights.object_moves.resize(segmentation.objects.size());
   return weights;
 }
 

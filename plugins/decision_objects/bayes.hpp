@@ -35,6 +35,7 @@ class Bayes final : public Decision {
     ObjectMotionOptions objects;
     MotionFieldOptions unlabelled;
     double contradiction = 5.0;
+    double most_labelled = 0.7;
     int margin = 5;
 
     void visit(OptionVisitor& visitor);

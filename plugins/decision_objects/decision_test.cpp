@@ -195,6 +195,15 @@ TEST(Bayes, WhoOnlySitsStillIsNotMapped) {
   EXPECT_EQ(weight_at(w.map, 250, 200), 0);
 }
 
+TEST(Bayes, LabelsOfEverythingAreNotBelieved) {
+  Bayes decision({}, with_classes());
+  const StaticWeights w =
+      decision.decide(make_frame(), make_labels(15, {0, 0, 640, 440}), {}, {});
+  EXPECT_EQ(weight_at(w.track, 250, 200), 255);
+  EXPECT_EQ(weight_at(w.map, 250, 200), 255);
+  EXPECT_EQ(w.object_moves.size(), 1u);
+}
+
 TEST(Bayes, TheOtherClassesSayNothingOfWhatHasNoLabel) {
   Bayes decision({.other = {.prior = 0.8}}, with_classes());
   const StaticWeights w = decision.decide(make_frame(), make_labels(5), make_points(kNowhere), {});
