@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "orb_slam/landmark_geometry.hpp"
-#include "orb_slam/pose_solver.hpp"
 
 namespace stillpoint::orb {
 namespace {
@@ -112,7 +111,7 @@ int ObservedFrame::matched() const {
 }
 
 int solve_pose(ObservedFrame& observed, const SparseMap& map, double proving_time,
-               KeyFrameId first_keyframe) {
+               KeyFrameId first_keyframe, const PoseTerm& term) {
   const Features& features = *observed.features;
   const ScalePyramid pyramid(features);
   std::vector<PoseObservation> observations;
@@ -133,9 +132,10 @@ int solve_pose(ObservedFrame& observed, const SparseMap& map, double proving_tim
          .weight = trust * observed.track_weights[i] / 255.0});
     index.push_back(i);
   }
-  const PoseSolution solution =
-      solve_pose(observations, *observed.frame->camera, observed.world_from_camera.inverse());
+  const PoseSolution solution = solve_pose(observations, *observed.frame->camera,
+                                           observed.world_from_camera.inverse(), term);
   observed.world_from_camera = solution.camera_from_world.inverse();
+  observed.information = solution.information;
   for (std::size_t i = 0; i < index.size(); ++i) observed.outlier[index[i]] = !solution.inlier[i];
   return solution.inliers;
 }

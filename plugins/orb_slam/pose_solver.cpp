@@ -8,6 +8,7 @@ namespace stillpoint::orb {
 namespace {
 
 constexpr int kRounds = 4;
+constexpr int kTermRounds = 6;  // with a further term, whose minimum moves with its linearisation
 constexpr int kRobustRounds = 2;     // later ones trust the outlier decision alone
 constexpr int kIterations = 6;       // per round
 constexpr double kConverged = 1e-6;  // metres and radians
@@ -39,24 +40,29 @@ double huber_cost(double squared, double limit) {
 
 class Solver {
  public:
-  Solver(std::span<const PoseObservation> observations, const Camera& camera, const Pose& guess)
-      : observations_(observations), camera_(camera) {
+  Solver(std::span<const PoseObservation> observations, const Camera& camera, const Pose& guess,
+         const PoseTerm& term)
+      : observations_(observations), camera_(camera), term_(term) {
     solution_.camera_from_world = guess;
     solution_.inlier.assign(observations.size(), true);
     solution_.inliers = static_cast<int>(observations.size());
   }
 
   PoseSolution run() {
-    for (int round = 0; round < kRounds && solution_.inliers >= kMinObservations; ++round) {
+    const int rounds = term_ ? kTermRounds : kRounds;
+    for (int round = 0; round < rounds && enough(); ++round) {
       robust_ = round < kRobustRounds;
+      if (term_) further_ = term_(solution_.camera_from_world, round);
       iterate();
       const bool changed = classify();
-      if (!robust_ && !changed) break;
+      if (!robust_ && !changed && !term_) break;
     }
     return std::move(solution_);
   }
 
  private:
+  bool enough() const { return term_ || solution_.inliers >= kMinObservations; }
+
   void iterate() {
     double lambda = 1e-4;
     NormalEquations current = build(solution_.camera_from_world);
@@ -64,25 +70,34 @@ class Solver {
       Matrix6d damped = current.hessian;
       damped.diagonal() *= 1.0 + lambda;
       const Vector6d step = damped.ldlt().solve(-current.gradient);
-      if (!step.allFinite()) return;
+      if (!step.allFinite()) break;
       const Pose candidate = exp_se3(step) * solution_.camera_from_world;
       NormalEquations next = build(candidate);
       if (next.cost <= current.cost) {
         solution_.camera_from_world = candidate;
         current = std::move(next);
         lambda *= 0.1;
-        if (step.norm() < kConverged) return;
+        if (step.norm() < kConverged) break;
       } else {
         lambda = std::max(lambda, 1e-6) * 10.0;
       }
     }
+    solution_.information = current.hessian;
   }
 
   NormalEquations build(const Pose& camera_from_world) const {
     NormalEquations n;
     for (std::size_t i = 0; i < observations_.size(); ++i)
       if (solution_.inlier[i]) add(observations_[i], camera_from_world, n);
+    if (term_) add(further_, camera_from_world, n);
     return n;
+  }
+
+  static void add(const QuadraticCost& q, const Pose& camera_from_world, NormalEquations& n) {
+    const QuadraticCost here = q.moved_to(camera_from_world);
+    n.hessian += here.hessian;
+    n.gradient += here.gradient;
+    n.cost += here.constant;
   }
 
   void add(const PoseObservation& o, const Pose& camera_from_world, NormalEquations& n) const {
@@ -128,15 +143,38 @@ class Solver {
 
   std::span<const PoseObservation> observations_;
   const Camera& camera_;
+  const PoseTerm& term_;
+  QuadraticCost further_;  // the term, this round
   PoseSolution solution_;
   bool robust_ = true;
 };
 
 }  // namespace
 
+QuadraticCost QuadraticCost::moved_to(const Pose& camera_from_world) const {
+  const Vector6d twist = log_se3(camera_from_world * linearised_at.inverse());
+  const Vector6d slope = hessian * twist;
+  return {.linearised_at = camera_from_world,
+          .hessian = hessian,
+          .gradient = gradient + slope,
+          .constant = constant + twist.dot(2.0 * gradient + slope)};
+}
+
+QuadraticCost operator+(const QuadraticCost& a, const QuadraticCost& b) {
+  return {.linearised_at = a.linearised_at,
+          .hessian = a.hessian + b.hessian,
+          .gradient = a.gradient + b.gradient,
+          .constant = a.constant + b.constant};
+}
+
 PoseSolution solve_pose(std::span<const PoseObservation> observations, const Camera& camera,
                         const Pose& camera_from_world_guess) {
-  return Solver(observations, camera, camera_from_world_guess).run();
+  return solve_pose(observations, camera, camera_from_world_guess, {});
+}
+
+PoseSolution solve_pose(std::span<const PoseObservation> observations, const Camera& camera,
+                        const Pose& camera_from_world_guess, const PoseTerm& term) {
+  return Solver(observations, camera, camera_from_world_guess, term).run();
 }
 
 }  // namespace stillpoint::orb
