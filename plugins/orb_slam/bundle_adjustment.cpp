@@ -16,7 +16,7 @@
 namespace stillpoint::orb {
 namespace {
 
-constexpr double kMinDepth = 0.05;  // metres; nearer points give no residual
+constexpr double kMinDepth = 0.05;         // metres; nearer points give no residual
 constexpr std::size_t kMinLandmarks = 20;  // that a key frame must see to be moved by them
 
 // camera_from_world as a change against the pose at the start: translation is added, rotation (a
@@ -115,8 +115,9 @@ class FixedCameraCost final : public ceres::SizedCostFunction<3, 3> {
 };
 
 bool sees_few(const KeyFrame& keyframe) {
-  return keyframe.landmarks.size() - static_cast<std::size_t>(std::ranges::count(
-                                         keyframe.landmarks, kNoId)) < kMinLandmarks;
+  return keyframe.landmarks.size() -
+             static_cast<std::size_t>(std::ranges::count(keyframe.landmarks, kNoId)) <
+         kMinLandmarks;
 }
 
 // Cameras that move, points, and further cameras that see the points and stay.

@@ -6,11 +6,11 @@
 namespace stillpoint::orb {
 namespace {
 
-constexpr std::size_t kMostViews = 40;   // kept; 130 kB each
-constexpr std::size_t kNeighbours = 2;   // compared with
-constexpr int kSparse = 6;               // every sixth patch of every sixth row tells of overlap
-constexpr double kMinOverlap = 0.15;     // of the patches
-constexpr double kMinGain = 0.05;        // of the patches; less and the older view is as good
+constexpr std::size_t kMostViews = 40;  // kept; 130 kB each
+constexpr std::size_t kNeighbours = 2;  // compared with
+constexpr int kSparse = 6;              // every sixth patch of every sixth row tells of overlap
+constexpr double kMinOverlap = 0.15;    // of the patches
+constexpr double kMinGain = 0.05;       // of the patches; less and the older view is as good
 
 // Share of the current view's patches that another one has a patch for.
 double overlap(const DepthView& current, const DepthView& other, const Pose& other_from_current) {

@@ -13,10 +13,10 @@ constexpr int kStep = 2;   // px between the samples of a cell
 constexpr int kReach = 2;  // cells around a patch's own that its plane is fitted to
 constexpr int kSamples = (kCell / kStep) * (kCell / kStep);
 constexpr float kSumOfSquares = 50.0F;  // of column (or row) over 5 × 5 cells around the middle
-constexpr float kCellSigma = static_cast<float>(DepthView::kInverseDepthSigma) / 4;  // 16 samples
-constexpr float kMaxMisfit = 6 * kCellSigma;  // of a cell's mean against the plane; more is an edge
+constexpr float kMaxMisfit = 0.003F;    // 1/m, of a cell's mean against the plane; more is an edge
 
-// Mean inverse depth (1/m) and least static weight of a cell; weight 0 unless all of it is measured.
+// Mean inverse depth (1/m) and least static weight of a cell; weight 0 unless all of it is
+// measured.
 struct Cell {
   float inverse_depth = 0.0F;
   float weight = 0.0F;
@@ -80,6 +80,7 @@ InversePlane fit(const std::vector<Cell>& cells, int columns, int column, int ro
 DepthView::DepthView(const Frame& frame, const StaticWeights& weights)
     : columns_(frame.depth.cols / kCell), rows_(frame.depth.rows / kCell) {
   const Camera& camera = *frame.camera;
+  noise_ = static_cast<float>(std::min(camera.depth_noise, kMostNoise));
   focal_ = Eigen::Vector2d(camera.fx, camera.fy).cast<float>();
   centre_ = Eigen::Vector2d(camera.cx, camera.cy).cast<float>();
   std::vector<Cell> cells(static_cast<std::size_t>(columns_ * rows_));
@@ -122,12 +123,12 @@ const PlanePatch* DepthView::at(const Eigen::Vector3f& point) const {
 }
 
 float DepthView::distance_sigma(const PlanePatch& patch) const {
-  return std::abs(patch.normal.dot(patch.point)) * patch.point.z() *
-         static_cast<float>(kInverseDepthSigma);
+  return std::abs(patch.normal.dot(patch.point)) * patch.point.z() * noise_;
 }
 
 float DepthView::normal_sigma(const PlanePatch& patch) const {
-  return kCellSigma / std::sqrt(kSumOfSquares) * focal_.x() / kCell * patch.point.z();
+  const float cell_sigma = noise_ / std::sqrt(static_cast<float>(kSamples));
+  return cell_sigma / std::sqrt(kSumOfSquares) * focal_.x() / kCell * patch.point.z();
 }
 
 }  // namespace stillpoint::orb

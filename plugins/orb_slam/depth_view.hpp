@@ -21,10 +21,11 @@ struct PlanePatch {
 class DepthView {
  public:
   static constexpr int kCell = 8;  ///< px between patches
-  /// Standard deviation, in 1/m, of the inverse depth of a structured-light sensor on a surface
-  /// without edges, 0.002 m at 1 m (Khoshelham and Elberink, Sensors 2012). Camera::depth_noise is
-  /// larger on real recordings: it stands for edges and time offsets of point features.
-  static constexpr double kInverseDepthSigma = 0.002;
+  /// Most that the standard deviation of the inverse depth of a structured-light sensor can be on a
+  /// surface without edges, in 1/m: 0.002 m at 1 m (Khoshelham and Elberink, Sensors 2012).
+  /// Camera::depth_noise is larger for real recordings: it stands for edges and time offsets of
+  /// point features, too.
+  static constexpr double kMostNoise = 0.002;
 
   DepthView() = default;
   DepthView(const Frame& frame, const StaticWeights& weights);
@@ -46,6 +47,7 @@ class DepthView {
  private:
   int columns_ = 0;
   int rows_ = 0;
+  float noise_ = 0.0F;            // 1/m, of the inverse depth of one pixel
   Eigen::Vector2f focal_{1, 1};   // px
   Eigen::Vector2f centre_{0, 0};  // px
   std::vector<PlanePatch> patches_;

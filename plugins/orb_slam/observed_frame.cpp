@@ -129,13 +129,15 @@ int solve_pose(ObservedFrame& observed, const SparseMap& map, double proving_tim
          .inverse_depth = features.depth[i] > 0 ? 1.0 / features.depth[i] : 0.0,
          .pixel_sigma = sigma,
          .inverse_depth_sigma = observed.frame->camera->depth_noise,
-         .weight = trust * observed.track_weights[i] / 255.0});
+         .weight = trust * observed.track_weights[i] / 255.0,
+         .temporary = !landmark});
     index.push_back(i);
   }
-  const PoseSolution solution = solve_pose(observations, *observed.frame->camera,
-                                           observed.world_from_camera.inverse(), term);
+  const PoseSolution solution =
+      solve_pose(observations, *observed.frame->camera, observed.world_from_camera.inverse(), term);
   observed.world_from_camera = solution.camera_from_world.inverse();
   observed.information = solution.information;
+  observed.temporary_information = solution.temporary_information;
   for (std::size_t i = 0; i < index.size(); ++i) observed.outlier[index[i]] = !solution.inlier[i];
   return solution.inliers;
 }

@@ -28,7 +28,9 @@ struct ObservedFrame {
   Pose world_from_camera = Pose::Identity();
   KeyFrameId reference = kNoId;
   Pose reference_from_camera = Pose::Identity();
-  Matrix6d information = Matrix6d::Zero();  ///< of the pose when it was solved last
+  /// Of the pose when it was solved last, as in PoseSolution.
+  Matrix6d information = Matrix6d::Zero();
+  Matrix6d temporary_information = Matrix6d::Zero();
 
   /// Below this weight a feature is not used at all.
   static constexpr std::uint8_t kMinWeight = 26;

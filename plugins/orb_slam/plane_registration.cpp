@@ -7,11 +7,11 @@
 namespace stillpoint::orb {
 namespace {
 
-constexpr int kStride = 2;              // every other patch of every other row
-constexpr float kMinCosine = 0.87F;     // between normals: 30 degrees
-constexpr float kModelSigma = 0.004F;   // metres: walls are not flat, images not quite registered
-constexpr float kBounds = 3.0F;         // standard deviations
-constexpr double kNoiseMargin = 1.0;    // times what the noise of normals alone would seem to know
+constexpr int kStride = 2;             // every other patch of every other row
+constexpr float kMinCosine = 0.87F;    // between normals: 30 degrees
+constexpr float kModelSigma = 0.004F;  // metres: walls are not flat, images not quite registered
+constexpr float kBounds = 3.0F;        // standard deviations
+constexpr double kNoiseMargin = 2.0;   // times what the noise of normals alone would seem to know
 
 using Vector6f = Eigen::Matrix<float, 6, 1>;
 
@@ -64,21 +64,14 @@ void add(const DepthView& current, const PlanePatch& patch, const Other& other,
   sums.depth += information * patch.point.z();
 }
 
-// Keeps the directions that the surfaces hold. Rotations are compared with translations by what they
-// do at the mean depth.
+// Keeps the directions that the surfaces hold. Rotations are compared with translations by what
+// they do at the mean depth.
 void keep_held_directions(Sums& sums) {
   Vector6d scale = Vector6d::Ones();
   scale.tail<3>().setConstant(sums.information / std::max(sums.depth, 1e-9));
   const Matrix6d scaled = scale.asDiagonal() * sums.hessian * scale.asDiagonal();
   const Eigen::SelfAdjointEigenSolver<Matrix6d> eigen(scaled);
   const double floor = kNoiseMargin * sums.noise_information;
-  if (getenv("DEPTH_DEBUG") && atoi(getenv("DEPTH_DEBUG")) > 1) {
-    fprintf(stderr, "eig floor %.3g depth %.2f share:", floor / sums.information, sums.depth / sums.information);
-    for (int i = 0; i < 6; ++i) fprintf(stderr, " %.3g", eigen.eigenvalues()[i] / sums.information);
-    fprintf(stderr, " v0:");
-    for (int i = 0; i < 6; ++i) fprintf(stderr, " %.2f", eigen.eigenvectors()(i, 0));
-    fprintf(stderr, "\n");
-  }
   Matrix6d held = Matrix6d::Zero();
   for (int i = 0; i < 6; ++i)
     if (eigen.eigenvalues()[i] > floor)

@@ -28,9 +28,9 @@ struct PlaneRegistration {
 };
 
 /// Projective association: a patch of `current` is compared with the first of `others` that has one
-/// where it falls, and counts when it is less than `reach` metres, or three standard deviations, off
-/// its plane. Weighted by the noise of the sensor and by both static weights, and in all by no more
-/// than `kMostPatches` full patches, since errors of neighbours are alike.
+/// where it falls, and counts when it is less than `reach` metres, or three standard deviations,
+/// off its plane. Weighted by the noise of the sensor and by both static weights, and in all by no
+/// more than `kMostPatches` full patches, since errors of neighbours are alike.
 ///
 /// Directions in which the surfaces do not hold the camera are taken out of the cost, instead of
 /// leaving them to the noise of normals (solution remapping: Zhang, Kaess and Singh, ICRA 2016).

@@ -8,15 +8,16 @@ namespace stillpoint::orb {
 namespace {
 
 constexpr int kRounds = 4;
-constexpr int kTermRounds = 6;  // with a further term, whose minimum moves with its linearisation
-constexpr int kRobustRounds = 2;     // later ones trust the outlier decision alone
-constexpr int kIterations = 6;       // per round
+constexpr int kTermRounds = 6;    // with a further term, whose minimum moves with its linearisation
+constexpr int kRobustRounds = 2;  // later ones trust the outlier decision alone
+constexpr int kIterations = 6;    // per round
 constexpr double kConverged = 1e-6;  // metres and radians
 constexpr int kMinObservations = 6;
 constexpr double kMinDepth = 0.05;  // metres in front of the camera
 
 struct NormalEquations {
   Matrix6d hessian = Matrix6d::Zero();
+  Matrix6d temporary = Matrix6d::Zero();  // the part of temporary points
   Vector6d gradient = Vector6d::Zero();
   double cost = 0.0;
 };
@@ -69,6 +70,8 @@ class Solver {
     for (int i = 0; i < kIterations; ++i) {
       Matrix6d damped = current.hessian;
       damped.diagonal() *= 1.0 + lambda;
+      // Nothing may hold some direction; rounding must not move the camera along it.
+      if (term_) damped.diagonal().array() += 1e-9 * damped.diagonal().maxCoeff();
       const Vector6d step = damped.ldlt().solve(-current.gradient);
       if (!step.allFinite()) break;
       const Pose candidate = exp_se3(step) * solution_.camera_from_world;
@@ -83,6 +86,7 @@ class Solver {
       }
     }
     solution_.information = current.hessian;
+    solution_.temporary_information = current.temporary;
   }
 
   NormalEquations build(const Pose& camera_from_world) const {
@@ -121,7 +125,9 @@ class Solver {
     jacobian.leftCols<3>() = by_point;
     for (int row = 0; row < 3; ++row)
       jacobian.row(row).tail<3>() = p.cross(by_point.row(row).transpose()).transpose();
-    n.hessian.noalias() += weight * (jacobian.transpose() * jacobian);
+    const Matrix6d hessian = weight * (jacobian.transpose() * jacobian);
+    n.hessian += hessian;
+    if (o.temporary) n.temporary += hessian;
     n.gradient.noalias() += weight * (jacobian.transpose() * r);
   }
 

@@ -19,6 +19,7 @@ struct PoseObservation {
   double pixel_sigma = 1.0;          ///< px, standard deviation
   double inverse_depth_sigma = 1.0;  ///< 1/m, standard deviation
   double weight = 1.0;               ///< probability that the point is static, 0 … 1
+  bool temporary = false;            ///< known from the frame before only
 };
 
 /// A sum of squared, normalised residuals near a pose, of the twist that perturbs camera_from_world
@@ -39,7 +40,9 @@ using PoseTerm = std::function<QuadraticCost(const Pose& camera_from_world, int 
 
 struct PoseSolution {
   Pose camera_from_world = Pose::Identity();
-  Matrix6d information = Matrix6d::Zero();  ///< of the camera: of its translation, then rotation
+  /// Of the camera in its own frame, translation, then rotation; and the part of temporary points.
+  Matrix6d information = Matrix6d::Zero();
+  Matrix6d temporary_information = Matrix6d::Zero();
   std::vector<bool> inlier;  ///< per observation
   int inliers = 0;
 };

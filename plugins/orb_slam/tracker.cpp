@@ -23,13 +23,21 @@ constexpr int kMinPatches = 60;         // of 1,200, to hold a pose
 constexpr double kMinKnown = 0.25;      // share of the patches that key frames must know
 constexpr double kMinAgreement = 0.6;   // share of those that must fit
 constexpr double kNewView = 0.7;        // fewer known patches ask for a key frame
+// A picture with so many features, hardly any of them of the last frame's, is of another place;
+// unless texture only begins again.
+constexpr int kManyFeatures = 500;
+constexpr double kMinShown = 0.1;
 constexpr int kMinLandmarks = 5;        // beside surfaces; fewer may all be wrong
+constexpr double kFreshVelocity = 0.3;  // share of the newest velocity while surfaces hold
 constexpr double kMotionMetres = 0.5;   // per second: standard deviation of constant velocity
 constexpr double kMotionRadians = 0.5;  // per second, the same
 
+Matrix6d inverse(const Matrix6d& positive_definite) {
+  return positive_definite.ldlt().solve(Matrix6d::Identity());
+}
+
 PoseUncertainty uncertainty_of(const Matrix6d& information) {
-  const Matrix6d regular = information + Matrix6d::Identity();  // 1 m, 1 rad
-  return {.covariance = regular.ldlt().solve(Matrix6d::Identity())};
+  return {.covariance = inverse(information + Matrix6d::Identity())};  // 1 m, 1 rad
 }
 
 // Metres within which a patch must lie on the plane it falls on: less with every round.
@@ -207,7 +215,8 @@ bool OrbTracker::track_with_motion(const SparseMap& map) {
   return inliers >= kMinMotionInliers && inliers >= kMinMotionShare * matches;
 }
 
-// Independent of any prediction, which it forgets: for fast turns, and where the prediction led to a false minimum.
+// Independent of any prediction, which it forgets: for fast turns, and where the prediction led to
+// a false minimum.
 bool OrbTracker::track_by_appearance(const SparseMap& map) {
   prediction_.reset();
   if (locate_by_appearance(current_, targets_of(last_, map), map) >= options_.min_inliers)
@@ -224,7 +233,10 @@ bool OrbTracker::track_local_map(const SparseMap& map) {
       std::exchange(current_.temporary, decltype(current_.temporary)(current_.features->size()));
   inliers_ = solve(map);
   bridged_ = inliers_ < options_.min_inliers;
-  if (!bridged_) return well_held() || hold_by_depth(map) || true;
+  if (!bridged_) {
+    if (!well_held()) hold_by_depth(map);
+    return true;
+  }
   // A view that the map hardly knows: carried by what the last frame measured, it becomes a key
   // frame and the map knows it from then on.
   current_.temporary = temporary;
@@ -248,7 +260,11 @@ const DepthView& OrbTracker::depth_view() {
 bool OrbTracker::track_with_depth(const SparseMap& map) {
   if (!options_.hold_by_depth || !last_.frame) return false;
   predict_pose();
-  match_last_frame(map);
+  const int matches = match_last_frame(map);
+  const auto usable = std::ranges::count_if(
+      current_.track_weights, [](auto weight) { return weight >= ObservedFrame::kMinWeight; });
+  if (!last_held_ && usable >= kManyFeatures && matches < kMinShown * static_cast<double>(usable))
+    return false;
   if (!hold_by_depth(map)) return false;
   current_.drop_outliers();
   if (current_.matched() < kMinLandmarks) match_neighbour(map);
@@ -281,8 +297,6 @@ bool OrbTracker::hold_by_depth(const SparseMap& map) {
     return registration.cost + motion.moved_to(camera_from_world);
   });
   current_.information -= motion.hessian;
-  if (getenv("DEPTH_DEBUG")) { const auto u = uncertainty_of(current_.information); const Pose d = before.world_from_camera.inverse() * current_.world_from_camera;
-    fprintf(stderr, "hold %u patches %d known %.2f agree %.2f matched %d sigma %.4f %.4f views %zu moved %.4f\n", current_.frame->index, registration.patches, registration.known(), registration.agreement(), current_.matched(), u.metres(), u.radians(), around.views.size(), d.translation().norm()); }
   if (registration.patches < kMinPatches || registration.known() < kMinKnown ||
       registration.agreement() < kMinAgreement) {
     current_ = before;
@@ -340,7 +354,7 @@ TrackResult OrbTracker::tracked(const SparseMap& map, TrackHints hints) {
   result.features = static_cast<int>(current_.features->size());
   result.matches = current_.matched();
   result.inliers = inliers_;
-  result.uncertainty = uncertainty_of(current_.information);
+  result.uncertainty = last_uncertainty_ = uncertainty(map);
   result.held_by_depth = held_.has_value();
   result.tracked = describe(current_);
 
@@ -368,15 +382,32 @@ TrackResult OrbTracker::tracked(const SparseMap& map, TrackHints hints) {
   result.reference = current_.reference;
   result.reference_from_camera = current_.reference_from_camera;
 
-  const bool consecutive = state_ == TrackState::kTracking && last_.frame;
-  velocity_.reset();
-  if (consecutive) {
-    velocity_ = current_.world_from_camera.inverse() * last_.world_from_camera;
-    velocity_seconds_ = current_.frame->time - last_.frame->time;
-  }
+  update_velocity();
   state_ = TrackState::kTracking;
+  last_held_ = held_.has_value();
   last_ = std::move(current_);
   return result;
+}
+
+// Temporary points are no better known than the frame that measured them.
+PoseUncertainty OrbTracker::uncertainty(const SparseMap& map) const {
+  if (map.empty()) return {.covariance = Matrix6d::Zero()};  // the origin
+  const Matrix6d& chain = current_.temporary_information;
+  if (chain.isZero()) return uncertainty_of(current_.information);
+  const Matrix6d chained = last_uncertainty_.covariance + uncertainty_of(chain).covariance;
+  return uncertainty_of(current_.information - chain + inverse(chained));
+}
+
+void OrbTracker::update_velocity() {
+  const auto before = std::exchange(velocity_, std::nullopt);
+  if (state_ != TrackState::kTracking || !last_.frame) return;
+  const double seconds = current_.frame->time - last_.frame->time;
+  velocity_ = current_.world_from_camera.inverse() * last_.world_from_camera;
+  // Where the camera is about to slide, single velocities are too noisy to go on with.
+  if (held_ && before && seconds > 0)
+    velocity_ = exp_se3(kFreshVelocity * log_se3(*velocity_) +
+                        (1 - kFreshVelocity) * (seconds / velocity_seconds_) * log_se3(*before));
+  velocity_seconds_ = seconds;
 }
 
 TrackResult OrbTracker::not_tracked(TrackState state) {
@@ -391,15 +422,17 @@ TrackResult OrbTracker::not_tracked(TrackState state) {
 }
 
 KeyFrame OrbTracker::make_keyframe() {
-  KeyFrame keyframe{.id = next_keyframe_++,
-                    .frame = current_.frame->index,
-                    .time = current_.frame->time,
-                    .world_from_camera = current_.world_from_camera,
-                    .camera = current_.frame->camera,
-                    .features = current_.features,
-                    .track_weights = current_.track_weights,
-                    .map_weights = current_.map_weights,
-                    .landmarks = current_.landmarks};
+  KeyFrame keyframe{
+      .id = next_keyframe_++,
+      .frame = current_.frame->index,
+      .time = current_.frame->time,
+      .world_from_camera = current_.world_from_camera,
+      .covariance = held_ || bridged_ ? last_uncertainty_.covariance : Matrix6d(Matrix6d::Zero()),
+      .camera = current_.frame->camera,
+      .features = current_.features,
+      .track_weights = current_.track_weights,
+      .map_weights = current_.map_weights,
+      .landmarks = current_.landmarks};
   for (auto& [id, evidence] : evidence_) {
     evidence.landmark = id;
     keyframe.evidence.push_back(evidence);

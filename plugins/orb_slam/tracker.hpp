@@ -60,6 +60,8 @@ class OrbTracker final : public Tracker {
 
   TrackResult tracked(const SparseMap& map, TrackHints hints);
   TrackResult not_tracked(TrackState state);
+  PoseUncertainty uncertainty(const SparseMap& map) const;
+  void update_velocity();
   KeyFrame make_keyframe();
 
   Options options_;
@@ -76,12 +78,14 @@ class OrbTracker final : public Tracker {
   std::optional<Pose> velocity_;      // last camera from the one before it
   double velocity_seconds_ = 0.0;     // over which velocity_ was measured
   TrackState state_ = TrackState::kWaiting;
-  int inliers_ = 0;       // landmarks
-  bool bridged_ = false;  // the pose of this frame needed temporary points
-  StaticWeights weights_;                 // of this frame
-  std::optional<DepthView> depth_view_;   // of this frame, once it is needed
-  std::optional<PlaneRegistration> held_; // of this frame, when its pose needed it
+  int inliers_ = 0;                        // landmarks
+  bool bridged_ = false;                   // the pose of this frame needed temporary points
+  StaticWeights weights_;                  // of this frame
+  std::optional<DepthView> depth_view_;    // of this frame, once it is needed
+  std::optional<PlaneRegistration> held_;  // of this frame, when its pose needed it
+  bool last_held_ = false;
   DepthAnchor anchor_;
+  PoseUncertainty last_uncertainty_;  // of this frame, once it is tracked; before, of `last_`
 
   std::optional<KeyFrameId> first_keyframe_;  // of this recording: others came with the map
   KeyFrameId next_keyframe_ = 0;

@@ -38,7 +38,8 @@ void add_corridor(World& world, const RoomOptions& options) {
   add_panel(world.room, {kLeft, kFront, kHeight}, {0, length, 0}, down, skins.pale, kCell);
   add_panel(world.room, {kRight, kBack, kHeight}, {0, -length, 0}, down, skins.pale, kCell);
   add_panel(world.room, {kLeft, kBack, 0}, {width, 0, 0}, {0, -length, 0}, skins.floor, kCell);
-  add_panel(world.room, {kLeft, kFront, kHeight}, {width, 0, 0}, {0, length, 0}, skins.ceiling, kCell);
+  add_panel(world.room, {kLeft, kFront, kHeight}, {width, 0, 0}, {0, length, 0}, skins.ceiling,
+            kCell);
   if (!options.furnished) return;
   Furnisher furnish(world, options.seed);
   add_beginning(furnish);

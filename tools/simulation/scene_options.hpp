@@ -14,8 +14,8 @@ struct RoomOptions {
   enum class Walls { kRich, kPoor } walls = Walls::kRich;
   bool furnished = true;
   double texture = 1.0;  ///< contrast of what walls, floor and ceiling are covered with
-  bool alike = false;  ///< the rooms of a suite
-  int seed = 1;        ///< of what is printed on posters, papers and books
+  bool alike = false;    ///< the rooms of a suite
+  int seed = 1;          ///< of what is printed on posters, papers and books
 
   void visit(OptionVisitor& v);
 };

@@ -27,9 +27,15 @@ std::uint8_t World::add_instance() {
 World build_world(const SceneOptions& scene) {
   World world;
   switch (scene.room.plan) {
-    case RoomOptions::Plan::kOffice: add_room(world, scene.room); break;
-    case RoomOptions::Plan::kSuite: add_suite(world, scene.room); break;
-    case RoomOptions::Plan::kCorridor: add_corridor(world, scene.room); break;
+    case RoomOptions::Plan::kOffice:
+      add_room(world, scene.room);
+      break;
+    case RoomOptions::Plan::kSuite:
+      add_suite(world, scene.room);
+      break;
+    case RoomOptions::Plan::kCorridor:
+      add_corridor(world, scene.room);
+      break;
   }
   light_room(world);
   for (const PersonOptions& person : scene.people) add_person(world, person);

@@ -1,7 +1,8 @@
-#include <Eigen/Eigenvalues>
-#include <cmath>
+#include "stillpoint/contracts/pose_uncertainty.hpp"
 
-#include "stillpoint/contracts/tracker.hpp"
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
 
 namespace stillpoint {
 namespace {

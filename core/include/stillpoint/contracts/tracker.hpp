@@ -6,10 +6,10 @@
 
 #include "stillpoint/contracts/frame.hpp"
 #include "stillpoint/contracts/keyframe.hpp"
+#include "stillpoint/contracts/pose_uncertainty.hpp"
 #include "stillpoint/contracts/sparse_map.hpp"
 #include "stillpoint/contracts/static_weights.hpp"
 #include "stillpoint/export.hpp"
-#include "stillpoint/pose_math.hpp"
 
 namespace stillpoint {
 
@@ -21,23 +21,6 @@ STILLPOINT_EXPORT const char* name_of(TrackState state);
 struct TrackedFeature {
   cv::Point2f pixel;
   enum class Use { kUnmatched, kInlier, kOutlier, kMoving } use = Use::kUnmatched;
-};
-
-/// How well a frame's pose is known, as if what it was measured against were exact.
-struct PoseUncertainty {
-  /// Of the camera in its own frame: x, y, z (metres), then the rotation about them (radians).
-  /// What nothing measures has a standard deviation of 1 m or 1 rad.
-  Matrix6d covariance = Matrix6d::Identity();
-
-  /// A pose is poorly constrained when its standard deviation in any direction is larger than 5 cm,
-  /// or 0.05 rad about any axis: the camera may have slid along a plane, or turned, unseen.
-  static constexpr double kMaxMetres = 0.05;
-  static constexpr double kMaxRadians = 0.05;
-
-  /// Standard deviation in the direction where it is largest.
-  STILLPOINT_EXPORT double metres() const;
-  STILLPOINT_EXPORT double radians() const;
-  bool poorly_constrained() const { return metres() > kMaxMetres || radians() > kMaxRadians; }
 };
 
 /// The world pose is world_from_keyframe(reference) * reference_from_camera, so that trajectories
