@@ -69,9 +69,7 @@ class Solver {
     NormalEquations current = build(solution_.camera_from_world);
     for (int i = 0; i < kIterations; ++i) {
       Matrix6d damped = current.hessian;
-      damped.diagonal() *= 1.0 + lambda;
-      // Nothing may hold some direction; rounding must not move the camera along it.
-      if (term_) damped.diagonal().array() += 1e-9 * damped.diagonal().maxCoeff();
+      damp(damped, lambda);
       const Vector6d step = damped.ldlt().solve(-current.gradient);
       if (!step.allFinite()) break;
       const Pose candidate = exp_se3(step) * solution_.camera_from_world;
@@ -87,6 +85,15 @@ class Solver {
     }
     solution_.information = current.hessian;
     solution_.temporary_information = current.temporary;
+  }
+
+  // A term may leave directions free that mix the axes; only where all axes are damped alike does a
+  // step not go along them.
+  void damp(Matrix6d& hessian, double lambda) const {
+    if (term_)
+      hessian.diagonal().array() += 1e-2 * lambda * hessian.diagonal().mean();
+    else
+      hessian.diagonal() *= 1.0 + lambda;
   }
 
   NormalEquations build(const Pose& camera_from_world) const {
