@@ -107,6 +107,8 @@ TEST(Simulator, WithoutTextureSurfacesAreOfOneColour) {
   scene.room.furnished = false;
   scene.sensor.ideal = true;
   scene.motion.kind = MotionOptions::Kind::kStatic;
+  scene.motion.position = {0, 0, 1.4};
+  scene.motion.look_at = {0, 1, 0};  // the floor
   const double usual = contrast(scene);
   scene.room.texture = 0.0;
   EXPECT_LT(contrast(scene), 0.5 * usual);
