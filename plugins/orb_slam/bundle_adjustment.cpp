@@ -16,7 +16,8 @@
 namespace stillpoint::orb {
 namespace {
 
-constexpr double kMinDepth = 0.05;  // metres; nearer points give no residual
+constexpr double kMinDepth = 0.05;         // metres; nearer points give no residual
+constexpr std::size_t kMinLandmarks = 20;  // that a key frame must see to be moved by them
 
 // camera_from_world as a change against the pose at the start: translation is added, rotation (a
 // rotation vector) multiplied from the left. Changes stay small, which keeps the parametrisation
@@ -113,13 +114,20 @@ class FixedCameraCost final : public ceres::SizedCostFunction<3, 3> {
   const Pose& camera_from_world_;
 };
 
+bool sees_few(const KeyFrame& keyframe) {
+  return keyframe.landmarks.size() -
+             static_cast<std::size_t>(std::ranges::count(keyframe.landmarks, kNoId)) <
+         kMinLandmarks;
+}
+
 // Cameras that move, points, and further cameras that see the points and stay.
 class BundleProblem {
  public:
   BundleProblem(const SparseMap& map, std::vector<KeyFrameId> moving,
                 const std::vector<LandmarkId>& points)
       : map_(map), moving_index_(map.keyframe_id_end(), -1) {
-    std::erase(moving, KeyFrameId{0});  // the origin stays
+    // The origin stays, and so does what depth rather than landmarks holds.
+    std::erase_if(moving, [&](KeyFrameId id) { return id == 0 || sees_few(*map.keyframe(id)); });
     for (const KeyFrameId id : moving) {
       moving_index_[id] = static_cast<int>(moving_.size());
       moving_.push_back({id, map.keyframe(id)->world_from_camera.inverse()});

@@ -5,6 +5,8 @@
 namespace stillpoint::orb {
 namespace {
 
+constexpr int kHeldFramesBetween = 5;  // where corners come and go, there are new ones every time
+
 // Landmarks of the reference key frame that others have seen, too; in a young map, all.
 int established_landmarks(const KeyFrame& keyframe, const SparseMap& map) {
   const std::size_t min_observations = map.keyframe_count() <= 2 ? 1 : 2;
@@ -51,9 +53,10 @@ TrackingQuality tracking_quality(const ObservedFrame& frame, const SparseMap& ma
 }
 
 bool needs_keyframe(const TrackingQuality& q, TrackHints hints, const KeyFrameOptions& options) {
-  if (q.inliers < options.min_inliers) return false;
   const bool needs_close =
       q.close_tracked < options.min_close && q.close_untracked > options.max_close_untracked;
+  if (q.held_by_depth) return needs_close && q.frames_since_last >= kHeldFramesBetween;
+  if (q.inliers < options.min_inliers) return false;
   const bool view_changed = q.inliers < options.min_tracked_ratio * q.reference_matches;
   if (!needs_close && !view_changed) return false;
   const bool urgent = needs_close || q.inliers < 0.25 * q.reference_matches;

@@ -25,6 +25,7 @@ struct TrackingQuality {
   int close_tracked = 0;      ///< features with near depth and a fitting landmark
   int close_untracked = 0;    ///< features with near depth and none, which could become one
   int frames_since_last = 0;  ///< since the last key frame
+  bool held_by_depth = false;  ///< the pose does not depend on landmarks
 };
 
 TrackingQuality tracking_quality(const ObservedFrame& frame, const SparseMap& map, int inliers,

@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "orb_slam/landmark_geometry.hpp"
-#include "orb_slam/pose_solver.hpp"
 
 namespace stillpoint::orb {
 namespace {
@@ -112,7 +111,7 @@ int ObservedFrame::matched() const {
 }
 
 int solve_pose(ObservedFrame& observed, const SparseMap& map, double proving_time,
-               KeyFrameId first_keyframe) {
+               KeyFrameId first_keyframe, const PoseTerm& term) {
   const Features& features = *observed.features;
   const ScalePyramid pyramid(features);
   std::vector<PoseObservation> observations;
@@ -130,12 +129,15 @@ int solve_pose(ObservedFrame& observed, const SparseMap& map, double proving_tim
          .inverse_depth = features.depth[i] > 0 ? 1.0 / features.depth[i] : 0.0,
          .pixel_sigma = sigma,
          .inverse_depth_sigma = observed.frame->camera->depth_noise,
-         .weight = trust * observed.track_weights[i] / 255.0});
+         .weight = trust * observed.track_weights[i] / 255.0,
+         .temporary = !landmark});
     index.push_back(i);
   }
   const PoseSolution solution =
-      solve_pose(observations, *observed.frame->camera, observed.world_from_camera.inverse());
+      solve_pose(observations, *observed.frame->camera, observed.world_from_camera.inverse(), term);
   observed.world_from_camera = solution.camera_from_world.inverse();
+  observed.information = solution.information;
+  observed.temporary_information = solution.temporary_information;
   for (std::size_t i = 0; i < index.size(); ++i) observed.outlier[index[i]] = !solution.inlier[i];
   return solution.inliers;
 }

@@ -7,6 +7,7 @@
 
 #include "orb_slam/feature_grid.hpp"
 #include "orb_slam/matcher.hpp"
+#include "orb_slam/pose_solver.hpp"
 #include "stillpoint/contracts/frame.hpp"
 #include "stillpoint/contracts/keyframe.hpp"
 #include "stillpoint/contracts/sparse_map.hpp"
@@ -27,6 +28,9 @@ struct ObservedFrame {
   Pose world_from_camera = Pose::Identity();
   KeyFrameId reference = kNoId;
   Pose reference_from_camera = Pose::Identity();
+  /// Of the pose when it was solved last, as in PoseSolution.
+  Matrix6d information = Matrix6d::Zero();
+  Matrix6d temporary_information = Matrix6d::Zero();
 
   /// Below this weight a feature is not used at all.
   static constexpr std::uint8_t kMinWeight = 26;
@@ -55,8 +59,9 @@ ObservedFrame observe_again(const KeyFrame& keyframe);
 /// Pose from the landmarks and temporary points assigned so far, starting from the frame's own;
 /// marks the outliers and returns the number of inliers. Landmarks count in full from an age of
 /// `proving_time` seconds on, younger ones less. Those of key frames before `first_keyframe` come
-/// from another recording, with its own clock, and always count in full.
+/// from another recording, with its own clock, and always count in full. `term` holds the pose as
+/// well.
 int solve_pose(ObservedFrame& frame, const SparseMap& map, double proving_time = 0.0,
-               KeyFrameId first_keyframe = 0);
+               KeyFrameId first_keyframe = 0, const PoseTerm& term = {});
 
 }  // namespace stillpoint::orb

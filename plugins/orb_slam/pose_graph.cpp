@@ -2,6 +2,7 @@
 
 #include <ceres/ceres.h>
 
+#include <Eigen/Cholesky>
 #include <deque>
 #include <utility>
 
@@ -25,8 +26,18 @@ struct PoseState {
 // The pose of b in a, as it is and as it was measured.
 class EdgeError {
  public:
-  explicit EdgeError(const Pose& a_from_b)
-      : rotation_(a_from_b.linear()), translation_(a_from_b.translation()) {}
+  /// `covariance` is that of b in its own frame, beside the usual one of an edge.
+  EdgeError(const Pose& a_from_b, const Matrix6d& covariance)
+      : rotation_(a_from_b.linear()), translation_(a_from_b.translation()) {
+    Matrix6d turn = Matrix6d::Zero();  // residuals are in the frame of a
+    turn.topLeftCorner<3, 3>() = turn.bottomRightCorner<3, 3>() = a_from_b.linear();
+    Matrix6d sum = turn * covariance * turn.transpose();
+    sum.diagonal().head<3>().array() += kMetres * kMetres;
+    sum.diagonal().tail<3>().array() += kRadians * kRadians;
+    // Information is the product of the upper triangle with its transpose from the left.
+    const Matrix6d information = sum.llt().solve(Matrix6d::Identity());
+    root_ = information.llt().matrixU();
+  }
 
   template <class T>
   bool operator()(const T* qa, const T* ta, const T* qb, const T* tb, T* residuals) const {
@@ -37,14 +48,16 @@ class EdgeError {
         world_in_a * (Eigen::Map<const Vector>(tb) - Eigen::Map<const Vector>(ta));
     const Eigen::Quaternion<T> turn =
         rotation_.cast<T>() * (world_in_a * b).conjugate();  // identity when they agree
-    Eigen::Map<Vector>{residuals} = (translation - translation_.cast<T>()) / T(kMetres);
-    Eigen::Map<Vector>{residuals + 3} = T(2.0) * turn.vec() / T(kRadians);
+    Eigen::Matrix<T, 6, 1> error;
+    error << translation - translation_.cast<T>(), T(2.0) * turn.vec();
+    Eigen::Map<Eigen::Matrix<T, 6, 1>>{residuals} = root_.cast<T>() * error;
     return true;
   }
 
  private:
   Eigen::Quaterniond rotation_;
   Eigen::Vector3d translation_;
+  Matrix6d root_;
 };
 
 class PoseGraph {
@@ -64,12 +77,12 @@ class PoseGraph {
     problem_.SetParameterBlockConstant(states_.front().translation.data());
   }
 
-  void add(const PoseEdge& edge) {
+  void add(const PoseEdge& edge, const Matrix6d& covariance = Matrix6d::Zero()) {
     PoseState* a = state_of_[edge.a];
     PoseState* b = state_of_[edge.b];
     if (!a || !b) return;
     auto* cost = new ceres::AutoDiffCostFunction<EdgeError, 6, 4, 3, 4, 3>(  // owned by problem_
-        new EdgeError(edge.a_from_b));
+        new EdgeError(edge.a_from_b, covariance));
     problem_.AddResidualBlock(cost, nullptr, a->rotation.coeffs().data(), a->translation.data(),
                               b->rotation.coeffs().data(), b->translation.data());
   }
@@ -119,7 +132,8 @@ std::vector<MovedKeyFrame> optimise_pose_graph(const SparseMap& map,
   for (KeyFrameId id = 0; id < map.keyframe_id_end(); ++id) {
     const KeyFrame* keyframe = map.keyframe(id);
     if (!keyframe) continue;
-    if (keyframe->parent != kNoId) graph.add(edge_between(map, keyframe->parent, id));
+    if (keyframe->parent != kNoId)
+      graph.add(edge_between(map, keyframe->parent, id), keyframe->covariance);
     for (const Covisibility& c : keyframe->covisible)
       if (c.shared >= kMinShared && c.keyframe < id && c.keyframe != keyframe->parent)
         graph.add(edge_between(map, c.keyframe, id));

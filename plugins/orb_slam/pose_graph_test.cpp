@@ -45,6 +45,23 @@ TEST_F(PoseGraphTest, EdgesOfRemovedKeyFramesArePassedOver) {
   EXPECT_LT(worst_metres(moved), 0.75 * orb::worst_metres(map_));
 }
 
+TEST_F(PoseGraphTest, WhereTheCameraSlidTakesTheError) {
+  // A corridor along x; at key frame 5 it slid half a metre too far.
+  constexpr KeyFrameId kCount = 10, kSlid = 5;
+  TestWorld nothing(0);
+  MapEdit edit{SparseMap{}};
+  for (KeyFrameId id = 0; id < kCount; ++id) {
+    KeyFrame keyframe =
+        keyframe_of(nothing.see(pose_at({id + (id >= kSlid ? 0.5 : 0.0), 0, 0})), id);
+    if (id == kSlid) keyframe.covariance(0, 0) = 1.0;
+    edit.add_keyframe(std::move(keyframe));
+    edit.update_covisibility(id);
+  }
+  const PoseEdge loop{0, kCount - 1, pose_at({kCount - 1.0, 0, 0})};
+  for (const MovedKeyFrame& m : optimise_pose_graph(std::move(edit).finish(), {&loop, 1}, {}))
+    EXPECT_NEAR(m.world_from_camera.translation().x(), m.keyframe, 0.01) << m.keyframe;
+}
+
 TEST_F(PoseGraphTest, EndsWhenAsked) {
   std::stop_source stop;
   stop.request_stop();

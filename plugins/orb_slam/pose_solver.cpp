@@ -8,14 +8,16 @@ namespace stillpoint::orb {
 namespace {
 
 constexpr int kRounds = 4;
-constexpr int kRobustRounds = 2;     // later ones trust the outlier decision alone
-constexpr int kIterations = 6;       // per round
+constexpr int kTermRounds = 6;    // with a further term, whose minimum moves with its linearisation
+constexpr int kRobustRounds = 2;  // later ones trust the outlier decision alone
+constexpr int kIterations = 6;    // per round
 constexpr double kConverged = 1e-6;  // metres and radians
 constexpr int kMinObservations = 6;
 constexpr double kMinDepth = 0.05;  // metres in front of the camera
 
 struct NormalEquations {
   Matrix6d hessian = Matrix6d::Zero();
+  Matrix6d temporary = Matrix6d::Zero();  // the part of temporary points
   Vector6d gradient = Vector6d::Zero();
   double cost = 0.0;
 };
@@ -39,50 +41,74 @@ double huber_cost(double squared, double limit) {
 
 class Solver {
  public:
-  Solver(std::span<const PoseObservation> observations, const Camera& camera, const Pose& guess)
-      : observations_(observations), camera_(camera) {
+  Solver(std::span<const PoseObservation> observations, const Camera& camera, const Pose& guess,
+         const PoseTerm& term)
+      : observations_(observations), camera_(camera), term_(term) {
     solution_.camera_from_world = guess;
     solution_.inlier.assign(observations.size(), true);
     solution_.inliers = static_cast<int>(observations.size());
   }
 
   PoseSolution run() {
-    for (int round = 0; round < kRounds && solution_.inliers >= kMinObservations; ++round) {
+    const int rounds = term_ ? kTermRounds : kRounds;
+    for (int round = 0; round < rounds && enough(); ++round) {
       robust_ = round < kRobustRounds;
+      if (term_) further_ = term_(solution_.camera_from_world, round);
       iterate();
       const bool changed = classify();
-      if (!robust_ && !changed) break;
+      if (!robust_ && !changed && !term_) break;
     }
     return std::move(solution_);
   }
 
  private:
+  bool enough() const { return term_ || solution_.inliers >= kMinObservations; }
+
   void iterate() {
     double lambda = 1e-4;
     NormalEquations current = build(solution_.camera_from_world);
     for (int i = 0; i < kIterations; ++i) {
       Matrix6d damped = current.hessian;
-      damped.diagonal() *= 1.0 + lambda;
+      damp(damped, lambda);
       const Vector6d step = damped.ldlt().solve(-current.gradient);
-      if (!step.allFinite()) return;
+      if (!step.allFinite()) break;
       const Pose candidate = exp_se3(step) * solution_.camera_from_world;
       NormalEquations next = build(candidate);
       if (next.cost <= current.cost) {
         solution_.camera_from_world = candidate;
         current = std::move(next);
         lambda *= 0.1;
-        if (step.norm() < kConverged) return;
+        if (step.norm() < kConverged) break;
       } else {
         lambda = std::max(lambda, 1e-6) * 10.0;
       }
     }
+    solution_.information = current.hessian;
+    solution_.temporary_information = current.temporary;
+  }
+
+  // A term may leave directions free that mix the axes; only where all axes are damped alike does a
+  // step not go along them.
+  void damp(Matrix6d& hessian, double lambda) const {
+    if (term_)
+      hessian.diagonal().array() += 1e-2 * lambda * hessian.diagonal().mean();
+    else
+      hessian.diagonal() *= 1.0 + lambda;
   }
 
   NormalEquations build(const Pose& camera_from_world) const {
     NormalEquations n;
     for (std::size_t i = 0; i < observations_.size(); ++i)
       if (solution_.inlier[i]) add(observations_[i], camera_from_world, n);
+    if (term_) add(further_, camera_from_world, n);
     return n;
+  }
+
+  static void add(const QuadraticCost& q, const Pose& camera_from_world, NormalEquations& n) {
+    const QuadraticCost here = q.moved_to(camera_from_world);
+    n.hessian += here.hessian;
+    n.gradient += here.gradient;
+    n.cost += here.constant;
   }
 
   void add(const PoseObservation& o, const Pose& camera_from_world, NormalEquations& n) const {
@@ -106,7 +132,9 @@ class Solver {
     jacobian.leftCols<3>() = by_point;
     for (int row = 0; row < 3; ++row)
       jacobian.row(row).tail<3>() = p.cross(by_point.row(row).transpose()).transpose();
-    n.hessian.noalias() += weight * (jacobian.transpose() * jacobian);
+    const Matrix6d hessian = weight * (jacobian.transpose() * jacobian);
+    n.hessian += hessian;
+    if (o.temporary) n.temporary += hessian;
     n.gradient.noalias() += weight * (jacobian.transpose() * r);
   }
 
@@ -128,15 +156,38 @@ class Solver {
 
   std::span<const PoseObservation> observations_;
   const Camera& camera_;
+  const PoseTerm& term_;
+  QuadraticCost further_;  // the term, this round
   PoseSolution solution_;
   bool robust_ = true;
 };
 
 }  // namespace
 
+QuadraticCost QuadraticCost::moved_to(const Pose& camera_from_world) const {
+  const Vector6d twist = log_se3(camera_from_world * linearised_at.inverse());
+  const Vector6d slope = hessian * twist;
+  return {.linearised_at = camera_from_world,
+          .hessian = hessian,
+          .gradient = gradient + slope,
+          .constant = constant + twist.dot(2.0 * gradient + slope)};
+}
+
+QuadraticCost operator+(const QuadraticCost& a, const QuadraticCost& b) {
+  return {.linearised_at = a.linearised_at,
+          .hessian = a.hessian + b.hessian,
+          .gradient = a.gradient + b.gradient,
+          .constant = a.constant + b.constant};
+}
+
 PoseSolution solve_pose(std::span<const PoseObservation> observations, const Camera& camera,
                         const Pose& camera_from_world_guess) {
-  return Solver(observations, camera, camera_from_world_guess).run();
+  return solve_pose(observations, camera, camera_from_world_guess, {});
+}
+
+PoseSolution solve_pose(std::span<const PoseObservation> observations, const Camera& camera,
+                        const Pose& camera_from_world_guess, const PoseTerm& term) {
+  return Solver(observations, camera, camera_from_world_guess, term).run();
 }
 
 }  // namespace stillpoint::orb

@@ -143,6 +143,45 @@ TEST_F(PoseSolverTest, ConvergesFromFarAway) {
   expect_near(solve_pose(observe(200, 0, true), camera_, far), 1e-6, 1e-6);
 }
 
+TEST_F(PoseSolverTest, ATermAloneHoldsThePose) {
+  const QuadraticCost here{.linearised_at = truth_, .hessian = 100 * Matrix6d::Identity()};
+  const PoseSolution solution =
+      solve_pose({}, camera_, guess_, [&](const Pose& pose, int) { return here.moved_to(pose); });
+  expect_near(solution, 1e-5, 1e-5);
+  EXPECT_TRUE(solution.information.isApprox(here.hessian));
+}
+
+TEST_F(PoseSolverTest, ATermAndFewPointsShareTheDirections) {
+  // The term knows everything but x; three points know that.
+  QuadraticCost here{.linearised_at = truth_, .hessian = 1e6 * Matrix6d::Identity()};
+  here.hessian(0, 0) = 0;
+  const PoseSolution solution =
+      solve_pose(observe(3, 0, true), camera_, guess_,
+                 [&](const Pose& pose, int) { return here.moved_to(pose); });
+  expect_near(solution, 1e-4, 1e-4);
+  EXPECT_GT(solution.information(0, 0), 1e3);
+  EXPECT_TRUE(solution.temporary_information.isZero());
+}
+
+TEST_F(PoseSolverTest, InformationIsThatOfTheErrors) {
+  // Squared errors in units of what is claimed: six on average.
+  double sum = 0;
+  constexpr int kRuns = 40;
+  for (int i = 0; i < kRuns; ++i) {
+    const PoseSolution solution = solve_pose(observe(60, 1, true), camera_, guess_);
+    const Vector6d error = log_se3(solution.camera_from_world * truth_.inverse());
+    sum += error.dot(solution.information * error);
+  }
+  EXPECT_NEAR(sum / kRuns, 6.0, 2.0);
+}
+
+TEST_F(PoseSolverTest, TheShareOfTemporaryPointsIsKnown) {
+  auto observations = observe(100, 0, true);
+  for (PoseObservation& o : observations) o.temporary = true;
+  const PoseSolution solution = solve_pose(observations, camera_, guess_);
+  EXPECT_TRUE(solution.temporary_information.isApprox(solution.information));
+}
+
 TEST_F(PoseSolverTest, SameInputSameBits) {
   const auto observations = observe(300, 1, true);
   const PoseSolution a = solve_pose(observations, camera_, guess_);

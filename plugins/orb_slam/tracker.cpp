@@ -1,6 +1,8 @@
 #include "orb_slam/tracker.hpp"
 
+#include <Eigen/Cholesky>
 #include <algorithm>
+#include <cmath>
 #include <opencv2/imgproc.hpp>
 #include <utility>
 
@@ -15,6 +17,32 @@ constexpr int kMinMotionInliers = 20;  // fewer, or a smaller share: do not trus
 constexpr double kMinMotionShare = 0.5;
 constexpr double kCompany = 5.0;  // seconds: who has left the image may be back
 constexpr double kNobody = 0.02;  // of the image: less is noise of masks and of depth edges
+
+constexpr double kHeldMetres = 0.010;   // standard deviation of a pose that needs no depth
+constexpr double kHeldRadians = 0.010;  // the same
+constexpr int kMinPatches = 60;         // of 1,200, to hold a pose
+constexpr double kMinKnown = 0.25;      // share of the patches that key frames must know
+constexpr double kMinAgreement = 0.6;   // share of those that must fit
+constexpr double kNewView = 0.7;        // fewer known patches ask for a key frame
+// A picture with so many features, hardly any of them of the last frame's, is of another place;
+// unless texture only begins again.
+constexpr int kManyFeatures = 500;
+constexpr double kMinShown = 0.1;
+constexpr int kMinLandmarks = 5;        // beside surfaces; fewer may all be wrong
+constexpr double kFreshVelocity = 0.3;  // share of the newest velocity while surfaces hold
+constexpr double kMotionMetres = 0.5;   // per second: standard deviation of constant velocity
+constexpr double kMotionRadians = 0.5;  // per second, the same
+
+Matrix6d inverse(const Matrix6d& positive_definite) {
+  return positive_definite.ldlt().solve(Matrix6d::Identity());
+}
+
+PoseUncertainty uncertainty_of(const Matrix6d& information) {
+  return {.covariance = inverse(information + Matrix6d::Identity())};  // 1 m, 1 rad
+}
+
+// Metres within which a patch must lie on the plane it falls on: less with every round.
+double reach(int round) { return std::max(0.12 * std::pow(0.6, round), 0.02); }
 
 std::vector<TrackedFeature> describe(const ObservedFrame& frame) {
   std::vector<TrackedFeature> tracked(frame.features->size());
@@ -73,6 +101,8 @@ void OrbTracker::Options::visit(OptionVisitor& v) {
     {.min = 1,
      .max = 4,
      .help = "times `features`, to make up for a part of the image that cannot be mapped"});
+  v("hold_by_depth", hold_by_depth,
+    {.help = "where landmarks do not hold the pose, surfaces in depth do"});
   keyframe.visit(v);
 }
 
@@ -91,9 +121,9 @@ double OrbTracker::feature_share() const {
 
 // All that is worn by somebody whom nobody recognised can become landmarks at once. Where nobody
 // is, new landmarks are as good as others.
-int OrbTracker::solve(const SparseMap& map) {
+int OrbTracker::solve(const SparseMap& map, const PoseTerm& term) {
   const bool company = current_.frame->time - last_company_ < kCompany;
-  return solve_pose(current_, map, company ? options_.proving_time : 0.0, *first_keyframe_);
+  return solve_pose(current_, map, company ? options_.proving_time : 0.0, *first_keyframe_, term);
 }
 
 TrackResult OrbTracker::track(FramePtr, const StaticWeights& weights, const SparseMap& map,
@@ -106,15 +136,21 @@ TrackResult OrbTracker::track(FramePtr, const StaticWeights& weights, const Spar
   if (hidden_ > kNobody) last_company_ = current_.frame->time;
   if (!first_keyframe_) first_keyframe_ = map.keyframe_id_end();
   visible_.clear();
+  weights_ = weights;
+  depth_view_.reset();
+  held_.reset();
+  prediction_.reset();
   if (map.empty())
     return !hints.localise_only && start() ? tracked(map, hints)
                                            : not_tracked(TrackState::kWaiting);
 
   follow_map(map);
   bool found = false;
-  if (state_ == TrackState::kTracking) found = track_with_motion(map) || track_by_appearance(map);
-  if (!found) found = relocaliser_.find(current_, map);
+  const bool following = state_ == TrackState::kTracking;
+  if (following) found = track_with_motion(map) || track_by_appearance(map);
   if (found) found = track_local_map(map);
+  if (!found && following) found = track_with_depth(map);
+  if (!found) found = relocaliser_.find(current_, map) && track_local_map(map);
   return found ? tracked(map, hints) : not_tracked(TrackState::kLost);
 }
 
@@ -125,7 +161,17 @@ bool OrbTracker::start() {
     points += current_.features->depth[i] > 0 && current_.usable(i);
   current_.world_from_camera = Pose::Identity();
   current_.reference = kNoId;
-  return points >= options_.min_start_points;
+  return points >= options_.min_start_points || surfaces_suffice();
+}
+
+// Whether the surfaces in view alone would hold a camera.
+bool OrbTracker::surfaces_suffice() {
+  if (!options_.hold_by_depth) return false;
+  const PlacedView self{&depth_view()};
+  const PlaneRegistration registration =
+      register_planes(depth_view(), {&self, 1}, Pose::Identity(), reach(0));
+  current_.information = registration.cost.hessian;
+  return registration.patches >= kMinPatches && well_held();
 }
 
 // Mapping may have moved, fused or removed what the last frame refers to.
@@ -142,24 +188,38 @@ void OrbTracker::follow_map(const SparseMap& map) {
   for (LandmarkId& id : last_.landmarks) id = map.current_id(id);
 }
 
-bool OrbTracker::track_with_motion(const SparseMap& map) {
-  if (!velocity_) return false;
+// Constant velocity.
+void OrbTracker::predict_pose() {
+  prediction_.reset();
+  current_.world_from_camera = last_.world_from_camera;
+  if (!velocity_) return;
   const double seconds = current_.frame->time - last_.frame->time;
   const Pose motion = exp_se3(log_se3(*velocity_) * (seconds / velocity_seconds_));
   current_.world_from_camera = last_.world_from_camera * motion.inverse();
-  const Pose prediction = current_.world_from_camera.inverse();
+  prediction_ = current_.world_from_camera;
+}
 
+int OrbTracker::match_last_frame(const SparseMap& map) {
+  const Pose prediction = current_.world_from_camera.inverse();
   const std::vector<Target> targets = targets_of(last_, map);
-  int matches = match_projected(current_, targets, prediction, options_.motion_window, 1);
-  if (matches < kMinMotionMatches)
-    matches = match_projected(current_, targets, prediction, 2 * options_.motion_window, 1);
+  const int matches = match_projected(current_, targets, prediction, options_.motion_window, 1);
+  if (matches >= kMinMotionMatches) return matches;
+  return match_projected(current_, targets, prediction, 2 * options_.motion_window, 1);
+}
+
+bool OrbTracker::track_with_motion(const SparseMap& map) {
+  if (!velocity_) return false;
+  predict_pose();
+  const int matches = match_last_frame(map);
   const int inliers = solve(map);
   current_.drop_outliers();
   return inliers >= kMinMotionInliers && inliers >= kMinMotionShare * matches;
 }
 
-// Independent of any prediction: for fast turns, and where the prediction led to a false minimum.
+// Independent of any prediction, which it forgets: for fast turns, and where the prediction led to
+// a false minimum.
 bool OrbTracker::track_by_appearance(const SparseMap& map) {
+  prediction_.reset();
   if (locate_by_appearance(current_, targets_of(last_, map), map) >= options_.min_inliers)
     return true;
   const KeyFrame* reference = map.keyframe(last_.reference);
@@ -174,12 +234,91 @@ bool OrbTracker::track_local_map(const SparseMap& map) {
       std::exchange(current_.temporary, decltype(current_.temporary)(current_.features->size()));
   inliers_ = solve(map);
   bridged_ = inliers_ < options_.min_inliers;
-  if (!bridged_) return true;
+  if (!bridged_) {
+    if (!well_held()) hold_by_depth(map);
+    return true;
+  }
   // A view that the map hardly knows: carried by what the last frame measured, it becomes a key
   // frame and the map knows it from then on.
   current_.temporary = temporary;
   current_.world_from_camera = prior;
   return current_.reference != kNoId && solve(map) >= options_.min_bridge_points;
+}
+
+// Whether what was matched fixes the pose.
+bool OrbTracker::well_held() const {
+  const PoseUncertainty uncertainty = uncertainty_of(current_.information);
+  return uncertainty.metres() < kHeldMetres && uncertainty.radians() < kHeldRadians;
+}
+
+const DepthView& OrbTracker::depth_view() {
+  if (!depth_view_) depth_view_.emplace(*current_.frame, weights_);
+  return *depth_view_;
+}
+
+// Where neither the last frame nor the map has enough landmarks for a pose: from the prediction on,
+// by surfaces and whatever landmarks there are.
+bool OrbTracker::track_with_depth(const SparseMap& map) {
+  if (!options_.hold_by_depth || !last_.frame) return false;
+  predict_pose();
+  const int matches = match_last_frame(map);
+  const auto usable = std::ranges::count_if(
+      current_.track_weights, [](auto weight) { return weight >= ObservedFrame::kMinWeight; });
+  if (!last_held_ && usable >= kManyFeatures && matches < kMinShown * static_cast<double>(usable))
+    return false;
+  if (!hold_by_depth(map)) return false;
+  current_.drop_outliers();
+  if (current_.matched() < kMinLandmarks) match_neighbour(map);
+  search_local_map(map);
+  bridged_ = false;
+  return hold_by_depth(map);
+}
+
+// Landmarks that come into view again after there were none: the camera may have slid meanwhile.
+void OrbTracker::match_neighbour(const SparseMap& map) {
+  const KeyFrame* neighbour = map.keyframe(current_.reference);
+  if (!neighbour) return;
+  match_projected(current_, targets_of(*neighbour, map), current_.world_from_camera.inverse(),
+                  2 * options_.motion_window, 1);
+}
+
+// Leaves the frame as it is when depth does not agree with the key frames'.
+bool OrbTracker::hold_by_depth(const SparseMap& map) {
+  if (!options_.hold_by_depth) return false;
+  const DepthView& view = depth_view();
+  const DepthAnchor::Neighbours around = anchor_.around(view, current_.world_from_camera, map);
+  if (around.views.empty()) return false;
+  const ObservedFrame before = current_;
+  if (current_.reference == kNoId) current_.reference = around.nearest;
+  if (current_.matched() < kMinLandmarks) current_.clear_matches();
+  const QuadraticCost motion = motion_prior();
+  PlaneRegistration registration;
+  solve(map, [&](const Pose& camera_from_world, int round) {
+    registration = register_planes(view, around.views, camera_from_world, reach(round));
+    return registration.cost + motion.moved_to(camera_from_world);
+  });
+  current_.information -= motion.hessian;
+  if (registration.patches < kMinPatches || registration.known() < kMinKnown ||
+      registration.agreement() < kMinAgreement) {
+    current_ = before;
+    return false;
+  }
+  inliers_ = 0;
+  for (std::size_t i = 0; i < current_.landmarks.size(); ++i)
+    inliers_ += current_.landmarks[i] != kNoId && !current_.outlier[i];
+  held_ = registration;
+  return true;
+}
+
+// Where neither surfaces nor landmarks hold the camera, it goes on as it went.
+QuadraticCost OrbTracker::motion_prior() const {
+  QuadraticCost prior;
+  if (!prediction_) return prior;
+  const double seconds = std::max(current_.frame->time - last_.frame->time, 1e-3);
+  prior.linearised_at = prediction_->inverse();
+  prior.hessian.diagonal().head<3>().setConstant(1 / std::pow(kMotionMetres * seconds, 2));
+  prior.hessian.diagonal().tail<3>().setConstant(1 / std::pow(kMotionRadians * seconds, 2));
+  return prior;
 }
 
 void OrbTracker::search_local_map(const SparseMap& map) {
@@ -216,12 +355,17 @@ TrackResult OrbTracker::tracked(const SparseMap& map, TrackHints hints) {
   result.features = static_cast<int>(current_.features->size());
   result.matches = current_.matched();
   result.inliers = inliers_;
+  result.uncertainty = last_uncertainty_ = uncertainty(map);
+  result.held_by_depth = held_.has_value();
   result.tracked = describe(current_);
 
-  const TrackingQuality quality = tracking_quality(
+  TrackingQuality quality = tracking_quality(
       current_, map, inliers_, static_cast<int>(current_.frame->index - last_keyframe_index_),
       options_.keyframe);
-  const bool unknown_view = bridged_ && last_keyframe_ == kNoId;  // the last one is in the map
+  quality.held_by_depth = held_.has_value();
+  const bool new_surfaces = held_ && held_->known() < kNewView;
+  const bool unknown_view =
+      (bridged_ || new_surfaces) && last_keyframe_ == kNoId;  // the last one is in the map
   const bool keep = !hints.localise_only && (map.empty() || unknown_view ||
                                              needs_keyframe(quality, hints, options_.keyframe));
   add_static_evidence(current_, map, visible_, evidence_);
@@ -239,15 +383,32 @@ TrackResult OrbTracker::tracked(const SparseMap& map, TrackHints hints) {
   result.reference = current_.reference;
   result.reference_from_camera = current_.reference_from_camera;
 
-  const bool consecutive = state_ == TrackState::kTracking && last_.frame;
-  velocity_.reset();
-  if (consecutive) {
-    velocity_ = current_.world_from_camera.inverse() * last_.world_from_camera;
-    velocity_seconds_ = current_.frame->time - last_.frame->time;
-  }
+  update_velocity();
   state_ = TrackState::kTracking;
+  last_held_ = held_.has_value();
   last_ = std::move(current_);
   return result;
+}
+
+// Temporary points are no better known than the frame that measured them.
+PoseUncertainty OrbTracker::uncertainty(const SparseMap& map) const {
+  if (map.empty()) return {.covariance = Matrix6d::Zero()};  // the origin
+  const Matrix6d& chain = current_.temporary_information;
+  if (chain.isZero()) return uncertainty_of(current_.information);
+  const Matrix6d chained = last_uncertainty_.covariance + uncertainty_of(chain).covariance;
+  return uncertainty_of(current_.information - chain + inverse(chained));
+}
+
+void OrbTracker::update_velocity() {
+  const auto before = std::exchange(velocity_, std::nullopt);
+  if (state_ != TrackState::kTracking || !last_.frame) return;
+  const double seconds = current_.frame->time - last_.frame->time;
+  velocity_ = current_.world_from_camera.inverse() * last_.world_from_camera;
+  // Where the camera is about to slide, single velocities are too noisy to go on with.
+  if (held_ && before && seconds > 0)
+    velocity_ = exp_se3(kFreshVelocity * log_se3(*velocity_) +
+                        (1 - kFreshVelocity) * (seconds / velocity_seconds_) * log_se3(*before));
+  velocity_seconds_ = seconds;
 }
 
 TrackResult OrbTracker::not_tracked(TrackState state) {
@@ -262,15 +423,17 @@ TrackResult OrbTracker::not_tracked(TrackState state) {
 }
 
 KeyFrame OrbTracker::make_keyframe() {
-  KeyFrame keyframe{.id = next_keyframe_++,
-                    .frame = current_.frame->index,
-                    .time = current_.frame->time,
-                    .world_from_camera = current_.world_from_camera,
-                    .camera = current_.frame->camera,
-                    .features = current_.features,
-                    .track_weights = current_.track_weights,
-                    .map_weights = current_.map_weights,
-                    .landmarks = current_.landmarks};
+  KeyFrame keyframe{
+      .id = next_keyframe_++,
+      .frame = current_.frame->index,
+      .time = current_.frame->time,
+      .world_from_camera = current_.world_from_camera,
+      .covariance = held_ || bridged_ ? last_uncertainty_.covariance : Matrix6d(Matrix6d::Zero()),
+      .camera = current_.frame->camera,
+      .features = current_.features,
+      .track_weights = current_.track_weights,
+      .map_weights = current_.map_weights,
+      .landmarks = current_.landmarks};
   for (auto& [id, evidence] : evidence_) {
     evidence.landmark = id;
     keyframe.evidence.push_back(evidence);
@@ -279,6 +442,7 @@ KeyFrame OrbTracker::make_keyframe() {
             [](const auto& a, const auto& b) { return a.landmark < b.landmark; });
   evidence_.clear();
   last_keyframe_index_ = current_.frame->index;
+  if (options_.hold_by_depth) anchor_.add(keyframe.id, depth_view());
   return keyframe;
 }
 

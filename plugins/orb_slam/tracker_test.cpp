@@ -5,6 +5,7 @@
 
 #include "orb_slam/local_mapper.hpp"
 #include "orb_slam/test_scene.hpp"
+#include "orb_slam/test_surfaces.hpp"
 #include "orb_slam/test_world.hpp"
 
 namespace stillpoint::orb {
@@ -118,6 +119,58 @@ TEST_F(TrackerTest, WithoutDepthItWaits) {
   }
   expect_at(step(pose_at({0.5, 0, 0})), Pose::Identity());  // the world begins where it starts
   expect_at(step(pose_at({0.52, 0, 0})), pose_at({0.02, 0, 0}));
+}
+
+TEST_F(TrackerTest, APlainCornerIsHeldByDepth) {
+  for (int i = 0; i < 40; ++i) {
+    SCOPED_TRACE(i);
+    const double t = i / 39.0;
+    const Pose truth = pose_at({-0.3 * t, 0.1 * t, 0.2 * t}, {-0.1 * t, 0.2 * t, 0.05 * t});
+    const TrackResult result = step(see_planes({kAhead, kRight, kFloor}, truth, next_++, 0.002));
+    expect_at(result, truth);
+    EXPECT_FALSE(result.uncertainty.poorly_constrained());
+    EXPECT_EQ(result.held_by_depth, i > 0);
+  }
+}
+
+TEST_F(TrackerTest, ASlideAlongAWallIsReported) {
+  scene_ = TestScene({{-4, -3, 8, 6, 3.0}});
+  for (int i = 0; i < 6; ++i) expect_at(step(pose_at({0.01 * i, 0, 0})), pose_at({0.01 * i, 0, 0}));
+  for (int i = 6; i < 12; ++i) {
+    SCOPED_TRACE(i);
+    const Pose truth = pose_at({0.01 * i, 0, 0.01 * (i - 6)});
+    const TrackResult result = step(see_planes({{{0, 0, 1}, 3.0}}, truth, next_++, 0.002));
+    ASSERT_EQ(result.state, TrackState::kTracking);
+    EXPECT_TRUE(result.held_by_depth);
+    EXPECT_TRUE(result.uncertainty.poorly_constrained());
+    EXPECT_GT(result.uncertainty.covariance(0, 0), 0.5) << "along the wall";
+    EXPECT_LT(result.uncertainty.covariance(2, 2), 0.01 * 0.01) << "away from it";
+    EXPECT_NEAR(result.world_from_camera.translation().z(), truth.translation().z(), 0.004);
+  }
+}
+
+TEST_F(TrackerTest, WhereLandmarksSufficeDepthIsNotAsked) {
+  std::vector<Pose> poses;
+  for (int i = 0; i < 8; ++i) {
+    const TrackResult result = step(pose_at({0.05 * i, 0, 0}));
+    EXPECT_FALSE(result.held_by_depth);
+    EXPECT_LT(result.uncertainty.metres(), 0.01);
+    poses.push_back(result.world_from_camera);
+  }
+  OrbTracker::Options without;
+  without.hold_by_depth = false;
+  const auto same = anew(without);
+  for (std::size_t i = 0; i < poses.size(); ++i) EXPECT_EQ(same[i].matrix(), poses[i].matrix());
+}
+
+TEST_F(TrackerTest, SurfacesOfNoWeightDoNotHold) {
+  const auto corner = [&](const Pose& pose) {
+    return see_planes({kAhead, kRight, kFloor}, pose, next_++, 0.002);
+  };
+  StaticWeights person;
+  person.track = cv::Mat::zeros(480, 640, CV_8UC1);
+  for (int i = 0; i < 3; ++i) step(corner(pose_at({0.01 * i, 0, 0})));
+  EXPECT_EQ(step(corner(pose_at({0.03, 0, 0})), person).state, TrackState::kLost);
 }
 
 TEST_F(TrackerTest, BlackFirstFrameWaits) {

@@ -56,6 +56,8 @@ void SummaryOutput::finish(const RunSummary& summary) {
        summary.segmentation_failures > 0 ? Json(summary.segmentation_failure) : Json()},
       {"coverage", tracking.coverage()},
       {"times_lost", tracking.times_lost},
+      {"depth_held_frames", tracking.held_by_depth},
+      {"poorly_constrained_frames", tracking.poorly_constrained},
       {"keyframes", summary.map.keyframe_count()},
       {"landmarks", summary.map.landmark_count()},
       {"wall_seconds", summary.wall_seconds},

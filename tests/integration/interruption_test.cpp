@@ -59,25 +59,44 @@ INSTANTIATE_TEST_SUITE_P(Modes, Interruption, ::testing::Values("inline", "threa
                          [](const auto& mode) { return std::string(mode.param); });
 
 // Depth stays: without any, a pair counts as unusable and tracking would never see the frame.
-TEST(Darkness, IsLostAndFoundAgain) {
-  constexpr int kBegin = kSimulatedFrames / 2, kDark = 10;
-  const TemporaryFolder folder;
-  const RecordingCopy recording(kSimulatedFrames);
-  for (int frame = kBegin; frame < kBegin + kDark; ++frame)
-    recording.replace(recording.color(frame), cv::Mat::zeros(480, 640, CV_8UC3));
-  const fs::path out = folder.path() / "out";
-  const Outcome outcome = call({"run", "orb_baseline", "--dataset", recording.path().string(), "-o",
-                                out.string(), "--set", "runtime.mode=inline"});
-  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
-  EXPECT_THAT(outcome.out, HasSubstr("lost 1 time\n"));
-  const auto summary = json_file(out / "summary.json");
+class Darkness : public ::testing::Test {
+ protected:
+  static constexpr int kBegin = kSimulatedFrames / 2, kDark = 10;
+
+  void SetUp() override {
+    for (int frame = kBegin; frame < kBegin + kDark; ++frame)
+      recording_.replace(recording_.color(frame), cv::Mat::zeros(480, 640, CV_8UC3));
+  }
+  nlohmann::json run(const std::string& setting, const std::string& said, double metres) {
+    const fs::path out = folder_.path() / "out";
+    const Outcome outcome =
+        call({"run", "orb_baseline", "--dataset", recording_.path().string(), "-o", out.string(),
+              "--set", "runtime.mode=inline", "--set", setting});
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    EXPECT_THAT(outcome.out, HasSubstr(said));
+    EXPECT_LT(absolute_error(recording_.path(), out / "trajectory.txt"), metres);
+    return json_file(out / "summary.json");
+  }
+
+  TemporaryFolder folder_;
+  RecordingCopy recording_{kSimulatedFrames};
+};
+
+TEST_F(Darkness, IsLostAndFoundAgain) {
+  const auto summary = run("tracker.hold_by_depth=false", "lost 1 time\n", 0.006);
   EXPECT_TRUE(summary["complete"]);
   EXPECT_EQ(summary["times_lost"], 1);
+  EXPECT_EQ(summary["depth_held_frames"], 0);
   EXPECT_EQ(summary["frames"], kSimulatedFrames);
   const int tracked = summary["tracked_frames"];
   EXPECT_LE(tracked, kSimulatedFrames - kDark);
   EXPECT_GE(tracked, kSimulatedFrames - kDark - 2);
-  EXPECT_LT(absolute_error(recording.path(), out / "trajectory.txt"), 0.006);
+}
+
+TEST_F(Darkness, DepthHoldsTheCamera) {
+  const auto summary = run("tracker.hold_by_depth=true", "lost 0 times\n", 0.015);
+  EXPECT_EQ(summary["tracked_frames"], kSimulatedFrames);
+  EXPECT_GE(summary["depth_held_frames"], kDark);
 }
 
 }  // namespace

@@ -90,6 +90,54 @@ TEST(Simulator, DepthIsThatOfTheGeometry) {
   EXPECT_GT(at_back, 1000);
 }
 
+double contrast(const SceneOptions& scene) {
+  Simulator simulator(scene, small_camera(), 1);
+  cv::Scalar mean, deviation;
+  cv::Mat gray;
+  cv::cvtColor(simulator.frame(0).bgr, gray, cv::COLOR_BGR2GRAY);
+  cv::Mat fine = cv::Mat(gray.size(), CV_32F), smooth;
+  gray.convertTo(fine, CV_32F);
+  cv::GaussianBlur(fine, smooth, {}, 3);
+  cv::meanStdDev(fine - smooth, mean, deviation);
+  return deviation[0];
+}
+
+TEST(Simulator, WithoutTextureSurfacesAreOfOneColour) {
+  SceneOptions scene;
+  scene.room.furnished = false;
+  scene.sensor.ideal = true;
+  scene.motion.kind = MotionOptions::Kind::kStatic;
+  scene.motion.position = {0, 0, 1.4};
+  scene.motion.look_at = {0, 1, 0};  // the floor
+  const double usual = contrast(scene);
+  scene.room.texture = 0.0;
+  EXPECT_LT(contrast(scene), 0.5 * usual);
+}
+
+TEST(Simulator, ACorridorIsTwoMetresWide) {
+  SceneOptions scene;
+  scene.room.plan = RoomOptions::Plan::kCorridor;
+  scene.room.furnished = false;
+  scene.sensor.ideal = true;
+  scene.motion.kind = MotionOptions::Kind::kStatic;
+  scene.motion.position = {0, 5, 1.4};
+  scene.motion.look_at = {0, 8, 1.2};
+  const CameraModel model = small_camera();
+  Simulator simulator(scene, model, 1);
+  const SimulatedFrame frame = simulator.frame(0);
+  const Camera camera = model.undistorted();
+  for (int y = 0; y < camera.height; ++y) {
+    for (int x = 0; x < camera.width; ++x) {
+      const double depth = frame.depth.at<std::uint16_t>(y, x) / model.depth_factor;
+      if (depth == 0) continue;
+      const Eigen::Vector3d point = frame.world_from_camera * camera.unproject(x, y, depth);
+      const double to_surface = std::min({std::abs(std::abs(point.x()) - 1.0), std::abs(point.z()),
+                                          std::abs(point.z() - 2.7), std::abs(point.y() - 15.0)});
+      ASSERT_LT(to_surface, 3e-3) << x << ' ' << y;
+    }
+  }
+}
+
 TEST(Simulator, PoseAndStampBelongToTheMiddleOfTheExposure) {
   SceneOptions scene;
   scene.start_time = 1341846434;

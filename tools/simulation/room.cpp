@@ -105,7 +105,7 @@ void add_walls(Furnisher& furnish, bool rich) {
 }  // namespace
 
 void add_room(World& world, const RoomOptions& options) {
-  add_shell(world, shell_skins(world, options.seed));
+  add_shell(world, shell_skins(world, options));
   if (!options.furnished) return;
   const bool rich = options.walls == RoomOptions::Walls::kRich;
   Furnisher furnish(world, options.seed);

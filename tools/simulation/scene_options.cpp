@@ -4,11 +4,17 @@ namespace stillpoint::simulation {
 
 void RoomOptions::visit(OptionVisitor& v) {
   v.choice(
-      "plan", plan, {{"office", Plan::kOffice}, {"suite", Plan::kSuite}},
-      {.help = "office: one room; suite: ten rooms of 6 x 6 m in two rows, in a ring of doorways"});
+      "plan", plan,
+      {{"office", Plan::kOffice}, {"suite", Plan::kSuite}, {"corridor", Plan::kCorridor}},
+      {.help = "office: one room; suite: ten rooms of 6 x 6 m in two rows, in a ring of doorways; "
+               "corridor: 2 m wide, 16 m long, things at its beginning only"});
   v.choice("walls", walls, {{"rich", Walls::kRich}, {"poor", Walls::kPoor}},
            {.help = "rich: posters, boards and shelves on the walls; poor: bare plaster"});
   v("furnished", furnished, {.help = "desks, chairs, monitors, shelves and what lies on them"});
+  v("texture", texture,
+    {.min = 0,
+     .max = 1,
+     .help = "contrast of plaster, carpet and ceiling, against the usual; 0: of one colour each"});
   v("alike", alike, {.help = "every room of a suite is furnished as the others are"});
   v("seed", seed, {.min = 0, .help = "of what is printed on posters, papers and books"});
   v("photographs", photographs,

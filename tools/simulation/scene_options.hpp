@@ -10,11 +10,12 @@ namespace stillpoint::simulation {
 
 /// World frame: metres, z up, floor at 0; the office's desks ahead of the camera along +y.
 struct RoomOptions {
-  enum class Plan { kOffice, kSuite } plan = Plan::kOffice;
+  enum class Plan { kOffice, kSuite, kCorridor } plan = Plan::kOffice;
   enum class Walls { kRich, kPoor } walls = Walls::kRich;
   bool furnished = true;
-  bool alike = false;  ///< the rooms of a suite
-  int seed = 1;        ///< of what is printed on posters, papers and books
+  double texture = 1.0;  ///< contrast of what walls, floor and ceiling are covered with
+  bool alike = false;    ///< the rooms of a suite
+  int seed = 1;          ///< of what is printed on posters, papers and books
   std::string
       photographs;  ///< folder: they cover walls, floor, boards, desks and boxes; empty: none
 

@@ -13,7 +13,7 @@ struct ShellSkins {
   Skin tube;  ///< lamps
 };
 
-ShellSkins shell_skins(World& world, int seed);
+ShellSkins shell_skins(World& world, const RoomOptions& options);
 
 /// A tube of 1.2 m along y under the ceiling at `place`.
 void add_lamp(World& world, const Skin& tube, const Eigen::Vector3f& place);

@@ -185,7 +185,7 @@ void furnish_room(World& world, const RoomOptions& options, int column, int row)
 }  // namespace
 
 void add_suite(World& world, const RoomOptions& options) {
-  add_shell(world, shell_skins(world, options.seed));
+  add_shell(world, shell_skins(world, options));
   if (!options.furnished) return;
   for (int column = 0; column < kColumns; ++column)
     for (int row = 0; row < kRows; ++row) furnish_room(world, options, column, row);

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "simulation/ball.hpp"
+#include "simulation/corridor.hpp"
 #include "simulation/lighting.hpp"
 #include "simulation/person.hpp"
 #include "simulation/room.hpp"
@@ -27,10 +28,17 @@ World build_world(const SceneOptions& scene) {
   World world;
   if (!scene.room.photographs.empty())
     world.album = std::make_shared<const Album>(scene.room.photographs);
-  if (scene.room.plan == RoomOptions::Plan::kSuite)
-    add_suite(world, scene.room);
-  else
-    add_room(world, scene.room);
+  switch (scene.room.plan) {
+    case RoomOptions::Plan::kOffice:
+      add_room(world, scene.room);
+      break;
+    case RoomOptions::Plan::kSuite:
+      add_suite(world, scene.room);
+      break;
+    case RoomOptions::Plan::kCorridor:
+      add_corridor(world, scene.room);
+      break;
+  }
   light_room(world);
   for (const PersonOptions& person : scene.people) add_person(world, person);
   for (const BallOptions& ball : scene.balls) add_ball(world, ball);

@@ -48,6 +48,9 @@ void RunTable::print_run(std::ostream& stream) const {
   stream << format("  frames    %zu, tracked %zu (%.1f %%), lost %zu time%s\n", tracking_.frames,
                    tracking_.tracked, 100.0 * tracking_.coverage(), tracking_.times_lost,
                    tracking_.times_lost == 1 ? "" : "s");
+  if (tracking_.poorly_constrained > 0)
+    stream << format("            %zu poorly constrained: the camera may have slid unseen\n",
+                     tracking_.poorly_constrained);
   if (dropped_ > 0)
     stream << format("            %d dropped to keep the sensor's pace\n", dropped_);
   if (source_.skipped > 0)

@@ -77,8 +77,15 @@ void Pipeline::process(const FramePtr& frame) {
 
 void Pipeline::report(const FrameReport& report) {
   const std::uint32_t index = report.frame.index;
-  poses_.push_back({index, report.frame.time, report.result.state, report.result.reference,
-                    report.result.reference_from_camera});
+  const TrackResult& result = report.result;
+  poses_.push_back({.frame = index,
+                    .time = report.frame.time,
+                    .state = result.state,
+                    .reference = result.reference,
+                    .reference_from_camera = result.reference_from_camera,
+                    .held_by_depth = result.held_by_depth,
+                    .poorly_constrained = result.state == TrackState::kTracking &&
+                                          result.uncertainty.poorly_constrained()});
   const ScopedTime time(times_, "outputs", index);
   for (StageCaller<Output>& output : outputs_)
     output.call_unmeasured(index, &Output::frame, report);

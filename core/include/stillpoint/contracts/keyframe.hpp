@@ -32,6 +32,9 @@ struct KeyFrame {
   std::uint32_t frame = 0;  ///< index of its Frame
   double time = 0.0;        ///< seconds
   Pose world_from_camera = Pose::Identity();
+  /// Of the pose against the key frames before it, as in PoseUncertainty, where landmarks alone did
+  /// not hold it; 0 otherwise, and in maps from files.
+  Matrix6d covariance = Matrix6d::Zero();
   std::shared_ptr<const Camera> camera;
   FeaturesPtr features;
   std::vector<std::uint8_t> track_weights;  ///< per feature, as StaticWeights::track

@@ -45,6 +45,8 @@ struct TrackedPose {
   TrackState state = TrackState::kWaiting;
   KeyFrameId reference = kNoId;
   Pose reference_from_camera = Pose::Identity();
+  bool held_by_depth = false;       ///< as in TrackResult
+  bool poorly_constrained = false;  ///< as in PoseUncertainty
 };
 
 struct RunSummary {

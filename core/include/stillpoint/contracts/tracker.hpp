@@ -6,6 +6,7 @@
 
 #include "stillpoint/contracts/frame.hpp"
 #include "stillpoint/contracts/keyframe.hpp"
+#include "stillpoint/contracts/pose_uncertainty.hpp"
 #include "stillpoint/contracts/sparse_map.hpp"
 #include "stillpoint/contracts/static_weights.hpp"
 #include "stillpoint/export.hpp"
@@ -32,6 +33,8 @@ struct TrackResult {
   int features = 0;                           ///< extracted
   int matches = 0;                            ///< with a landmark
   int inliers = 0;                            ///< of those, fitting the pose
+  PoseUncertainty uncertainty;                ///< of the pose; while tracking
+  bool held_by_depth = false;                 ///< landmarks alone would not have been enough
   std::vector<TrackedFeature> tracked;        ///< per feature
   std::optional<KeyFrame> keyframe;           ///< to be inserted
 };

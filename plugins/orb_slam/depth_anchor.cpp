@@ -1,0 +1,66 @@
+#include "orb_slam/depth_anchor.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace stillpoint::orb {
+namespace {
+
+constexpr std::size_t kMostViews = 40;  // kept; 130 kB each
+constexpr std::size_t kNeighbours = 2;  // compared with
+constexpr int kSparse = 6;              // every sixth patch of every sixth row tells of overlap
+constexpr double kMinOverlap = 0.15;    // of the patches
+constexpr double kMinGain = 0.05;       // of the patches; less and the older view is as good
+
+// Share of the current view's patches that another one has a patch for.
+double overlap(const DepthView& current, const DepthView& other, const Pose& other_from_current) {
+  const Eigen::Matrix3f rotation = other_from_current.linear().cast<float>();
+  const Eigen::Vector3f translation = other_from_current.translation().cast<float>();
+  int patches = 0, met = 0;
+  for (int row = 0; row < current.rows(); row += kSparse) {
+    for (int column = 0; column < current.columns(); column += kSparse) {
+      const PlanePatch& patch = current.patch(column, row);
+      if (patch.weight <= 0) continue;
+      ++patches;
+      met += other.at(rotation * patch.point + translation) != nullptr;
+    }
+  }
+  return patches > 0 ? static_cast<double>(met) / patches : 0.0;
+}
+
+}  // namespace
+
+DepthAnchor::Neighbours DepthAnchor::around(const DepthView& current, const Pose& world_from_camera,
+                                            const SparseMap& map) const {
+  struct Candidate {
+    double overlap;
+    const View* view;
+    Pose world_from_camera;
+  };
+  std::vector<Candidate> candidates;
+  for (const View& view : views_) {
+    if (view.keyframe >= map.keyframe_id_end()) continue;
+    const Pose pose = map.world_from_keyframe(view.keyframe);
+    const double share = overlap(current, view.view, pose.inverse() * world_from_camera);
+    if (share >= kMinOverlap) candidates.push_back({share, &view, pose});
+  }
+  // The oldest of those that are nearly as good as the best: errors add up from view to view.
+  Neighbours neighbours;
+  while (!candidates.empty() && neighbours.views.size() < kNeighbours) {
+    const auto best = std::ranges::max_element(candidates, {}, &Candidate::overlap);
+    const double enough = best->overlap - kMinGain;
+    const auto chosen =
+        std::ranges::find_if(candidates, [&](const Candidate& c) { return c.overlap >= enough; });
+    if (neighbours.views.empty()) neighbours.nearest = chosen->view->keyframe;
+    neighbours.views.push_back({&chosen->view->view, chosen->world_from_camera});
+    candidates.erase(chosen);
+  }
+  return neighbours;
+}
+
+void DepthAnchor::add(KeyFrameId keyframe, DepthView view) {
+  views_.push_back({keyframe, std::move(view)});
+  if (views_.size() > kMostViews) views_.pop_front();
+}
+
+}  // namespace stillpoint::orb

@@ -1,0 +1,134 @@
+#include "orb_slam/depth_view.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "orb_slam/observed_frame.hpp"
+
+namespace stillpoint::orb {
+namespace {
+
+constexpr int kCell = DepthView::kCell;
+constexpr int kStep = 2;   // px between the samples of a cell
+constexpr int kReach = 2;  // cells around a patch's own that its plane is fitted to
+constexpr int kSamples = (kCell / kStep) * (kCell / kStep);
+constexpr float kSumOfSquares = 50.0F;  // of column (or row) over 5 × 5 cells around the middle
+constexpr float kMaxMisfit = 0.003F;    // 1/m, of a cell's mean against the plane; more is an edge
+
+// Mean inverse depth (1/m) and least static weight of a cell; weight 0 unless all of it is
+// measured.
+struct Cell {
+  float inverse_depth = 0.0F;
+  float weight = 0.0F;
+};
+
+Cell cell_at(const cv::Mat& depth, const cv::Mat& weights, int left, int top) {
+  float sum = 0.0F;
+  float least_depth = 1.0F;
+  std::uint8_t least_weight = 255;
+  for (int y = top; y < top + kCell; y += kStep) {
+    const float* row = depth.ptr<float>(y);
+    for (int x = left; x < left + kCell; x += kStep) {
+      sum += 1.0F / row[x];
+      least_depth = std::min(least_depth, row[x]);
+    }
+    if (weights.empty()) continue;
+    const std::uint8_t* weight = weights.ptr<std::uint8_t>(y);
+    for (int x = left; x < left + kCell; x += kStep)
+      least_weight = std::min(least_weight, weight[x]);
+  }
+  if (least_depth <= 0 || least_weight < ObservedFrame::kMinWeight) return {};
+  return {sum / kSamples, static_cast<float>(least_weight) / 255.0F};
+}
+
+// The inverse depth of a plane is an affine function of the pixel, with the same noise everywhere.
+struct InversePlane {
+  float middle = 0.0F;     // 1/m
+  float by_column = 0.0F;  // 1/m per cell
+  float by_row = 0.0F;     // 1/m per cell
+  float weight = 0.0F;
+};
+
+InversePlane fit(const std::vector<Cell>& cells, int columns, int column, int row) {
+  InversePlane plane{.weight = 1.0F};
+  const auto cell = [&](int dx, int dy) -> const Cell& {
+    return cells[static_cast<std::size_t>((row + dy) * columns + column + dx)];
+  };
+  for (int dy = -kReach; dy <= kReach; ++dy) {
+    for (int dx = -kReach; dx <= kReach; ++dx) {
+      const Cell& c = cell(dx, dy);
+      plane.weight = std::min(plane.weight, c.weight);
+      plane.middle += c.inverse_depth;
+      plane.by_column += static_cast<float>(dx) * c.inverse_depth;
+      plane.by_row += static_cast<float>(dy) * c.inverse_depth;
+    }
+  }
+  if (plane.weight <= 0) return {};
+  plane.middle /= (2 * kReach + 1) * (2 * kReach + 1);
+  plane.by_column /= kSumOfSquares;
+  plane.by_row /= kSumOfSquares;
+  for (int dy = -kReach; dy <= kReach; ++dy)
+    for (int dx = -kReach; dx <= kReach; ++dx)
+      if (std::abs(plane.middle + static_cast<float>(dx) * plane.by_column +
+                   static_cast<float>(dy) * plane.by_row - cell(dx, dy).inverse_depth) > kMaxMisfit)
+        return {};
+  return plane;
+}
+
+}  // namespace
+
+DepthView::DepthView(const Frame& frame, const StaticWeights& weights)
+    : columns_(frame.depth.cols / kCell), rows_(frame.depth.rows / kCell) {
+  const Camera& camera = *frame.camera;
+  noise_ = static_cast<float>(std::min(camera.depth_noise, kMostNoise));
+  focal_ = Eigen::Vector2d(camera.fx, camera.fy).cast<float>();
+  centre_ = Eigen::Vector2d(camera.cx, camera.cy).cast<float>();
+  std::vector<Cell> cells(static_cast<std::size_t>(columns_ * rows_));
+  for (int row = 0; row < rows_; ++row)
+    for (int column = 0; column < columns_; ++column)
+      cells[static_cast<std::size_t>(row * columns_ + column)] =
+          cell_at(frame.depth, weights.track, column * kCell, row * kCell);
+
+  patches_.resize(cells.size());
+  // Of a cell's samples, which are the even pixels, this is the mean place.
+  constexpr float kMiddle = (kCell - kStep) / 2.0F;
+  for (int row = kReach; row < rows_ - kReach; ++row) {
+    for (int column = kReach; column < columns_ - kReach; ++column) {
+      const InversePlane plane = fit(cells, columns_, column, row);
+      if (plane.weight <= 0 || plane.middle <= 0) continue;
+      const Eigen::Vector2f pixel(static_cast<float>(column * kCell) + kMiddle,
+                                  static_cast<float>(row * kCell) + kMiddle);
+      const Eigen::Vector2f ray = (pixel - centre_).cwiseQuotient(focal_);
+      // On a plane n·x = d, 1/z = (n_x ray_x + n_y ray_y + n_z) / d.
+      const Eigen::Vector2f slope =
+          Eigen::Vector2f(plane.by_column, plane.by_row).cwiseProduct(focal_) / kCell;
+      const Eigen::Vector3f normal(-slope.x(), -slope.y(), slope.dot(ray) - plane.middle);
+      patches_[static_cast<std::size_t>(row * columns_ + column)] = {
+          .point = Eigen::Vector3f(ray.x(), ray.y(), 1.0F) / plane.middle,
+          .normal = normal.normalized(),
+          .weight = plane.weight};
+    }
+  }
+}
+
+const PlanePatch* DepthView::at(const Eigen::Vector3f& point) const {
+  if (point.z() <= 0) return nullptr;
+  const Eigen::Vector2f pixel =
+      point.head<2>().cwiseProduct(focal_) / point.z() + centre_ + Eigen::Vector2f(0.5F, 0.5F);
+  const int column = static_cast<int>(std::floor(pixel.x() / kCell));
+  const int row = static_cast<int>(std::floor(pixel.y() / kCell));
+  if (column < 0 || column >= columns_ || row < 0 || row >= rows_) return nullptr;
+  const PlanePatch& found = patch(column, row);
+  return found.weight > 0 ? &found : nullptr;
+}
+
+float DepthView::distance_sigma(const PlanePatch& patch) const {
+  return std::abs(patch.normal.dot(patch.point)) * patch.point.z() * noise_;
+}
+
+float DepthView::normal_sigma(const PlanePatch& patch) const {
+  const float cell_sigma = noise_ / std::sqrt(static_cast<float>(kSamples));
+  return cell_sigma / std::sqrt(kSumOfSquares) * focal_.x() / kCell * patch.point.z();
+}
+
+}  // namespace stillpoint::orb

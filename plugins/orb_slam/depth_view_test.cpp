@@ -1,0 +1,92 @@
+#include "orb_slam/depth_view.hpp"
+
+#include <gtest/gtest.h>
+
+#include "orb_slam/test_surfaces.hpp"
+
+namespace stillpoint::orb {
+namespace {
+
+int patches_of(const DepthView& view) {
+  int count = 0;
+  for (int row = 0; row < view.rows(); ++row)
+    for (int column = 0; column < view.columns(); ++column)
+      count += view.patch(column, row).weight > 0;
+  return count;
+}
+
+// Patches whose middle lies in `area`, px.
+int patches_in(const DepthView& view, const cv::Rect& area) {
+  int count = 0;
+  for (int row = 0; row < view.rows(); ++row)
+    for (int column = 0; column < view.columns(); ++column)
+      count += area.contains({column * DepthView::kCell + 4, row * DepthView::kCell + 4}) &&
+               view.patch(column, row).weight > 0;
+  return count;
+}
+
+TEST(DepthView, PatchesLieOnTheirPlane) {
+  const WorldPlane slanted{Eigen::Vector3d(0.3, -0.2, 1).normalized(), 2.0};
+  const DepthView view(*see_planes({slanted}, Pose::Identity()), {});
+  ASSERT_EQ(view.columns(), 80);
+  ASSERT_EQ(view.rows(), 60);
+  EXPECT_EQ(patches_of(view), 76 * 56);
+  for (int row = 2; row < 58; ++row) {
+    for (int column = 2; column < 78; ++column) {
+      const PlanePatch& patch = view.patch(column, row);
+      EXPECT_NEAR(patch.point.cast<double>().dot(slanted.normal), 2.0, 1e-4);
+      EXPECT_LT((patch.normal.cast<double>() + slanted.normal).norm(), 1e-3) << "to the camera";
+      EXPECT_EQ(view.at(patch.point), &patch);
+    }
+  }
+}
+
+TEST(DepthView, NoiseOfDistanceAndNormalIsNoLargerThanSaid) {
+  const DepthView view(*see_planes({kAhead}, Pose::Identity(), 0, 0.002), {});
+  double distance = 0, tilt = 0;
+  for (int row = 2; row < 58; ++row) {
+    for (int column = 2; column < 78; ++column) {
+      const PlanePatch& patch = view.patch(column, row);
+      ASSERT_GT(patch.weight, 0);
+      distance += std::pow((patch.point.z() - 2.5F) / view.distance_sigma(patch), 2);
+      tilt += std::pow(patch.normal.x() / view.normal_sigma(patch), 2);
+    }
+  }
+  EXPECT_LT(distance / (76 * 56), 1.0);
+  EXPECT_NEAR(tilt / (76 * 56), 1.0, 0.3);
+}
+
+TEST(DepthView, EdgesHaveNone) {
+  const auto frame = std::make_shared<Frame>(*see_planes({kAhead}, Pose::Identity()));
+  frame->depth = frame->depth.clone();
+  frame->depth.colRange(320, 640) = 3.0F;
+  const DepthView view(*frame, {});
+  EXPECT_EQ(patches_in(view, {308, 24, 24, 400}), 0);
+  EXPECT_GT(patches_in(view, {100, 24, 100, 400}), 500);
+}
+
+TEST(DepthView, WhatIsNotMeasuredOrMovesHasNone) {
+  const auto frame = std::make_shared<Frame>(*see_planes({kAhead}, Pose::Identity()));
+  frame->depth = frame->depth.clone();
+  frame->depth(cv::Rect(0, 0, 160, 480)) = 0.0F;
+  StaticWeights weights;
+  weights.track = cv::Mat(480, 640, CV_8UC1, cv::Scalar(255));
+  weights.track(cv::Rect(400, 0, 240, 480)) = 0;
+  weights.track(cv::Rect(240, 0, 100, 480)) = 102;
+  const DepthView view(*frame, weights);
+  EXPECT_EQ(patches_in(view, {0, 0, 160, 480}), 0);
+  EXPECT_EQ(patches_in(view, {400, 0, 240, 480}), 0);
+  EXPECT_FLOAT_EQ(view.patch(36, 30).weight, 0.4F);
+  EXPECT_FLOAT_EQ(view.patch(25, 30).weight, 1.0F);
+}
+
+TEST(DepthView, OutsideTheImageIsNothing) {
+  const DepthView view(*see_planes({kAhead}, Pose::Identity()), {});
+  EXPECT_EQ(view.at({5, 0, 2}), nullptr);
+  EXPECT_EQ(view.at({0, 0, -2}), nullptr);
+  EXPECT_EQ(view.at({0, 0, 0}), nullptr);
+  EXPECT_EQ(DepthView().at({0, 0, 1}), nullptr);
+}
+
+}  // namespace
+}  // namespace stillpoint::orb
