@@ -49,7 +49,6 @@ OpenCvDnnSegmenter::Options person() {
                      .scale = {1.0 / 128},
                      .mean = {128}};
   options.rule.result = ResultKind::kLogit;
-  options.rule.margin = -0.75;
   return options;
 }
 
