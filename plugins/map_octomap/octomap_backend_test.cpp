@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <octomap/OcTree.h>
+#include <unistd.h>
 
 #include <cstring>
 #include <filesystem>
@@ -77,7 +78,8 @@ class OctomapBackendTest : public ::testing::Test {
   }
 
   fs::path folder() {
-    const fs::path folder = fs::path(::testing::TempDir()) / "octomap_backend_test";
+    const fs::path folder =
+        fs::path(::testing::TempDir()) / ("octomap_backend_test_" + std::to_string(::getpid()));
     fs::remove_all(folder);
     fs::create_directories(folder);
     return folder;

@@ -181,7 +181,8 @@ TEST_F(Relocalisation, AfterSomebodyCoveredTheLens) {
                    {"source.motion.extent=0.4",
                     "source.people=[{pose: walk, speed: 0.12, start: 1.0, seed: 4, "
                     "path: [-1.6, -1.35, 1.4, -1.35, 1.4, 0.2, -1.6, 0.2]}]"});
-  const Trajectory estimate = run("stillpoint", recording);
+  // The project's own network hardly knows rendered people this near.
+  const Trajectory estimate = run("stillpoint", recording, {"--set", "segmenter=selfie"});
   EXPECT_EQ(json_file(last_run() / "summary.json")["times_lost"], 1);
   expect_found(estimate, {.recording = recording,
                           .world_from_estimate = first_pose(recording),
