@@ -12,6 +12,8 @@ namespace stillpoint::decision {
 namespace {
 
 constexpr double kUnlikelyLogOdds = -2;  // of moving, at which a surface has its full weight
+// Not 0: without any doubt of it, whoever stands before the camera would be mapped at once.
+constexpr double kLeastTrust = 0.05;
 
 std::vector<PointCount> count_points(const Segmentation& segmentation, const MovingPoints& moving) {
   std::vector<PointCount> counts(segmentation.objects.size());
@@ -26,12 +28,6 @@ std::vector<PointCount> count_points(const Segmentation& segmentation, const Mov
     count.moving += point.moving ? 1 : 0;
   }
   return counts;
-}
-
-double labelled_share(const Segmentation& segmentation) {
-  if (segmentation.instances.empty()) return 0;
-  return cv::countNonZero(segmentation.instances) /
-         static_cast<double>(segmentation.instances.total());
 }
 
 /// The evidence of the map on the cells of a motion field; 0 without any.
@@ -70,10 +66,15 @@ void Bayes::Options::visit(OptionVisitor& v) {
      .unit = "log-odds",
      .help = "of the map for standing still, from which on a surface is none of a class that is "
              "never mapped"});
-  v("most_labelled", most_labelled,
+  v("trusted_share", trusted_share,
     {.min = 0,
      .max = 1,
-     .help = "of the image: labels of more are not believed, as they leave nothing to track by"});
+     .help = "of the image that is labelled as what may move: up to it labels count in full"});
+  v("doubted_share", doubted_share,
+    {.min = 0,
+     .max = 1,
+     .help = "from it on labels hardly count, as they leave little to track by"});
+  v.require(trusted_share < doubted_share, "trusted_share is not below doubted_share");
   v("margin", margin,
     {.min = 0, .max = 50, .unit = "px", .help = "around what moves that is not used either"});
 }
@@ -90,12 +91,10 @@ StaticWeights Bayes::decide(const Frame& frame, const Segmentation& segmentation
                             const MovingPoints& moving, const MapEvidence& evidence) {
   StaticWeights weights;
   field_.update(frame, moving);
-  const bool believed = labelled_share(segmentation) <= options_.most_labelled;
   const cv::Mat from_map = on_cells(evidence, field_.log_odds().size());
   weigh_surfaces(frame, from_map, weights);
   weights.map = weights.track.clone();
-  weigh_objects(frame, believed ? segmentation : Segmentation{}, moving, from_map, weights);
-  weights.object_moves.resize(segmentation.objects.size());
+  weigh_objects(frame, segmentation, moving, from_map, weights);
   return weights;
 }
 
@@ -115,9 +114,11 @@ void Bayes::weigh_surfaces(const Frame& frame, const cv::Mat& from_map,
 void Bayes::weigh_objects(const Frame& frame, const Segmentation& segmentation,
                           const MovingPoints& moving, const cv::Mat& from_map,
                           StaticWeights& weights) {
+  const double trust = trust_in(segmentation);
+  const double unlabelled = log_odds(options_.unlabelled.prior);
   std::vector<double> priors;
   for (const SegmentedObject& object : segmentation.objects)
-    priors.push_back(log_odds(policy_of(object).prior));
+    priors.push_back(std::lerp(unlabelled, log_odds(policy_of(object).prior), trust));
   const auto& beliefs = beliefs_.update(
       segmentation.objects, priors,
       moving.reliable ? count_points(segmentation, moving) : std::vector<PointCount>());
@@ -136,11 +137,24 @@ void Bayes::weigh_objects(const Frame& frame, const Segmentation& segmentation,
       lower(weights.map, size, tracked, weight);
       continue;
     }
-    const double contradicted = std::min(outweighed, -options_.contradiction);
+    const double contradicted = std::min(outweighed, -trust * options_.contradiction);
     const ObjectMask mapped =
         mask_of(segmentation, i, options_.margin, standing(from_map, contradicted, size));
     lower(weights.map, size, mapped, 0);
   }
+}
+
+/// The more of the image is said to be what may move, the less a label counts.
+double Bayes::trust_in(const Segmentation& segmentation) const {
+  constexpr double kMayMove = 0.5;  // prior
+  double pixels = 0;
+  for (const SegmentedObject& object : segmentation.objects)
+    if (policy_of(object).prior > kMayMove) pixels += object.pixels;
+  if (pixels == 0) return 1;
+  const double share = pixels / static_cast<double>(segmentation.labels.total());
+  const double trust =
+      (options_.doubted_share - share) / (options_.doubted_share - options_.trusted_share);
+  return std::clamp(trust, kLeastTrust, 1.0);
 }
 
 const ClassPolicy& Bayes::policy_of(const SegmentedObject& object) const {

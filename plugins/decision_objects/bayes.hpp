@@ -35,7 +35,8 @@ class Bayes final : public Decision {
     ObjectMotionOptions objects;
     MotionFieldOptions unlabelled;
     double contradiction = 5.0;
-    double most_labelled = 0.7;
+    double trusted_share = 0.3;
+    double doubted_share = 0.6;
     int margin = 5;
 
     void visit(OptionVisitor& visitor);
@@ -52,6 +53,7 @@ class Bayes final : public Decision {
   void weigh_surfaces(const Frame& frame, const cv::Mat& from_map, StaticWeights& weights) const;
   void weigh_objects(const Frame& frame, const Segmentation& segmentation,
                      const MovingPoints& moving, const cv::Mat& from_map, StaticWeights& weights);
+  double trust_in(const Segmentation& segmentation) const;
   std::uint8_t weight_of(double log_odds) const;
 
   Options options_;

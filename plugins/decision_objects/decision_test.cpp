@@ -195,13 +195,20 @@ TEST(Bayes, WhoOnlySitsStillIsNotMapped) {
   EXPECT_EQ(weight_at(w.map, 250, 200), 0);
 }
 
-TEST(Bayes, LabelsOfEverythingAreNotBelieved) {
-  Bayes decision({}, with_classes());
-  const StaticWeights w =
-      decision.decide(make_frame(), make_labels(15, {0, 0, 640, 440}), {}, {});
-  EXPECT_EQ(weight_at(w.track, 250, 200), 255);
-  EXPECT_EQ(weight_at(w.map, 250, 200), 255);
-  EXPECT_EQ(w.object_moves.size(), 1u);
+// A network that takes the desk and all that is on it for a person leaves little to track by.
+TEST(Bayes, TheMoreIsLabelledTheLessALabelCounts) {
+  const auto weights = [](const cv::Rect& labelled) {
+    Bayes decision({}, with_classes());
+    return decision.decide(make_frame(), make_labels(15, labelled), {}, make_evidence(kPerson, -1));
+  };
+  const StaticWeights few = weights(kPerson);
+  EXPECT_EQ(weight_at(few.track, 250, 200), 0);
+  EXPECT_EQ(weight_at(few.map, 250, 200), 0);
+  const StaticWeights many = weights({0, 0, 640, 440});
+  EXPECT_EQ(weight_at(many.track, 250, 200), 255);
+  EXPECT_EQ(weight_at(many.map, 250, 200), 255);
+  EXPECT_EQ(weight_at(many.track, 500, 200), 255);
+  EXPECT_EQ(weight_at(many.map, 500, 200), 0) << "the map does not know it yet";
 }
 
 TEST(Bayes, TheOtherClassesSayNothingOfWhatHasNoLabel) {

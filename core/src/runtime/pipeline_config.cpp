@@ -216,6 +216,10 @@ void SegmentationOptions::visit(OptionVisitor& v) {
      .max = 1000,
      .unit = "frames",
      .help = "of 'latest' in mode inline, which has no clock"});
+  v("most_labelled", most_labelled,
+    {.min = 0,
+     .max = 1,
+     .help = "of the image that may be of one class; labels with more are not used"});
 }
 
 void SegmentationOptions::visit_in_segmenter(OptionVisitor& v) {

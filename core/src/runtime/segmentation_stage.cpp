@@ -1,5 +1,7 @@
 #include "stillpoint/runtime/segmentation_stage.hpp"
 
+#include <algorithm>
+#include <array>
 #include <opencv2/core.hpp>
 #include <string>
 #include <utility>
@@ -20,6 +22,14 @@ void check_image(const cv::Mat& image, cv::Size frame, const std::string& what) 
               what + " have " + size_text(image.size()) + " pixels" + type +
                   ", but the frame has " + size_text(frame),
               "", "the segmenter must give one byte per pixel of the frame");
+}
+
+/// The share of the image that one class has, at most.
+double largest_share(const Segmentation& segmentation) {
+  std::array<int, 256> pixels{};
+  for (const SegmentedObject& object : segmentation.objects)
+    pixels[static_cast<std::size_t>(object.label)] += object.pixels;
+  return std::ranges::max(pixels) / static_cast<double>(segmentation.labels.total());
 }
 
 Segmentation segment(Segmenter& segmenter, const Frame& frame) {
@@ -89,7 +99,10 @@ void SegmentationStage::segment(FramePtr frame) {
 Segmentation SegmentationStage::labels_of(const Frame& frame) {
   try {
     Segmentation labels = segmenter_.call("segmentation", frame.index, stillpoint::segment, frame);
-    if (labels.known() && labels.instances.empty()) find_objects(labels, kMinObjectPixels);
+    if (!labels.known()) return labels;
+    if (labels.instances.empty()) find_objects(labels, kMinObjectPixels);
+    // Nothing would be left to track by, and there is hardly such a thing.
+    if (largest_share(labels) > options_.most_labelled) return {.frame = frame.index};
     return labels;
   } catch (const StageError& error) {
     if (options_.on_failure == SegmentationOptions::OnFailure::kStop) throw;

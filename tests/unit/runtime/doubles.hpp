@@ -93,7 +93,7 @@ class FakeSegmenter final : public Segmenter {
   ClassNames classes() const override { return named_classes("voc21"); }
   Segmentation segment(const Frame& frame) override {
     journal_.write("segment", frame.index);
-    return {.labels = cv::Mat(1, 1, CV_8UC1, cv::Scalar(15)), .frame = frame.index};
+    return {.labels = cv::Mat::zeros(1, 1, CV_8UC1), .frame = frame.index};
   }
 
  private:

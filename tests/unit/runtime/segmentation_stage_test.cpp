@@ -191,6 +191,23 @@ class Careless final : public Segmenter {
   Segmentation given_;
 };
 
+TEST(SegmentationStage, OneClassOnNearlyTheWholeImageIsNotUsed) {
+  const auto used = [](int rows_of_people) {
+    Fixture f;
+    cv::Mat labels = cv::Mat::zeros(10, 1, CV_8UC1);
+    labels.rowRange(0, rows_of_people) = 15;
+    SegmentationStage stage({std::make_shared<Careless>(Segmentation{.labels = labels}), "fake"},
+                            {}, {.most_labelled = 0.9}, Mode::kInline, f.stop, f.times);
+    Frame frame = testing::make_frame(0);
+    frame.gray = cv::Mat::zeros(10, 1, CV_8UC1);
+    const auto shared = std::make_shared<const Frame>(std::move(frame));
+    stage.offer(shared);
+    return stage.at(shared)->known();
+  };
+  EXPECT_TRUE(used(9));
+  EXPECT_FALSE(used(10));
+}
+
 TEST(SegmentationStage, LabelsThatDoNotFitTheFrameAreTheSegmentersFault) {
   const auto message = [](Segmentation given) -> std::string {
     Fixture f;
