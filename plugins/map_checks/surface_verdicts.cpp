@@ -17,64 +17,81 @@ constexpr float kMinDepth = 0.1F;  // m before a view
 constexpr float kEdge = 5.0F;
 constexpr float kSameSurface = 0.03F;  // of the depth, between neighbouring cells
 
-/// What has been said of one cell.
-struct Verdict {
-  float resting = 0.0F;  // s, age of the oldest view of the unbroken row that saw it there
-  std::uint8_t came_in = 0;
-  std::array<std::uint8_t, 3> same = {};  // by Trust
+// What has been said of the cells of a row.
+struct Verdicts {
+  std::vector<float> resting;  // s, age of the oldest view of the unbroken row that saw it there
+  std::vector<float> came_in;  // views that looked through
+  std::array<std::vector<float>, 3> same;  // views that saw it there, by Trust
+
+  void clear(std::size_t cells) {
+    resting.assign(cells, 0.0F);
+    came_in.assign(cells, 0.0F);
+    for (std::vector<float>& count : same) count.assign(cells, 0.0F);
+  }
 };
 
+// A view that is asked.
+struct Witness {
+  const View* view;
+  Eigen::Matrix3f rotation;     // view_from_camera
+  Eigen::Vector3f translation;  // m
+  float age;                    // s
+  bool tells_rest;
+};
+
+// Row by row, so that what has been said stays in the cache.
 class Judge {
  public:
   Judge(const cv::Mat& depth, const CellCamera& camera, const VerdictOptions& options)
       : depth_(depth),
         camera_(camera),
         options_(options),
-        verdicts_(depth.total()),
-        margin_(static_cast<float>(options.margin)),
-        tolerance_(static_cast<float>(options.tolerance)),
-        noise_(static_cast<float>(options.noise)),
-        columns_(static_cast<std::size_t>(cv::alignSize(depth.cols, kLanes))),
-        row_(columns_.size()),
-        cells_(columns_.size()),
-        z_(columns_.size()) {
+        row_length_(static_cast<std::size_t>(cv::alignSize(depth.cols, kLanes))),
+        columns_(row_length_),
+        row_(row_length_),
+        cells_(row_length_),
+        z_(row_length_) {
     std::iota(columns_.begin(), columns_.end(), 0.0F);
   }
 
-  void ask(const View& view, const Pose& world_from_camera, double time) {
-    const Pose view_from_camera = view.world_from_camera.inverse() * world_from_camera;
-    const auto age = static_cast<float>(time - view.time);
-    const bool tells_rest =
-        age >= options_.min_age || view_from_camera.translation().norm() >= options_.min_parallax;
-    for (int y = 0; y < depth_.rows; ++y) {
-      project_row(y, view, view_from_camera);
-      Verdict* verdict = &verdicts_[static_cast<std::size_t>(y) * depth_.cols];
-      for (std::size_t x = 0; x < static_cast<std::size_t>(depth_.cols); ++x)
-        if (cells_[x] >= 0) ask(view, cells_[x], z_[x], age, tells_rest, verdict[x]);
-    }
-  }
-
-  cv::Mat log_odds() const {
+  cv::Mat log_odds(std::span<const View* const> views, const Pose& world_from_camera, double time) {
+    std::vector<Witness> witnesses;
+    for (const View* view : views) witnesses.push_back(witness(*view, world_from_camera, time));
     cv::Mat result(depth_.size(), CV_32F);
-    auto* out = result.ptr<float>();
     const auto range = static_cast<float>(options_.range);
-    for (std::size_t i = 0; i < verdicts_.size(); ++i)
-      out[i] = std::clamp(evidence_of(verdicts_[i]), -range, range);
+    for (int y = 0; y < depth_.rows; ++y) {
+      verdicts_.clear(row_length_);
+      for (const Witness& witness : witnesses) {
+        project_row(y, witness);
+        ask_row(witness);
+      }
+      auto* out = result.ptr<float>(y);
+      for (std::size_t x = 0; x < static_cast<std::size_t>(depth_.cols); ++x)
+        out[x] = std::clamp(evidence_of(x), -range, range);
+    }
     return result;
   }
 
  private:
+  Witness witness(const View& view, const Pose& world_from_camera, double time) const {
+    const Pose view_from_camera = view.world_from_camera.inverse() * world_from_camera;
+    const auto age = static_cast<float>(time - view.time);
+    const bool apart = view_from_camera.translation().norm() >= options_.min_parallax;
+    return {&view, view_from_camera.linear().cast<float>(),
+            view_from_camera.translation().cast<float>(), age, apart || age >= options_.min_age};
+  }
+
   // Fills cells_ and z_: where the view sees the cells of a row, and how far from it they are.
-  void project_row(int y, const View& view, const Pose& view_from_camera) {
-    const Eigen::Matrix3f r = view_from_camera.linear().cast<float>();
-    const Eigen::Vector3f t = view_from_camera.translation().cast<float>();
+  void project_row(int y, const Witness& witness) {
+    const View& view = *witness.view;
     // Rays of the row in cells of the view, so that (x, y) / z is a place in it; rounded below.
     Eigen::Matrix3f calibration = Eigen::Matrix3f::Identity();
     calibration << view.camera.fx, 0, view.camera.cx + 0.5F,  //
         0, view.camera.fy, view.camera.cy + 0.5F, 0, 0, 1;
-    const Eigen::Vector3f first = calibration * r * camera_.unproject(0, static_cast<float>(y), 1);
-    const Eigen::Vector3f step = calibration * r.col(0) / camera_.fx;
-    const Eigen::Vector3f offset = calibration * t;
+    const Eigen::Vector3f first =
+        calibration * witness.rotation * camera_.unproject(0, static_cast<float>(y), 1);
+    const Eigen::Vector3f step = calibration * witness.rotation.col(0) / camera_.fx;
+    const Eigen::Vector3f offset = calibration * witness.translation;
     std::copy_n(depth_.ptr<float>(y), depth_.cols, row_.begin());
     const cv::v_float32 zero = cv::vx_setzero_f32();
     const cv::v_float32 width = cv::vx_setall_f32(static_cast<float>(view.depth.cols));
@@ -101,39 +118,67 @@ class Judge {
     }
   }
 
-  void ask(const View& view, int cell, float z, float age, bool tells_rest,
-           Verdict& verdict) const {
-    const auto [near, far] = view.bounds.ptr<cv::Vec2f>()[cell].val;
-    if (far <= 0) return;
-    const float noise = noise_ * z * z;
-    if (z < near - margin_ - noise) {
-      if (verdict.resting < options_.rest_time) ++verdict.came_in;
-      return;
+  // The same for cells_ at once. What looks through comes in, unless it has been resting for long.
+  void ask_row(const Witness& witness) {
+    const View& view = *witness.view;
+    const auto all = [](double value) { return cv::vx_setall_f32(static_cast<float>(value)); };
+    const cv::v_float32 one = all(1), zero = all(0);
+    for (std::size_t x = 0; x < row_length_; x += kLanes) {
+      const cv::v_int32 cell = cv::vx_load(&cells_[x]);
+      const cv::v_float32 known = cv::v_reinterpret_as_f32(cell >= cv::vx_setzero_s32());
+      if (!cv::v_check_any(known)) continue;
+      const cv::v_int32 place = cv::v_max(cell, cv::vx_setzero_s32());
+      const cv::v_float32 z = cv::vx_load(&z_[x]);
+      cv::v_float32 near, far;
+      cv::v_lut_deinterleave(view.bounds.ptr<float>(), place + place, near, far);
+      const cv::v_float32 measured = known & (far > zero);
+      const cv::v_float32 noise = all(options_.noise) * z * z;
+      const cv::v_float32 tolerance = all(options_.tolerance) + noise;
+
+      const cv::v_float32 resting = cv::vx_load(&verdicts_.resting[x]);
+      const cv::v_float32 through = measured & (z < near - all(options_.margin) - noise) &
+                                    (resting < all(options_.rest_time));
+      const cv::v_float32 came_in = cv::vx_load(&verdicts_.came_in[x]) + (through & one);
+      cv::vx_store(&verdicts_.came_in[x], came_in);
+
+      const cv::v_float32 between = (z >= near - tolerance) & (z <= far + tolerance);
+      const auto off = [&](const cv::v_float32& surface) {
+        return cv::v_abs(z - surface) > tolerance;
+      };
+      const cv::v_float32 edge = far - near > all(kEdge) * tolerance;
+      const cv::v_float32 beside =
+          edge & off(near) & off(far) & off(cv::v_lut(view.depth.ptr<float>(), place));
+      const cv::v_float32 same = measured & between & ~beside;
+      const cv::v_float32 rests = same & (came_in == zero);
+      cv::vx_store(&verdicts_.resting[x], cv::v_max(resting, rests & all(witness.age)));
+      if (witness.tells_rest) count_same(x, same, cv::v_lut(view.trust.ptr<int>(), place));
     }
-    const float tolerance = tolerance_ + noise;
-    if (z < near - tolerance || z > far + tolerance) return;
-    const auto off = [&](float surface) { return std::abs(z - surface) > tolerance; };
-    if (far - near > kEdge * tolerance && off(near) && off(far) &&
-        off(view.depth.ptr<float>()[cell]))
-      return;
-    if (verdict.came_in == 0) verdict.resting = std::max(verdict.resting, age);
-    if (!tells_rest) return;
-    ++verdict.same[view.trust.ptr<std::uint8_t>()[cell]];
   }
 
-  float evidence_of(const Verdict& verdict) const {
-    const double untrusted = verdict.resting >= options_.rest_time ? options_.same_untrusted : 0.0;
-    return static_cast<float>(
-        options_.came_in * verdict.came_in - options_.same_mapped * verdict.same[kMapped] -
-        options_.same_tracked * verdict.same[kTracked] - untrusted * verdict.same[kUntrusted]);
+  void count_same(std::size_t x, const cv::v_float32& same, const cv::v_int32& trust) {
+    for (int kind = kUntrusted; kind <= kMapped; ++kind) {
+      float* count = &verdicts_.same[static_cast<std::size_t>(kind)][x];
+      const cv::v_float32 counts =
+          cv::v_reinterpret_as_f32(trust == cv::vx_setall_s32(kind)) & same;
+      cv::vx_store(count, cv::vx_load(count) + (counts & cv::vx_setall_f32(1)));
+    }
+  }
+
+  float evidence_of(std::size_t x) const {
+    const double untrusted =
+        verdicts_.resting[x] >= options_.rest_time ? options_.same_untrusted : 0.0;
+    return static_cast<float>(options_.came_in * verdicts_.came_in[x] -
+                              options_.same_mapped * verdicts_.same[kMapped][x] -
+                              options_.same_tracked * verdicts_.same[kTracked][x] -
+                              untrusted * verdicts_.same[kUntrusted][x]);
   }
 
   const cv::Mat& depth_;
   const CellCamera& camera_;
   const VerdictOptions& options_;
-  std::vector<Verdict> verdicts_;
-  float margin_, tolerance_, noise_;
-  // Of one row, as long as vectors need.
+  std::size_t row_length_;
+  // Of one row.
+  Verdicts verdicts_;
   std::vector<float> columns_;  // 0, 1, 2 …
   std::vector<float> row_;      // m, depth
   std::vector<int> cells_;      // in the view; -1: none
@@ -212,6 +257,7 @@ void VerdictOptions::visit(OptionVisitor& v) {
   v("same_untrusted", same_untrusted,
     {.min = 0, .max = 100, .unit = "log-odds", .help = "of each that saw it and did neither"});
   v("range", range, {.min = 0, .max = 100, .unit = "log-odds", .help = "of all views, at most"});
+  v.require(margin >= tolerance, "margin is less than tolerance");
   v("reach", reach,
     {.min = 0, .max = 10, .unit = "m", .help = "of what has come in, where no view knows"});
 }
@@ -219,9 +265,7 @@ void VerdictOptions::visit(OptionVisitor& v) {
 cv::Mat judge_surfaces(const cv::Mat& depth, const CellCamera& camera,
                        const Pose& world_from_camera, double time,
                        std::span<const View* const> views, const VerdictOptions& options) {
-  Judge judge(depth, camera, options);
-  for (const View* view : views) judge.ask(*view, world_from_camera, time);
-  cv::Mat log_odds = judge.log_odds();
+  cv::Mat log_odds = Judge(depth, camera, options).log_odds(views, world_from_camera, time);
   remove_specks(log_odds);
   grow(log_odds, depth, camera, static_cast<float>(options.reach));
   return log_odds;

@@ -20,12 +20,18 @@ constexpr double kSurfaceSigma = 0.01;   // m at 1 m
 constexpr double kGuessPosition = 0.05;  // m, standard deviation of the guess
 constexpr double kGuessAngle = 0.05;     // rad
 
-struct Normal {
-  Matrix6d hessian = Matrix6d::Zero();
-  Vector6d gradient = Vector6d::Zero();
+struct Fit {
   int on_surface = 0;  // points that lie on a trusted surface
   int behind = 0;      // points seen through one
 };
+
+struct Normal {
+  Matrix6d hessian = Matrix6d::Zero();
+  Vector6d gradient = Vector6d::Zero();
+};
+
+// Noise grows with the distance.
+float noise_scale(float z) { return std::max(1.0F, z * z / 4); }
 
 std::vector<Eigen::Vector3f> points_of(const cv::Mat& depth, const CellCamera& camera) {
   std::vector<Eigen::Vector3f> points;
@@ -41,10 +47,14 @@ class Aligner {
   Aligner(const std::vector<Eigen::Vector3f>& points, std::span<const View* const> views)
       : points_(points), views_(views.first(std::min(views.size(), kMostViews))) {}
 
-  Normal compare(const Pose& world_from_camera, float gate) const {
-    Normal sum;
-    for (const View* view : views_) add(*view, world_from_camera, gate, sum);
-    return sum;
+  Fit compare(const Pose& world_from_camera) const {
+    Fit fit;
+    for_each_surface(world_from_camera, [&](const Surface& surface) {
+      const float reach = kOnSurface * noise_scale(surface.z);
+      fit.on_surface += std::abs(surface.distance) < reach;
+      fit.behind += surface.distance <= -reach;  // normals look at the camera
+    });
+    return fit;
   }
 
   Pose refine(const Pose& guess) const {
@@ -54,12 +64,12 @@ class Aligner {
     Pose pose = guess;
     for (int i = 0; i < kIterations; ++i) {
       const float t = static_cast<float>(i) / (kIterations - 1);
-      Normal sum = compare(pose, kFirstGate + t * (kLastGate - kFirstGate));
+      Normal sum = normal_equations(pose, kFirstGate + t * (kLastGate - kFirstGate));
       // In the camera's frame: pose = guess * exp(offset).
       const Vector6d offset = log_se3(guess.inverse() * pose);
       sum.hessian.diagonal() += prior;
       sum.gradient += prior.cwiseProduct(offset);
-      const Vector6d step = sum.hessian.selfadjointView<Eigen::Lower>().ldlt().solve(-sum.gradient);
+      const Vector6d step = sum.hessian.ldlt().solve(-sum.gradient);
       if (!step.allFinite()) return guess;
       pose = pose * exp_se3(step);
     }
@@ -67,41 +77,56 @@ class Aligner {
   }
 
  private:
-  void add(const View& view, const Pose& world_from_camera, float gate, Normal& sum) const {
-    const Pose view_from_camera = view.world_from_camera.inverse() * world_from_camera;
-    const Eigen::Matrix3f rotation = view_from_camera.linear().cast<float>();
-    const Eigen::Vector3f translation = view_from_camera.translation().cast<float>();
-    const cv::Rect inside({}, view.depth.size());
-    for (const Eigen::Vector3f& point : points_) {
-      const Eigen::Vector3f p = rotation * point + translation;
-      if (p.z() < 0.1F) continue;
-      const float u = view.camera.fx * p.x() / p.z() + view.camera.cx;
-      const float v = view.camera.fy * p.y() / p.z() + view.camera.cy;
-      const cv::Point cell(cvRound(u), cvRound(v));
-      if (!inside.contains(cell) || view.trust.at<std::uint8_t>(cell) == kUntrusted) continue;
-      const cv::Vec3f& n = view.normals.at<cv::Vec3f>(cell);
-      if (n == cv::Vec3f()) continue;
-      const Eigen::Vector3f normal(n[0], n[1], n[2]);
-      const auto x = static_cast<float>(cell.x), y = static_cast<float>(cell.y);
-      const float distance =
-          normal.dot(p - view.camera.unproject(x, y, view.depth.at<float>(cell)));
-      const float scale = std::max(1.0F, p.z() * p.z() / 4);  // noise grows with the distance
-      sum.on_surface += std::abs(distance) < kOnSurface * scale;
-      sum.behind += distance <= -kOnSurface * scale;  // normals look at the camera
-      const float limit = gate * scale;
-      if (std::abs(distance) >= limit) continue;
+  // A point of the frame, and the trusted surface of a view that it falls on.
+  struct Surface {
+    const Eigen::Vector3f& point;  // in the camera
+    Eigen::Vector3f normal;        // in the camera, towards it
+    float z;                       // m, from the view
+    float distance;                // m, of the point before the surface
+  };
+
+  template <class Visit>
+  void for_each_surface(const Pose& world_from_camera, const Visit& visit) const {
+    for (const View* view : views_) {
+      const Pose view_from_camera = view->world_from_camera.inverse() * world_from_camera;
+      const Eigen::Matrix3f rotation = view_from_camera.linear().cast<float>();
+      const Eigen::Vector3f translation = view_from_camera.translation().cast<float>();
+      const cv::Rect inside({}, view->depth.size());
+      for (const Eigen::Vector3f& point : points_) {
+        const Eigen::Vector3f p = rotation * point + translation;
+        if (p.z() < 0.1F) continue;
+        const float u = view->camera.fx * p.x() / p.z() + view->camera.cx;
+        const float v = view->camera.fy * p.y() / p.z() + view->camera.cy;
+        const cv::Point cell(cvRound(u), cvRound(v));
+        if (!inside.contains(cell) || view->trust.at<int>(cell) == kUntrusted) continue;
+        const cv::Vec3f& n = view->normals.at<cv::Vec3f>(cell);
+        if (n == cv::Vec3f()) continue;
+        const Eigen::Vector3f normal(n[0], n[1], n[2]);
+        const auto x = static_cast<float>(cell.x), y = static_cast<float>(cell.y);
+        const Eigen::Vector3f seen = view->camera.unproject(x, y, view->depth.at<float>(cell));
+        visit(Surface{point, rotation.transpose() * normal, p.z(), normal.dot(p - seen)});
+      }
+    }
+  }
+
+  Normal normal_equations(const Pose& world_from_camera, float gate) const {
+    Normal sum;
+    for_each_surface(world_from_camera, [&](const Surface& surface) {
+      const float limit = gate * noise_scale(surface.z);
+      if (std::abs(surface.distance) >= limit) return;
       // Tukey's weight; d distance / d (translation, rotation) of the camera's own frame.
-      const float share = distance / limit;
+      const float share = surface.distance / limit;
       const double tukey = (1 - share * share) * (1 - share * share);
-      const double sigma = kSurfaceSigma * std::max(1.0, double(p.z()) * p.z() / 2);
+      const double sigma = kSurfaceSigma * std::max(1.0, double(surface.z) * surface.z / 2);
       const double weight = tukey / (kCorrelated * sigma * sigma);
       Vector6d jacobian;
-      const Eigen::Vector3f in_camera = rotation.transpose() * normal;
-      jacobian.head<3>() = in_camera.cast<double>();
-      jacobian.tail<3>() = point.cross(in_camera).cast<double>();
-      sum.hessian.selfadjointView<Eigen::Lower>().rankUpdate(jacobian, weight);
-      sum.gradient.noalias() += weight * distance * jacobian;
-    }
+      jacobian.head<3>() = surface.normal.cast<double>();
+      jacobian.tail<3>() = surface.point.cross(surface.normal).cast<double>();
+      const Vector6d weighted = weight * jacobian;
+      sum.hessian.noalias() += weighted * jacobian.transpose();
+      sum.gradient.noalias() += surface.distance * weighted;
+    });
+    return sum;
   }
 
   const std::vector<Eigen::Vector3f>& points_;
@@ -109,9 +134,9 @@ class Aligner {
 };
 
 // What stands before a surface may have come in, but nothing is seen through one that has not gone.
-double agreement(const Normal& sum) {
+double agreement(const Fit& fit) {
   constexpr double kFewest = 50;  // points
-  return sum.on_surface / std::max(kFewest, static_cast<double>(sum.on_surface + sum.behind));
+  return fit.on_surface / std::max(kFewest, static_cast<double>(fit.on_surface + fit.behind));
 }
 
 }  // namespace
@@ -123,15 +148,15 @@ ViewAlignment align(const cv::Mat& depth, const CellCamera& camera, std::span<co
   const Pose* best = &guesses.front();
   int most = -1;
   for (const Pose& guess : guesses) {
-    const int on_surface = aligner.compare(guess, kFirstGate).on_surface;
+    const int on_surface = aligner.compare(guess).on_surface;
     if (on_surface <= most) continue;
     best = &guess;
     most = on_surface;
   }
   const Pose refined = aligner.refine(*best);
-  const Normal at_refined = aligner.compare(refined, kLastGate);
+  const Fit at_refined = aligner.compare(refined);
   if (at_refined.on_surface >= most) return {refined, agreement(at_refined)};
-  return {*best, agreement(aligner.compare(*best, kLastGate))};
+  return {*best, agreement(aligner.compare(*best))};
 }
 
 }  // namespace stillpoint

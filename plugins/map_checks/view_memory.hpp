@@ -8,7 +8,7 @@
 namespace stillpoint {
 
 /// How far a surface was trusted when it was seen.
-enum Trust : std::uint8_t {
+enum Trust : int {
   kUntrusted = 0,  ///< it moved, as far as was known
   kTracked = 1,    ///< it stood still, but is of a kind that is not mapped
   kMapped = 2
@@ -22,7 +22,7 @@ struct View {
   cv::Mat depth;                              ///< CV_32FC1, see sample_depth
   cv::Mat bounds;                             ///< CV_32FC2, see depth_bounds
   cv::Mat normals;                            ///< CV_32FC3, see surface_normals
-  cv::Mat trust;                              ///< CV_8UC1, a Trust
+  cv::Mat trust;                              ///< CV_32SC1, a Trust
   Pose world_from_camera = Pose::Identity();  ///< at present
 };
 
