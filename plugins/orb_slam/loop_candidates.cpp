@@ -6,7 +6,9 @@
 namespace stillpoint::orb {
 namespace {
 
-constexpr int kInARow = 3;           // key frames that must agree on a place
+// Key frames that must agree on a place. ORB-SLAM asks for three, but in a round of some twenty key
+// frames often only two see it again, and what merely looks alike match_loop finds out.
+constexpr int kInARow = 2;
 constexpr std::size_t kPlaces = 10;  // looked at per key frame
 constexpr double kMinScore = 0.3;    // of what the most similar neighbour gets
 
