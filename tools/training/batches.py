@@ -5,9 +5,11 @@ import numpy as np
 import torch
 from torch.utils.data import Dataset
 
+import class_labels
+import samples
 from camera import Camera, colours
-from samples import load
 from scene import add_clutter, any_shape, checked, log_uniform, placed_person, plain, view
+from segnet import PERSON
 
 # Shares of the kinds of images.
 KINDS = {
@@ -18,6 +20,9 @@ KINDS = {
     'room': 0.05,  # nobody
     'close': 0.05,  # a small part of a room fills the image
 }
+# The same for the SegNet, which learns the things in rooms, too.
+CLASS_KINDS = {'people': 0.28, 'pasted': 0.16, 'people_clutter': 0.1, 'clutter': 0.1, 'room': 0.31,
+               'close': 0.05}
 # How often photographs of a source are taken, for those with people in them.
 WEIGHTS = {'clothing': 1.0, 'pennfudan': 1.5, 'rooms': 3.0, 'sport': 2.0}
 # The same for people to cut out: few photographs of sport have good outlines.
@@ -45,16 +50,17 @@ def piece_of(sample):
 class Maker:
     """Makes single images, each from a random generator that is its own."""
 
-    def __init__(self, collection):
-        self.collection, self.camera = collection, Camera()
+    def __init__(self, collection, load=samples.load, kinds=None):
+        self.collection, self.camera, self.load = collection, Camera(), load
+        self.kinds = kinds or KINDS
         self.people_shares = shares(collection.people, WEIGHTS)
         self.empty_shares = shares(collection.empty, EMPTY_WEIGHTS)
         self.cut_out_shares = shares(collection.cut_outs, CUT_OUT_WEIGHTS)
 
     def make(self, rng):
-        """An 8-bit BGR image, its target and weight."""
-        kind = rng.choice(list(KINDS), p=list(KINDS.values()))
-        texture_sample = load(self._empty(rng))
+        """An 8-bit BGR image and the scene that it shows."""
+        kind = rng.choice(list(self.kinds), p=list(self.kinds.values()))
+        texture_sample = self.load(self._empty(rng))
         texture = piece_of(texture_sample)
         scene = self._people(rng) if kind == 'people' else self._room(rng, kind == 'close')
         scene.image = colours(rng, scene.image, 0.8)
@@ -71,14 +77,14 @@ class Maker:
             add_clutter(scene, rng, texture)
         if rng.random() < 0.25:
             scene.cover(self._filling(rng, texture_sample), any_shape(rng))
-        return self.camera.photograph(rng, scene.image), scene.target, scene.weight
+        return self.camera.photograph(rng, scene.image), scene
 
     def _empty(self, rng):
         return self.collection.empty[rng.choice(len(self.empty_shares), p=self.empty_shares)].photo
 
     def _people(self, rng):
         entry = self.collection.people[rng.choice(len(self.people_shares), p=self.people_shares)]
-        sample = load(entry.photo)
+        sample = self.load(entry.photo)
         height, width = sample.image.shape[:2]
         if rng.random() < 0.15:
             return view(rng, sample, log_uniform(rng, 0.8, 2.2))
@@ -88,12 +94,12 @@ class Maker:
 
     def _room(self, rng, close):
         zoom = log_uniform(rng, 2, 5) if close else log_uniform(rng, 0.8, 2.2)
-        return view(rng, load(self._empty(rng)), zoom)
+        return view(rng, self.load(self._empty(rng)), zoom)
 
     def _cut_out(self, rng, any_turn=False):
         entry = self.collection.cut_outs[rng.choice(len(self.cut_out_shares),
                                                     p=self.cut_out_shares)]
-        return placed_person(rng, load(entry.photo), entry.box, any_turn)
+        return placed_person(rng, self.load(entry.photo), entry.box, any_turn)
 
     def _filling(self, rng, sample):
         """An image to fill a shape with."""
@@ -122,10 +128,22 @@ class Maker:
 
 class Images(Dataset):
     """Image `i` of a training is the same whenever it is made: a resumed training goes on with the
-    images that it would have had."""
+    images that it would have had. `size`: width and height for the network."""
 
-    def __init__(self, collection, seed, first, count):
-        self.maker, self.seed, self.first, self.count = Maker(collection), seed, first, count
+    def __init__(self, collection, seed, first, count, size):
+        self.maker, self.size = self.make_maker(collection), size
+        self.seed, self.first, self.count = seed, first, count
+
+    def make_maker(self, collection):
+        return Maker(collection)
+
+    def target_of(self, scene):
+        return self.resized(scene.target)
+
+    def resized(self, plane, interpolation=cv2.INTER_AREA):
+        if plane.shape[1::-1] == self.size:
+            return plane
+        return cv2.resize(plane, self.size, interpolation=interpolation)
 
     def __len__(self):
         return self.count
@@ -133,8 +151,19 @@ class Images(Dataset):
     def __getitem__(self, index):
         if index >= self.count:
             raise IndexError(index)
-        image, target, weight = self.maker.make(
-            np.random.default_rng([self.seed, self.first + index]))
-        pixels = np.ascontiguousarray(image[:, :, ::-1].transpose(2, 0, 1))
-        return (torch.from_numpy(pixels), torch.from_numpy(target.astype(np.float32))[None],
-                torch.from_numpy(weight.astype(np.float32))[None])
+        image, scene = self.maker.make(np.random.default_rng([self.seed, self.first + index]))
+        pixels = np.ascontiguousarray(self.resized(image)[:, :, ::-1].transpose(2, 0, 1))
+        planes = [torch.from_numpy(plane.astype(np.float32))[None]
+                  for plane in (self.target_of(scene), self.resized(scene.weight))]
+        return torch.from_numpy(pixels), *planes
+
+
+class ClassImages(Images):
+    """The same scenes; the target is the SegNet's class of every pixel."""
+
+    def make_maker(self, collection):
+        return Maker(collection, class_labels.load, CLASS_KINDS)
+
+    def target_of(self, scene):
+        classes = np.where(scene.target > 0.5, np.uint8(PERSON), scene.things)
+        return self.resized(classes, cv2.INTER_NEAREST)

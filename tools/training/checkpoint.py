@@ -4,7 +4,8 @@ import os
 
 import torch
 
-from network import PersonNetwork, folded
+from kinds import KINDS
+from network import folded
 
 
 class Average:
@@ -32,10 +33,15 @@ def save(path, **state):
     os.replace(unfinished, path)
 
 
+def kind_of(state):
+    """A name of kinds.py; checkpoints from before there was more than one kind do not say it."""
+    return state.get('kind', 'person')
+
+
 def averaged_network(path):
     """The averaged weights of a checkpoint, without batch normalisation, on the processor."""
     state = torch.load(path, map_location='cpu')
-    network = PersonNetwork(normalise=state['normalise'])
+    network = KINDS[kind_of(state)].make(normalise=state['normalise'])
     network.load_state_dict(state['average'])
     network.eval()
     return folded(network) if state['normalise'] else network

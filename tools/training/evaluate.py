@@ -1,5 +1,6 @@
 #!/usr/bin/python3
-"""Measures person networks: overlap with true masks, false positives without people, time.
+"""Measures networks that find people: overlap with true masks, false positives where nobody is,
+time; for a SegNet the overlap of its classes, too.
 
 The photographs are those that training holds out, see sources.py. Sets that are not there are left
 out."""
@@ -14,8 +15,12 @@ sys.dont_write_bytecode = True
 import cv2  # noqa: E402
 import numpy as np  # noqa: E402
 
+import caffe_files  # noqa: E402
+import class_labels  # noqa: E402
 from network import INPUT_HEIGHT, INPUT_WIDTH  # noqa: E402
 from samples import Entry, quick_target  # noqa: E402
+from segnet import CLASSES, PERSON  # noqa: E402
+from segnet_reader import SegNetReader  # noqa: E402
 from sources import photographs  # noqa: E402
 from teachers import VOC_PERSON, enlarge  # noqa: E402
 
@@ -25,12 +30,17 @@ ROOMS = 200  # empty rooms looked at
 THRESHOLDS = (-2, -1.5, -1.25, -1, -0.75, -0.5, 0, 0.5, 1, 2, 3)
 
 
+def reader_of(path):
+    """OpenCV's; its importer knows no SegNet."""
+    return SegNetReader(path) if path.suffix == '.caffemodel' else cv2.dnn.readNet(str(path))
+
+
 class Network:
     """A network, its input, and the score of a pixel: a person where it is above the margin."""
 
     def __init__(self, path, size, scale, mean, score, output=None, margin=0.0):
         self.name, self.size, self.scale, self.mean = Path(path).stem, size, scale, mean
-        self.reader, self.output, self.score_of = cv2.dnn.readNet(str(path)), output, score
+        self.reader, self.output, self.score_of = reader_of(path), output, score
         self.margin = margin
 
     def forward(self, image):
@@ -58,7 +68,15 @@ def from_classes(planes, network_size, size):
     return person - large.max(axis=0)
 
 
+def from_segnet(planes, _, size):
+    others = np.delete(planes, PERSON, axis=0).max(axis=0)
+    return cv2.resize(planes[PERSON] - others, size)
+
+
 def own_network(path, margin):
+    if path.suffix == '.caffemodel':  # the plugin takes the best class: no margin
+        size = caffe_files.input_size(path)
+        return Network(path, size, 1 / 128, 128, from_segnet)
     size = (INPUT_WIDTH, INPUT_HEIGHT)
     return Network(path, size, 1 / 128, 128, from_logits, margin=margin)
 
@@ -217,6 +235,32 @@ def compare(networks, masked, empty, args):
     table(rows, networks)
 
 
+def class_overlaps(network, photos):
+    """IoU per class against the teacher's sure labels, and the share of pixels that agree."""
+    seen = np.zeros((len(CLASSES),) * 2)  # by the teacher's class and the network's
+    for photo in photos:
+        image = read(photo.path)
+        found = class_labels.read(photo, image.shape[1::-1])
+        if found is None:
+            continue
+        classes = cv2.resize(network.forward(image).argmax(axis=0).astype(np.uint8),
+                             image.shape[1::-1], interpolation=cv2.INTER_NEAREST)
+        sure = found[1] > 0.5
+        pairs = len(CLASSES) * found[0][sure].astype(int) + classes[sure]
+        seen += np.bincount(pairs, minlength=seen.size).reshape(seen.shape)
+    either = seen.sum(axis=0) + seen.sum(axis=1) - np.diag(seen)
+    return np.diag(seen) / np.maximum(1, either), np.trace(seen) / max(1, seen.sum())
+
+
+def print_classes(network, work):
+    rooms = [photo for photo in photographs(work, ('rooms',)) if photo.held_out]
+    ious, agreeing = class_overlaps(network, rooms)
+    print(f'\n{network.name}, held-out rooms, IoU against VOC21 where it is sure; '
+          f'{100 * agreeing:.1f} % of pixels agree')
+    for name, iou in zip(CLASSES, ious):
+        print(f'{name}: {iou:.3f}')
+
+
 def sweep(network, masked, empty):
     """What another threshold of the logit would give."""
     columns = [overlaps(network, images, THRESHOLDS) for images in masked.values()]
@@ -231,7 +275,8 @@ def sweep(network, masked, empty):
 def arguments():
     parser = argparse.ArgumentParser(description=__doc__,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument('onnx', type=Path, nargs='*', help="networks of this project's own")
+    parser.add_argument('onnx', type=Path, nargs='*',
+                        help="networks of this project's own; a SegNet's .caffemodel, too")
     parser.add_argument('--work', type=Path, help='working folder: the photographs held out')
     parser.add_argument('--shared', type=Path, help='shared folder: data, photos')
     parser.add_argument('--compare', type=Path, action='append', default=[],
@@ -256,6 +301,9 @@ def main():
         return
     masked, empty = masked_sets(args), empty_sets(args)
     compare(networks, masked, empty, args)
+    for network in own if args.work else []:
+        if isinstance(network.reader, SegNetReader):
+            print_classes(network, args.work)
     for network in own if args.sweep else []:
         sweep(network, masked, empty)
 

@@ -1,5 +1,6 @@
 #!/usr/bin/python3
-"""Writes the weights of a checkpoint as an ONNX file, and checks that OpenCV computes the same."""
+"""Writes the weights of a checkpoint for the plugins: of the person network as ONNX, of the SegNet
+as Caffe's two files. Checks that what was written computes the same."""
 
 import argparse
 import sys
@@ -11,40 +12,60 @@ import cv2  # noqa: E402
 import numpy as np  # noqa: E402
 import torch  # noqa: E402
 
+import caffe_files  # noqa: E402
 from checkpoint import averaged_network  # noqa: E402
-from network import INPUT_HEIGHT, INPUT_WIDTH, normalised_input  # noqa: E402
+from kinds import KINDS  # noqa: E402
+from network import INPUT_HEIGHT, INPUT_WIDTH, normalised_input, set_weights  # noqa: E402
+from segnet import SegNet  # noqa: E402
 
 OPSET = 11
-LARGEST_DIFFERENCE = 1e-2  # of logits, between torch and OpenCV
+LARGEST_DIFFERENCE = 1e-2  # of logits
 
 
-def write(network, path):
+def write(network, path, size=(INPUT_WIDTH, INPUT_HEIGHT)):
     """`network`: without batch normalisation, on the processor."""
-    torch.onnx.export(network, torch.zeros(1, 3, INPUT_HEIGHT, INPUT_WIDTH), str(path),
+    if isinstance(network, SegNet):
+        caffe_files.write(network, path, *size)
+        return
+    torch.onnx.export(network, torch.zeros(1, 3, size[1], size[0]), str(path),
                       opset_version=OPSET, input_names=['image'], output_names=['logit'])
 
 
-def difference(network, path):
-    """Largest difference of a logit between torch and OpenCV, on noise."""
-    noise = np.random.RandomState(0).randint(0, 256, (1, 3, INPUT_HEIGHT, INPUT_WIDTH))
-    image = normalised_input(torch.from_numpy(noise).float())
+def read_back(path, image):
+    """What the file computes. OpenCV's importer knows no SegNet; a test of the plugin does that."""
+    if path.suffix == '.caffemodel':
+        network = SegNet(normalise=False).eval()
+        set_weights(network, caffe_files.read(path))
+        with torch.no_grad():
+            return network(image).numpy()
     reader = cv2.dnn.readNet(str(path))
     reader.setInput(image.numpy())
+    return reader.forward()
+
+
+def difference(network, path, size=(INPUT_WIDTH, INPUT_HEIGHT)):
+    """Largest difference of a score between the network and its file, on noise."""
+    noise = np.random.RandomState(0).randint(0, 256, (1, 3, size[1], size[0]))
+    image = normalised_input(torch.from_numpy(noise).float())
     with torch.no_grad():
-        return float(np.abs(network(image).numpy() - reader.forward()).max())
+        return float(np.abs(network(image).numpy() - read_back(path, image)).max())
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument('checkpoint', type=Path, help='checkpoint.pt of a training')
-    parser.add_argument('onnx', type=Path, help='file to write')
+    parser.add_argument('file', type=Path, help='to write: .onnx, or .caffemodel for a SegNet')
     args = parser.parse_args()
     network = averaged_network(args.checkpoint)
-    write(network, args.onnx)
-    apart = difference(network, args.onnx)
-    print(f'{args.onnx}: {args.onnx.stat().st_size} bytes, OpenCV differs by at most {apart:.1e}')
+    size = KINDS['segnet' if isinstance(network, SegNet) else 'person'].size
+    needed = '.caffemodel' if isinstance(network, SegNet) else '.onnx'
+    if args.file.suffix != needed:
+        parser.error(f'{args.checkpoint} is of a network whose file ends in {needed}')
+    write(network, args.file, size)
+    apart = difference(network, args.file, size)
+    print(f'{args.file}: {args.file.stat().st_size} bytes, differs by at most {apart:.1e}')
     if not apart < LARGEST_DIFFERENCE:
-        sys.exit('export: OpenCV computes something else than torch')
+        sys.exit('export: the file computes something else than the checkpoint')
 
 
 if __name__ == '__main__':

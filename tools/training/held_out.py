@@ -5,7 +5,7 @@ import numpy as np
 import torch
 
 from checkpoint import averaged_network
-from network import INPUT_HEIGHT, INPUT_WIDTH, normalised_input
+from network import normalised_input
 from samples import Entry, load, quick_target
 
 MOST_IMAGES = 100  # of each kind
@@ -15,7 +15,8 @@ AT_ONCE = 10
 class HeldOut:
     """`photos`: held out; those with true masks and those of empty rooms are used."""
 
-    def __init__(self, photos):
+    def __init__(self, photos, kind, size):
+        self.kind, self.size = kind, size
         masked = [photo for photo in photos if photo.mask_path][:MOST_IMAGES]
         rooms = [photo for photo in photos if photo.source == 'rooms']
         targets = [quick_target(photo) for photo in rooms]
@@ -28,23 +29,22 @@ class HeldOut:
         """A line of text about the averaged weights."""
         network = averaged_network(checkpoint_file)
         both = either = 0
-        for sample, person in zip(self.masked, found(network, self.masked)):
+        for sample, person in zip(self.masked, self.found(network, self.masked)):
             truth, known = sample.target > 0.5, sample.weight > 0.5
             both += (person & truth & known).sum()
             either += ((person | truth) & known).sum()
-        shares = [person.mean() for person in found(network, self.empty)]
+        shares = [person.mean() for person in self.found(network, self.empty)]
         return (f'held out: IoU {both / max(1, either):.3f}, '
                 f'{100 * np.mean(shares or [0]):.2f} % of empty rooms')
 
-
-def found(network, samples):
-    """Yields the mask of people for each sample, at its size."""
-    size = (INPUT_WIDTH, INPUT_HEIGHT)
-    for first in range(0, len(samples), AT_ONCE):
-        part = samples[first:first + AT_ONCE]
-        images = np.stack([cv2.resize(sample.image, size)[:, :, ::-1].transpose(2, 0, 1)
-                           for sample in part])
-        with torch.no_grad():
-            logits = network(normalised_input(torch.from_numpy(images).float())).numpy()
-        for sample, plane in zip(part, logits):
-            yield cv2.resize(plane[0], sample.target.shape[::-1]) > 0
+    def found(self, network, samples):
+        """Yields the mask of people for each sample, at its size."""
+        for first in range(0, len(samples), AT_ONCE):
+            part = samples[first:first + AT_ONCE]
+            images = np.stack([cv2.resize(sample.image, self.size)[:, :, ::-1].transpose(2, 0, 1)
+                               for sample in part])
+            with torch.no_grad():
+                output = network(normalised_input(torch.from_numpy(images).float()))
+                margins = self.kind.person(output).numpy()
+            for sample, plane in zip(part, margins):
+                yield cv2.resize(plane[0], sample.target.shape[::-1]) > 0

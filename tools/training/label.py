@@ -12,6 +12,7 @@ sys.dont_write_bytecode = True
 import cv2  # noqa: E402
 
 from sources import SOURCES, photographs  # noqa: E402
+from class_labels import ClassTeacher  # noqa: E402
 from teachers import Teachers  # noqa: E402
 
 
@@ -21,6 +22,8 @@ def arguments():
     parser.add_argument('models', type=Path,
                         help='folder with deeplabv3_mnv2_voc21.onnx, bodypix_mnv1_075_person.onnx')
     parser.add_argument('--source', action='append', choices=SOURCES, help='default: all, in turn')
+    parser.add_argument('--classes', action='store_true',
+                        help='all classes by DeepLab, for the SegNet, instead of people')
     parser.add_argument('--masked', action='store_true', help='those with a true mask, too')
     parser.add_argument('--threads', type=int, default=2)
     return parser.parse_args()
@@ -34,15 +37,23 @@ def write_whole(path, image):
     os.replace(unfinished, path)
 
 
+def to_label(args):
+    """Photographs and the files for their labels. A true mask says nothing of other classes."""
+    photos = photographs(args.work, args.source or SOURCES)
+    if args.classes:
+        return [(photo, photo.classes_path) for photo in photos]
+    return [(photo, photo.teachers_path) for photo in photos
+            if args.masked or not photo.mask_path]
+
+
 def main():
     args = arguments()
     cv2.setNumThreads(args.threads)
-    teachers = Teachers(args.models)
-    missing = [photo for photo in photographs(args.work, args.source or SOURCES)
-               if not photo.teachers_path.exists() and (args.masked or not photo.mask_path)]
+    teacher = ClassTeacher(args.models) if args.classes else Teachers(args.models)
+    missing = [(photo, path) for photo, path in to_label(args) if not path.exists()]
     start = time.monotonic()
-    for count, photo in enumerate(missing, 1):
-        write_whole(photo.teachers_path, teachers.label(cv2.imread(str(photo.path))))
+    for count, (photo, path) in enumerate(missing, 1):
+        write_whole(path, teacher.label(cv2.imread(str(photo.path))))
         if count % 200 == 0 or count == len(missing):
             print(f'{count} of {len(missing)}, {time.monotonic() - start:.0f} s', flush=True)
 

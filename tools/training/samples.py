@@ -12,10 +12,11 @@ PEAK_CELLS = 7  # of the stored labels
 
 
 class Sample:
-    """A BGR image; `target`: probability of a person; `weight`: how far to believe it (0 to 1)."""
+    """A BGR image; `target`: probability of a person; `weight`: how far to believe it (0 to 1);
+    `things`: the SegNet's class of what is no person, where that is asked for (class_labels.py)."""
 
-    def __init__(self, image, target, weight):
-        self.image, self.target, self.weight = image, target, weight
+    def __init__(self, image, target, weight, things=None):
+        self.image, self.target, self.weight, self.things = image, target, weight, things
 
 
 def teachers_opinion(photo):

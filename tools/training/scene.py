@@ -46,10 +46,10 @@ def warped(plane, matrix, border):
 
 
 class Scene:
-    """`image`: 8-bit BGR; `target` and `weight` as in samples.py, float."""
+    """`image`: 8-bit BGR; `target`, `weight` (float) and `things` as in samples.py."""
 
-    def __init__(self, image, target, weight):
-        self.image, self.target, self.weight = image, target, weight
+    def __init__(self, image, target, weight, things=None):
+        self.image, self.target, self.weight, self.things = image, target, weight, things
 
     def cover(self, image, opacity, is_person=False, corner=(0, 0)):
         """Puts an image over what is there; `opacity` from 0 to 1. Both may be smaller than the
@@ -61,6 +61,8 @@ class Scene:
         self.target[part] *= 1 - opacity
         if is_person:
             self.target[part] += opacity
+        if self.things is not None:
+            self.things[part][opacity > 0.5] = 0
         self.weight[part] = np.maximum(self.weight[part], opacity)
 
 
@@ -90,7 +92,11 @@ def view(rng, sample, zoom, focus=None):
     matrix = canvas_from_image(scales, turn, point, (WIDTH / 2, HEIGHT / 2))
     planes = [warped(plane, matrix, cv2.BORDER_REFLECT_101)
               for plane in (sample.image, sample.target, sample.weight)]
-    return Scene(*planes)
+    things = sample.things
+    if things is not None:
+        things = cv2.warpAffine(things, matrix, (WIDTH, HEIGHT), flags=cv2.INTER_NEAREST,
+                                borderMode=cv2.BORDER_REFLECT_101)
+    return Scene(*planes, things)
 
 
 def placed_person(rng, sample, box, any_turn=False):

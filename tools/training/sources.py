@@ -1,10 +1,11 @@
-"""The photographs that the person network is trained on, and which of them it never sees.
+"""The photographs that networks are trained on, and which of them they never see.
 
 A working folder holds
 
     images/SOURCE/NAME.webp     a photograph
     images/SOURCE/NAME.png      its true mask, 255 = person, where there is one
-    teachers/SOURCE/NAME.png    what the teachers say of it (label.py)
+    teachers/SOURCE/NAME.png    what the teachers say of people in it (label.py)
+    classes/SOURCE/NAME.png     what DeepLab says of all classes (label.py --classes)
 """
 
 from pathlib import Path
@@ -35,6 +36,7 @@ class Photograph:
         self.source, self.path = source, path
         self.held_out = is_held_out(source, index)
         self.teachers_path = Path(work) / 'teachers' / source / (path.stem + '.png')
+        self.classes_path = Path(work) / 'classes' / source / (path.stem + '.png')
         mask = path.with_suffix('.png')
         self.mask_path = mask if mask.exists() else None
 

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Trains the person network, from scratch or further from exported weights.
+"""Trains the person network or the SegNet, from scratch or further from weights.
 
 Interrupted, it goes on from its last checkpoint when it is called again in the same way."""
 
@@ -15,20 +15,17 @@ sys.dont_write_bytecode = True
 import cv2  # noqa: E402
 import numpy as np  # noqa: E402
 import torch  # noqa: E402
-import torch.nn.functional as F  # noqa: E402
 from torch.utils.data import DataLoader  # noqa: E402
 
+import caffe_files  # noqa: E402
 import checkpoint  # noqa: E402
 import onnx_weights  # noqa: E402
-from batches import Images  # noqa: E402
 from held_out import HeldOut  # noqa: E402
-from network import PersonNetwork, normalised_input, set_weights  # noqa: E402
+from kinds import KINDS  # noqa: E402
+from network import normalised_input, set_weights  # noqa: E402
 from samples import Collection  # noqa: E402
 from sources import photographs  # noqa: E402
 
-LEAST_WEIGHT = 0.05  # of a pixel whose label is not to be believed
-DICE_SHARE = 0.25
-DICE_PIXELS = 60  # keeps the overlap of images without people defined
 LARGEST_GRADIENT = 2.0
 
 
@@ -37,8 +34,12 @@ def arguments():
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument('work', type=Path, help='working folder, see prepare.py')
     parser.add_argument('output', type=Path, help='folder for checkpoint.pt')
-    parser.add_argument('--start', type=Path, metavar='ONNX',
-                        help='exported weights to train further; default: from scratch')
+    parser.add_argument('--network', choices=list(KINDS), default='person')
+    parser.add_argument('--size', type=int, nargs=2, metavar=('WIDTH', 'HEIGHT'),
+                        help='of the input, less than in use for a quick beginning')
+    parser.add_argument('--start', type=Path, metavar='FILE',
+                        help='exported weights (.onnx, .caffemodel), or the checkpoint (.pt) of '
+                             'another training, to train further; default: from scratch')
     parser.add_argument('--iterations', type=int, default=3000)
     parser.add_argument('--batch', type=int, default=16)
     parser.add_argument('--rate', type=float, default=1e-3,
@@ -52,7 +53,11 @@ def arguments():
     parser.add_argument('--precision', choices=['float', 'bfloat16', 'auto'], default='auto',
                         help='of convolutions; auto: bfloat16 on what is fast with it')
     parser.add_argument('--save-every', type=int, default=100, help='iterations')
-    return parser.parse_args()
+    args = parser.parse_args()
+    args.size = tuple(args.size or KINDS[args.network].size)
+    if min(args.size) < 32 or any(side % 32 for side in args.size):
+        parser.error('--size: 32 must divide both sides')
+    return args
 
 
 def rate_at(iteration, args):
@@ -81,18 +86,17 @@ def use_bfloat16(precision, device):
     return precision == 'bfloat16'
 
 
-def loss_of(logits, target, weight):
-    """Cross entropy, and a share of one minus the overlap; at half the input's size."""
-    target, weight = (F.avg_pool2d(plane, 2) for plane in (target, weight))
-    weight = weight + LEAST_WEIGHT
-    logits = F.interpolate(logits.float(), size=target.shape[2:], mode='bilinear',
-                           align_corners=False)
-    entropy = F.binary_cross_entropy_with_logits(logits, target, reduction='none')
-    found = torch.sigmoid(logits)
-    both = (found * target * weight).sum((1, 2, 3))
-    either = ((found + target) * weight).sum((1, 2, 3))
-    dice = 1 - (2 * both + DICE_PIXELS) / (either + DICE_PIXELS)
-    return (entropy * weight).sum() / weight.sum() + DICE_SHARE * dice.mean()
+def start_state(args):
+    """What a training that has no checkpoint of its own begins with."""
+    if args.start is None:
+        return {'normalise': True}
+    if args.start.suffix == '.pt':
+        state = torch.load(args.start, map_location='cpu')
+        if checkpoint.kind_of(state) != args.network:
+            sys.exit(f'train: {args.start} is of the network {checkpoint.kind_of(state)}')
+        return {'normalise': state['normalise'], 'average': state['average']}
+    reader = caffe_files if args.start.suffix == '.caffemodel' else onnx_weights
+    return {'normalise': False, 'weights': reader.read(args.start)}
 
 
 class Training:
@@ -102,14 +106,20 @@ class Training:
         self.args, self.file = args, args.output / 'checkpoint.pt'
         self.bfloat16 = use_bfloat16(args.precision, args.device)
         state = torch.load(self.file, map_location='cpu') if self.file.exists() else None
-        self.normalise = state['normalise'] if state else args.start is None
-        self.network = PersonNetwork(self.normalise)
+        if state and checkpoint.kind_of(state) != args.network:
+            sys.exit(f'train: {self.file} is of the network {checkpoint.kind_of(state)}: use '
+                     'another output folder, or --network')
+        begun = state or start_state(args)
+        self.normalise = begun['normalise']
+        self.network = KINDS[args.network].make(self.normalise)
         self.iteration = 0
         if state:
             self.network.load_state_dict(state['network'])
             self.iteration = state['iteration']
-        elif args.start:
-            set_weights(self.network, onnx_weights.read(args.start))
+        elif 'average' in begun:
+            self.network.load_state_dict(begun['average'])
+        elif 'weights' in begun:
+            set_weights(self.network, begun['weights'])
         self.network.to(args.device, memory_format=torch.channels_last).train()
         self.optimiser = make_optimiser(self.network, self.normalise)
         self.average = checkpoint.Average(self.network)
@@ -127,7 +137,7 @@ class Training:
         images = images.contiguous(memory_format=torch.channels_last)
         with torch.autocast(device.split(':')[0], torch.bfloat16, enabled=self.bfloat16):
             logits = self.network(images)
-        loss = loss_of(logits, target.to(device), weight.to(device))
+        loss = KINDS[self.args.network].loss(logits, target.to(device), weight.to(device))
         self.optimiser.zero_grad(set_to_none=True)
         loss.backward()
         torch.nn.utils.clip_grad_norm_(self.network.parameters(), LARGEST_GRADIENT)
@@ -137,7 +147,8 @@ class Training:
         return loss.item()
 
     def save(self):
-        checkpoint.save(self.file, iteration=self.iteration, normalise=self.normalise,
+        checkpoint.save(self.file, kind=self.args.network, iteration=self.iteration,
+                        normalise=self.normalise,
                         network=self.network.state_dict(), average=self.average.state,
                         optimiser=self.optimiser.state_dict(), random=random_state())
 
@@ -166,7 +177,8 @@ def one_thread(_):
 
 def run(training, collection, held_out, args):
     remaining = args.iterations - training.iteration
-    images = Images(collection, args.seed, training.iteration * args.batch, remaining * args.batch)
+    images = KINDS[args.network].images(collection, args.seed, training.iteration * args.batch,
+                                        remaining * args.batch, args.size)
     loader = DataLoader(images, args.batch, num_workers=args.workers, worker_init_fn=one_thread,
                         pin_memory='cuda' in args.device)
     start, losses = time.monotonic(), []
@@ -191,7 +203,8 @@ def main():
     photos = photographs(args.work)
     collection = Collection(photo for photo in photos if not photo.held_out)
     print(f'to train on: {collection}', flush=True)
-    held_out = HeldOut([photo for photo in photos if photo.held_out])
+    held_out = HeldOut([photo for photo in photos if photo.held_out], KINDS[args.network],
+                       args.size)
     training = Training(args)
     if training.iteration >= args.iterations:
         sys.exit(f'train: {training.file} has {training.iteration} iterations: nothing to do')

@@ -12,6 +12,7 @@ from pathlib import Path
 
 sys.dont_write_bytecode = True
 SKIPPED = 77
+VOC_CHAIR = 9
 
 try:
     import cv2
@@ -21,17 +22,23 @@ except ImportError as error:
     print(f'skipped: {error}; see tools/training/README.md')
     sys.exit(SKIPPED)
 
+import caffe_files  # noqa: E402
 import export  # noqa: E402
 import onnx_weights  # noqa: E402
 from batches import Images  # noqa: E402
 from checkpoint import averaged_network  # noqa: E402
+from class_labels import load as load_classes  # noqa: E402
 from network import PersonNetwork, folded, normalised_input, set_weights  # noqa: E402
 from samples import Collection, load  # noqa: E402
+from scene import Scene  # noqa: E402
+from segnet import CLASSES, SegNet, person_margin  # noqa: E402
 from sources import Photograph, is_held_out, photographs  # noqa: E402
 from teachers import input_size, label_size  # noqa: E402
 
 HERE = Path(__file__).parent
 IMAGES = 4  # of each source
+SIZE = (320, 256)  # of the person network's input
+SMALL = (96, 64)  # of a SegNet's first training
 
 
 def call(script, *arguments):
@@ -67,6 +74,21 @@ def make_teachers(work):
     for photo in photographs(work, ('rooms',)):
         photo.teachers_path.parent.mkdir(parents=True, exist_ok=True)
         cv2.imwrite(str(photo.teachers_path), np.zeros((48, 64, 3), np.uint8))
+    for photo in photographs(work):
+        photo.classes_path.parent.mkdir(parents=True, exist_ok=True)
+        classes = np.zeros((48, 64, 3), np.uint8)
+        classes[:, :, 1] = 255
+        classes[30:, :20, 0] = VOC_CHAIR
+        cv2.imwrite(str(photo.classes_path), classes)
+
+
+def made_up_work(root):
+    archives, work = root / 'archives', root / 'work'
+    archives.mkdir()
+    make_archives(archives)
+    call('prepare.py', archives, work)
+    make_teachers(work)
+    return work
 
 
 class Trained(unittest.TestCase):
@@ -76,12 +98,7 @@ class Trained(unittest.TestCase):
     def setUpClass(cls):
         cls.folder = tempfile.TemporaryDirectory()
         root = Path(cls.folder.name)
-        cls.work, cls.output, cls.onnx = root / 'work', root / 'run', root / 'net.onnx'
-        archives = root / 'archives'
-        archives.mkdir()
-        make_archives(archives)
-        call('prepare.py', archives, cls.work)
-        make_teachers(cls.work)
+        cls.work, cls.output, cls.onnx = made_up_work(root), root / 'run', root / 'net.onnx'
         cls.said = [cls.train(1), cls.train(2)]
         call('export.py', cls.output / 'checkpoint.pt', cls.onnx)
 
@@ -126,8 +143,8 @@ class Trained(unittest.TestCase):
 
     def test_images_do_not_depend_on_when_they_are_made(self):
         collection = Collection(photo for photo in photographs(self.work) if not photo.held_out)
-        late = Images(collection, 3, 5, 4)[0]
-        early = Images(collection, 3, 0, 9)[5]
+        late = Images(collection, 3, 5, 4, SIZE)[0]
+        early = Images(collection, 3, 0, 9, SIZE)[5]
         self.assertTrue(all(torch.equal(a, b) for a, b in zip(late, early)))
 
     def test_refuses_weights_of_another_network(self):
@@ -143,7 +160,64 @@ class Trained(unittest.TestCase):
             onnx_weights.read(cut)
 
 
+class TrainedSegNet(unittest.TestCase):
+    """The same tool: first with small images, then further at the full size."""
+
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = tempfile.TemporaryDirectory()
+        root = Path(cls.folder.name)
+        cls.work = made_up_work(root)
+        small, cls.full, cls.caffe = root / 'small', root / 'full', root / 'net.caffemodel'
+        begin = ('--network', 'segnet', '--batch', 2, '--workers', 0, '--device', 'cpu',
+                 '--iterations', 1)
+        call('train.py', cls.work, small, *begin, '--size', *SMALL)
+        call('train.py', cls.work, cls.full, *begin, '--start', small / 'checkpoint.pt')
+        call('export.py', cls.full / 'checkpoint.pt', cls.caffe)
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.folder.cleanup()
+
+    def test_caffe_weights_are_read_back(self):
+        network = averaged_network(self.full / 'checkpoint.pt')
+        copy = SegNet(normalise=False).eval()
+        set_weights(copy, caffe_files.read(self.caffe))
+        image = normalised_input(torch.full((1, 3, 64, 96), 100.0))
+        with torch.no_grad():
+            self.assertTrue(torch.allclose(network(image), copy(image), atol=1e-4))
+        self.assertEqual(caffe_files.input_size(self.caffe), (256, 192))
+
+    def test_a_segnet_is_evaluated_with_its_classes(self):
+        said = call('evaluate.py', self.caffe, '--work', self.work)
+        self.assertIn('clothing, held out', said)
+
+    def test_checkpoints_of_another_network_are_refused(self):
+        with self.assertRaisesRegex(AssertionError, 'is of the network segnet'):
+            call('train.py', self.work, self.full, '--iterations', 2)
+
+    def test_things_that_somebody_covers_are_no_longer_there(self):
+        photos = [photo for photo in photographs(self.work) if photo.source == 'clothing']
+        sample = load_classes(photos[1])
+        self.assertEqual(set(np.unique(sample.things)), {0, CLASSES.index('chair')})
+        scene = Scene(sample.image, sample.target, sample.weight, sample.things)
+        scene.cover(np.zeros_like(sample.image), np.ones(sample.target.shape, np.float32), True)
+        self.assertFalse(scene.things.any())
+
+    def test_refuses_a_truncated_caffemodel(self):
+        cut = self.work.parent / 'cut.caffemodel'
+        cut.write_bytes(self.caffe.read_bytes()[:100000])
+        with self.assertRaisesRegex(ValueError, 'no caffemodel'):
+            caffe_files.read(cut)
+
+
 class Parts(unittest.TestCase):
+    def test_a_segnets_person_is_who_scores_above_all_other_classes(self):
+        scores = torch.zeros(1, len(CLASSES), 1, 2)
+        scores[0, CLASSES.index('person'), 0, 0] = 2
+        scores[0, CLASSES.index('sofa'), 0, 1] = 3
+        self.assertEqual(person_margin(scores).flatten().tolist(), [2, -3])
+
     def test_every_tenth_image_of_three_sources_is_held_out(self):
         self.assertTrue(is_held_out('rooms', 0) and is_held_out('pennfudan', 20))
         self.assertFalse(is_held_out('rooms', 1) or is_held_out('kitchen', 0))
