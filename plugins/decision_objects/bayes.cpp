@@ -100,7 +100,10 @@ StaticWeights Bayes::decide(const Frame& frame, const Segmentation& segmentation
 
 void Bayes::weigh_surfaces(const Frame& frame, const cv::Mat& from_map,
                            StaticWeights& weights) const {
-  const cv::Mat field = field_.log_odds() + from_map;
+  // Where something has come in, points at rest say nothing: most of the picture may be it.
+  cv::Mat field = field_.log_odds().clone();
+  field.setTo(0, (from_map > 0) & (field < 0));
+  field += from_map;
   const double prior = log_odds(options_.unlabelled.prior);
   cv::Mat cells(field.size(), CV_8U);
   for (int y = 0; y < field.rows; ++y) {

@@ -172,6 +172,16 @@ TEST(Bayes, WhatHasComeInIsNotUsed) {
   EXPECT_EQ(weight_at(w.track, 500, 200), 255);
 }
 
+// Who fills most of the picture is at rest, as two frames alone can tell.
+TEST(Bayes, PointsAtRestSayNothingOfWhatHasComeIn) {
+  Bayes decision({}, with_classes());
+  StaticWeights w;
+  for (std::uint32_t i = 0; i < 30; ++i)
+    w = decision.decide(make_frame(i), {}, make_points(kNowhere), make_evidence(kPerson, 6));
+  EXPECT_EQ(weight_at(w.track, 250, 200), 0);
+  EXPECT_EQ(weight_at(w.track, 500, 200), 255);
+}
+
 // A desk that is called a person for a second: the map has long known it.
 TEST(Bayes, TheMapContradictsLabels) {
   Bayes decision({}, with_classes());
