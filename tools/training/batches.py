@@ -13,11 +13,11 @@ from segnet import PERSON
 
 # Shares of the kinds of images.
 KINDS = {
-    'people': 0.34,  # as photographed
-    'pasted': 0.16,  # people in rooms
-    'people_clutter': 0.25,  # people behind or in front of drawn clutter
-    'clutter': 0.15,  # the same without people
-    'room': 0.05,  # nobody
+    'people': 0.31,  # as photographed
+    'pasted': 0.26,  # people in rooms and before desks
+    'people_clutter': 0.12,  # people behind or in front of drawn clutter
+    'clutter': 0.09,  # the same without people
+    'room': 0.17,  # nobody
     'close': 0.05,  # a small part of a room fills the image
 }
 # The same for the SegNet, which learns the things in rooms, too.
@@ -28,7 +28,7 @@ WEIGHTS = {'clothing': 1.0, 'pennfudan': 1.5, 'rooms': 3.0, 'sport': 2.0}
 # The same for people to cut out: few photographs of sport have good outlines.
 CUT_OUT_WEIGHTS = {'clothing': 1.0, 'pennfudan': 1.0, 'sport': 1.5}
 # Of those without people the few by an RGB-D camera are most like what the network will see.
-EMPTY_WEIGHTS = {'kitchen': 3.0, 'rooms': 1.0}
+EMPTY_WEIGHTS = {'desks': 1.5, 'kitchen': 3.0, 'rooms': 1.0}
 
 
 def shares(entries, weights):

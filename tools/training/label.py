@@ -11,7 +11,7 @@ sys.dont_write_bytecode = True
 
 import cv2  # noqa: E402
 
-from sources import SOURCES, photographs  # noqa: E402
+from sources import ARCHIVES, photographs  # noqa: E402
 from class_labels import ClassTeacher  # noqa: E402
 from teachers import Teachers  # noqa: E402
 
@@ -21,7 +21,7 @@ def arguments():
     parser.add_argument('work', type=Path, help='working folder, see prepare.py')
     parser.add_argument('models', type=Path,
                         help='folder with deeplabv3_mnv2_voc21.onnx, bodypix_mnv1_075_person.onnx')
-    parser.add_argument('--source', action='append', choices=SOURCES, help='default: all, in turn')
+    parser.add_argument('--source', action='append', choices=ARCHIVES, help='default: all, in turn')
     parser.add_argument('--classes', action='store_true',
                         help='all classes by DeepLab, for the SegNet, instead of people')
     parser.add_argument('--masked', action='store_true', help='those with a true mask, too')
@@ -39,7 +39,7 @@ def write_whole(path, image):
 
 def to_label(args):
     """Photographs and the files for their labels. A true mask says nothing of other classes."""
-    photos = photographs(args.work, args.source or SOURCES)
+    photos = photographs(args.work, args.source or ARCHIVES)
     if args.classes:
         return [(photo, photo.classes_path) for photo in photos]
     return [(photo, photo.teachers_path) for photo in photos

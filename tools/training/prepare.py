@@ -11,7 +11,7 @@ from pathlib import Path
 
 sys.dont_write_bytecode = True
 
-from sources import SOURCES  # noqa: E402
+from sources import ARCHIVES  # noqa: E402
 
 SUFFIXES = ('.webp', '.png')
 
@@ -41,10 +41,10 @@ def main():
     parser.add_argument('archives', type=Path, help='folder with SOURCE.tar')
     parser.add_argument('work', type=Path, help='working folder to make or complete')
     args = parser.parse_args()
-    archives = [args.archives / f'{source}.tar' for source in SOURCES]
+    archives = [args.archives / f'{source}.tar' for source in ARCHIVES]
     if not any(archive.exists() for archive in archives):
         sys.exit(f'prepare: {args.archives} has none of {", ".join(a.name for a in archives)}')
-    for source, archive in zip(SOURCES, archives):
+    for source, archive in zip(ARCHIVES, archives):
         if archive.exists():
             count = unpack(archive, args.work / 'images' / source)
             print(f'{source}: {count} files')

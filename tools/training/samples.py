@@ -9,6 +9,7 @@ DEEPLAB_SHARE = 0.55  # of the two teachers' mean; DeepLab's outlines are better
 MASK_MARGIN = 13  # pixels around a true mask where teachers may well be wrong
 SURE_OF_NOBODY = 0.12  # highest probability, averaged over PEAK_CELLS, in an empty photograph
 PEAK_CELLS = 7  # of the stored labels
+SOURCES_OF_PEOPLE = ('clothing', 'pennfudan', 'sport')  # in all others most images are empty
 
 
 class Sample:
@@ -76,11 +77,11 @@ class Entry:
         return self.share > 0.01 and self.peak > 0.8 and self.unsure < 1.5 * self.share + 0.01
 
     def has_good_outline(self):
-        return (self.photo.source not in ('rooms', 'kitchen') and self.share > 0.02 and
+        return (self.photo.source in SOURCES_OF_PEOPLE and self.share > 0.02 and
                 self.peak > 0.9 and self.unsure < 0.7 * self.share)
 
     def is_empty(self):
-        return self.photo.source in ('rooms', 'kitchen') and self.share == 0 and (
+        return self.photo.source not in SOURCES_OF_PEOPLE and self.share == 0 and (
             self.peak < SURE_OF_NOBODY)
 
 

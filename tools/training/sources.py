@@ -10,9 +10,10 @@ A working folder holds
 
 from pathlib import Path
 
-SOURCES = ('clothing', 'kitchen', 'pennfudan', 'rooms', 'sport')
-# Nobody is in the recording that these are from.
-EMPTY_SOURCES = ('kitchen',)
+ARCHIVES = ('clothing', 'kitchen', 'pennfudan', 'rooms', 'sport')
+SOURCES = tuple(sorted(ARCHIVES + ('desks',)))
+# Rendered desks (render_desks.py), and a recording that nobody is in.
+EMPTY_SOURCES = ('desks', 'kitchen')
 # Passers-by and people far away are missing in the true masks of these.
 INCOMPLETE_MASKS = ('clothing', 'pennfudan')
 

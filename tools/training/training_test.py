@@ -8,6 +8,7 @@ import sys
 import tarfile
 import tempfile
 import unittest
+import zipfile
 from pathlib import Path
 
 sys.dont_write_bytecode = True
@@ -24,7 +25,9 @@ except ImportError as error:
 
 import caffe_files  # noqa: E402
 import export  # noqa: E402
+import models  # noqa: E402
 import onnx_weights  # noqa: E402
+import render_desks  # noqa: E402
 from batches import Images  # noqa: E402
 from checkpoint import averaged_network  # noqa: E402
 from class_labels import load as load_classes  # noqa: E402
@@ -209,6 +212,107 @@ class TrainedSegNet(unittest.TestCase):
         cut.write_bytes(self.caffe.read_bytes()[:100000])
         with self.assertRaisesRegex(ValueError, 'no caffemodel'):
             caffe_files.read(cut)
+
+
+CATALOGUE = """id=test
+name#1=Wooden chair
+category#1=Office
+model#1=/things/box.obj
+width#1=40
+depth#1=60
+height#1=20
+name#2=Male
+category#2=Characters
+model#2=/things/box.obj
+width#2=40
+depth#2=60
+height#2=170
+"""
+BOX = """mtllib box.mtl
+v -1 0 -2
+v 1 0 -2
+v 1 1 -2
+v -1 1 -2
+v -1 0 2
+v 1 0 2
+v 1 1 2
+v -1 1 2
+usemtl red
+f 1 2 3 4
+f 5 6 7 8
+f 1 2 6 5
+f 4 3 7 8
+f 1 4 8 5
+f -7 -6 -2 -3
+"""
+
+
+class Desks(unittest.TestCase):
+    """One model, a red box that is called a chair."""
+
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = tempfile.TemporaryDirectory()
+        root = Path(cls.folder.name)
+        cls.work, cls.furniture = made_up_work(root), root / 'furniture'
+        cls.furniture.mkdir()
+        with zipfile.ZipFile(cls.furniture / 'Things.sh3f', 'w') as archive:
+            archive.writestr('PluginFurnitureCatalog.properties', CATALOGUE)
+            archive.writestr('things/box.obj', BOX)
+            archive.writestr('things/box.mtl', 'newmtl red\nKd 0.9 0.1 0.2\nmap_Kd missing.jpg\n')
+        call('render_desks.py', cls.furniture, cls.work, '--count', 2)
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.folder.cleanup()
+
+    def test_people_are_no_things(self):
+        found = models.catalogue(self.work)
+        self.assertEqual([model.voc_id for model in found], [VOC_CHAIR])
+
+    def test_a_model_stands_upright_in_its_size_and_colour(self):
+        surface = models.load_surface(models.catalogue(self.work)[0])
+        low, high = surface.points.min(axis=0), surface.points.max(axis=0)
+        np.testing.assert_allclose(low, (-0.2, -0.3, 0), atol=1e-3)
+        np.testing.assert_allclose(high, (0.2, 0.3, 0.2), atol=1e-3)
+        np.testing.assert_allclose(surface.colours.mean(axis=0), (0.2, 0.1, 0.9), atol=0.01)
+        area = 2 * (0.4 * 0.6 + 0.4 * 0.2 + 0.6 * 0.2)
+        self.assertAlmostEqual(surface.spacing, np.sqrt(area / models.POINTS), places=5)
+
+    def test_a_square_is_where_the_camera_sees_it(self):
+        view = render_desks.View(np.random.default_rng(1))
+        forward = view.camera_from_world[2]
+        pixels, depth = view.project((view.position + 2 * forward)[None])
+        np.testing.assert_allclose(pixels, [[render_desks.WIDTH / 2, render_desks.HEIGHT / 2]])
+        np.testing.assert_allclose(depth, [2])
+
+    def test_what_is_nearer_covers_what_is_farther(self):
+        picture = render_desks.Picture()
+        pixels = np.array([[10.5, 20.5], [10.5, 20.5]])
+        colours = np.array([[1, 0, 0], [0, 1, 0]], np.float32)
+        picture.splat(pixels, np.array([1, 2], np.float32), colours, 1, VOC_CHAIR)
+        picture.splat(pixels[:1], np.array([3], np.float32), colours[1:], 0, 0)
+        self.assertEqual(picture.image[20, 10].tolist(), [1, 0, 0])
+        self.assertEqual(picture.image[19:22, 9:12, 0].sum(), 9)
+        self.assertEqual(int((picture.classes == VOC_CHAIR).sum()), 9)
+
+    def test_desks_are_empty_photographs_with_classes(self):
+        photos = photographs(self.work, ('desks',))
+        self.assertEqual(len(photos), 2)
+        for photo in photos:
+            sample = load_classes(photo)
+            self.assertGreater(sample.image.std(), 1)
+            self.assertFalse(sample.target.any())
+            self.assertTrue(sample.things.any())
+        self.assertIn('desks', {entry.photo.source for entry in
+                                Collection(photographs(self.work)).empty})
+
+    def test_goes_on_where_it_stopped(self):
+        first = photographs(self.work, ('desks',))[0].path
+        before = first.read_bytes()
+        first.unlink()
+        call('render_desks.py', self.furniture, self.work, '--count', 2)
+        self.assertEqual(first.read_bytes(), before)
 
 
 class Parts(unittest.TestCase):
