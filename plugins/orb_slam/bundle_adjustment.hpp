@@ -1,4 +1,4 @@
-// Local and full bundle adjustment with Ceres.
+// Local and full bundle adjustment.
 #pragma once
 
 #include <optional>
@@ -13,7 +13,6 @@ namespace stillpoint::orb {
 struct BundleOptions {
   int max_keyframes = 10;  ///< adjusted locally; others that see the same landmarks stay fixed
   int max_iterations = 5;
-  int threads = 1;
 };
 
 /// Adjusts a key frame, its most covisible neighbours and the landmarks they see, over reprojection
@@ -21,10 +20,11 @@ struct BundleOptions {
 /// kernel; then removes the observations that do not fit. The first key frame always stays. Ends
 /// after the current iteration when `hurry` is requested. Returns the landmarks that were adjusted.
 std::vector<LandmarkId> adjust_locally(MapEdit& edit, KeyFrameId centre,
-                                       const BundleOptions& options, std::stop_token hurry);
+                                       const BundleOptions& options,
+                                       const std::stop_token& hurry);
 
 /// The same over all key frames and landmarks. Observations stay; nothing when there are none.
-std::optional<MapCorrection> adjust_all(const SparseMap& map, const BundleOptions& options,
-                                        std::stop_token hurry);
+std::optional<MapCorrection> adjust_all(const SparseMap& map, int max_iterations,
+                                        const std::stop_token& hurry);
 
 }  // namespace stillpoint::orb

@@ -9,7 +9,7 @@ namespace stillpoint::orb {
 
 struct KeyFrameOptions {
   int max_frames_between = 30;
-  double min_tracked_ratio = 0.8;
+  double min_tracked_ratio = 0.9;
   int min_inliers = 15;
   double close_depth = 3.0;
   int min_close = 100;

@@ -41,11 +41,10 @@ void OrbLocalMapper::Options::visit(OptionVisitor& v) {
   v("bundle_iterations", bundle_iterations, {.min = 1, .help = "of the local bundle adjustment"});
 }
 
-OrbLocalMapper::OrbLocalMapper(Options options, const StageContext& context)
+OrbLocalMapper::OrbLocalMapper(Options options, const StageContext&)
     : options_(options),
       bundle_{.max_keyframes = options.bundle_keyframes,
-              .max_iterations = options.bundle_iterations,
-              .threads = context.threads} {}
+              .max_iterations = options.bundle_iterations} {}
 
 SparseMap OrbLocalMapper::insert(SparseMap map, KeyFrame keyframe) {
   MapEdit edit(std::move(map));

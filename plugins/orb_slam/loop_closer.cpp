@@ -37,8 +37,7 @@ void OrbLoopCloser::Options::visit(OptionVisitor& v) {
     {.min = 0, .help = "of the bundle adjustment of the whole map after a loop; 0 = none"});
 }
 
-OrbLoopCloser::OrbLoopCloser(Options options, const StageContext& context)
-    : options_(options), threads_(context.threads) {}
+OrbLoopCloser::OrbLoopCloser(Options options, const StageContext&) : options_(options) {}
 
 std::optional<MapCorrection> OrbLoopCloser::close(const SparseMap& map, KeyFrameId latest,
                                                   std::stop_token stop) {
@@ -72,8 +71,7 @@ std::optional<MapCorrection> OrbLoopCloser::correct(const SparseMap& map, const 
 
 std::optional<MapCorrection> OrbLoopCloser::adjust(const SparseMap& map, std::stop_token hurry) {
   if (options_.adjust_iterations == 0) return std::nullopt;
-  return adjust_all(map, {.max_iterations = options_.adjust_iterations, .threads = threads_},
-                    std::move(hurry));
+  return adjust_all(map, options_.adjust_iterations, hurry);
 }
 
 }  // namespace stillpoint::orb

@@ -35,7 +35,6 @@ class OrbLoopCloser final : public LoopCloser {
                                        std::stop_token stop);
 
   Options options_;
-  int threads_;
   LoopCandidates candidates_;
   std::vector<PoseEdge> loops_;          // closed so far
   std::optional<KeyFrameId> last_loop_;  // the newest key frame of the last one

@@ -4,9 +4,8 @@
 
 #include <Eigen/Cholesky>
 #include <deque>
+#include <stop_token>
 #include <utility>
-
-#include "orb_slam/ceres_solver.hpp"
 
 namespace stillpoint::orb {
 namespace {
@@ -15,6 +14,29 @@ constexpr int kMinShared = 100;     // landmarks, of an edge of the essential gr
 constexpr double kMetres = 0.01;    // standard deviation of an edge
 constexpr double kRadians = 0.005;  // standard deviation of an edge
 constexpr int kIterations = 30;
+
+// Ends with the best result so far, after the current iteration.
+class StopCallback final : public ceres::IterationCallback {
+ public:
+  explicit StopCallback(std::stop_token stop) : stop_(std::move(stop)) {}
+  ceres::CallbackReturnType operator()(const ceres::IterationSummary&) override {
+    return stop_.stop_requested() ? ceres::SOLVER_TERMINATE_SUCCESSFULLY : ceres::SOLVER_CONTINUE;
+  }
+
+ private:
+  std::stop_token stop_;
+};
+
+ceres::Solver::Options solver_options(StopCallback& stop) {
+  ceres::Solver::Options options;
+  options.linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;
+  // CHOLMOD, the default, starts threads of its own and rounds as the machine's BLAS does.
+  options.sparse_linear_algebra_library_type = ceres::EIGEN_SPARSE;
+  options.max_num_iterations = kIterations;
+  options.logging_type = ceres::SILENT;
+  options.callbacks = {&stop};
+  return options;
+}
 
 // world_from_keyframe; Ceres changes the quaternion on its manifold.
 struct PoseState {
@@ -90,8 +112,7 @@ class PoseGraph {
   bool solve(std::stop_token stop) {
     StopCallback callback(std::move(stop));
     ceres::Solver::Summary summary;
-    ceres::Solve(solver_options(ceres::SPARSE_NORMAL_CHOLESKY, kIterations, callback), &problem_,
-                 &summary);
+    ceres::Solve(solver_options(callback), &problem_, &summary);
     return summary.IsSolutionUsable();
   }
 
