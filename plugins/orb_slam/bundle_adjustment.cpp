@@ -39,8 +39,7 @@ class BundleProblem {
   std::vector<MovedKeyFrame> keyframes() const {
     std::vector<MovedKeyFrame> moved;
     for (const KeyFrameId id : moving_)
-      moved.push_back(
-          {id, orthonormalised(solver_.camera_from_world(camera_of_[id]).inverse())});
+      moved.push_back({id, orthonormalised(solver_.camera_from_world(camera_of_[id]).inverse())});
     return moved;
   }
   std::vector<std::pair<LandmarkId, Eigen::Vector3d>> landmarks() const {
@@ -123,8 +122,7 @@ void drop_outliers(MapEdit& edit, LandmarkId id) {
 }  // namespace
 
 std::vector<LandmarkId> adjust_locally(MapEdit& edit, KeyFrameId centre,
-                                       const BundleOptions& options,
-                                       const std::stop_token& hurry) {
+                                       const BundleOptions& options, const std::stop_token& hurry) {
   const std::vector<KeyFrameId> local = most_covisible(edit.map(), centre, options.max_keyframes);
   std::vector<LandmarkId> points = seen_by(edit.map(), local);
   BundleProblem problem(edit.map(), local, points);

@@ -20,8 +20,7 @@ struct BundleOptions {
 /// kernel; then removes the observations that do not fit. The first key frame always stays. Ends
 /// after the current iteration when `hurry` is requested. Returns the landmarks that were adjusted.
 std::vector<LandmarkId> adjust_locally(MapEdit& edit, KeyFrameId centre,
-                                       const BundleOptions& options,
-                                       const std::stop_token& hurry);
+                                       const BundleOptions& options, const std::stop_token& hurry);
 
 /// The same over all key frames and landmarks. Observations stay; nothing when there are none.
 std::optional<MapCorrection> adjust_all(const SparseMap& map, int max_iterations,

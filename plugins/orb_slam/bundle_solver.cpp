@@ -15,8 +15,8 @@ namespace {
 
 constexpr double kMinDepth = 0.05;  // metres; nearer points give no residual
 constexpr double kFirstDamping = 1e-4;
-constexpr double kLeastGain = 1e-3;        // of the decrease that the linear model expects
-constexpr double kLeastDecrease = 1e-6;    // of the cost, relative
+constexpr double kLeastGain = 1e-3;         // of the decrease that the linear model expects
+constexpr double kLeastDecrease = 1e-6;     // of the cost, relative
 constexpr double kSmallestDiagonal = 1e-6;  // that damping is relative to
 
 struct Residual {
@@ -28,8 +28,7 @@ bool evaluate(const BundleMeasurement& m, const Eigen::Vector3d& p, Eigen::Vecto
   if (p.z() < kMinDepth) return false;
   const double iz = 1.0 / p.z();
   r = {m.pixel_weight * (m.fx * p.x() * iz + m.cx - m.u),
-       m.pixel_weight * (m.fy * p.y() * iz + m.cy - m.v),
-       m.depth_weight * (iz - m.inverse_depth)};
+       m.pixel_weight * (m.fy * p.y() * iz + m.cy - m.v), m.depth_weight * (iz - m.inverse_depth)};
   return true;
 }
 
@@ -42,8 +41,7 @@ void differentiate(const BundleMeasurement& m, const Eigen::Vector3d& p, Eigen::
 
 // Huber's kernel at a squared error: twice the cost, and the weight of the observation.
 double huber_cost(double square) {
-  return square <= kChiSquare3 ? square
-                               : 2 * std::sqrt(kChiSquare3 * square) - kChiSquare3;
+  return square <= kChiSquare3 ? square : 2 * std::sqrt(kChiSquare3 * square) - kChiSquare3;
 }
 double huber_weight(double square) {
   return square <= kChiSquare3 ? 1.0 : std::sqrt(kChiSquare3 / square);
@@ -59,8 +57,8 @@ Matrix damped(const Matrix& hessian, double damping) {
 }  // namespace
 
 int BundleSolver::add_camera(const Pose& camera_from_world, bool moves) {
-  cameras_.push_back({camera_from_world.linear(), camera_from_world.translation(),
-                      moves ? moving_count_++ : -1});
+  cameras_.push_back(
+      {camera_from_world.linear(), camera_from_world.translation(), moves ? moving_count_++ : -1});
   return static_cast<int>(cameras_.size()) - 1;
 }
 
@@ -101,8 +99,8 @@ void BundleSolver::find_blocks() {
   block_of_pair_.clear();
   std::unordered_map<std::int64_t, int> known;
   const auto block_at = [&](int row, int column) {
-    const auto [found, is_new] = known.try_emplace(
-        std::int64_t{row} * moving_count_ + column, static_cast<int>(blocks_.size()));
+    const auto [found, is_new] = known.try_emplace(std::int64_t{row} * moving_count_ + column,
+                                                   static_cast<int>(blocks_.size()));
     if (is_new) blocks_.push_back({row, column, Matrix6d::Zero()});
     return found->second;
   };

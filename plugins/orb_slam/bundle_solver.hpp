@@ -19,9 +19,9 @@ struct BundleMeasurement {
   double depth_weight;    ///< m: the same of the inverse depth; 0 = no depth
 };
 
-/// Levenberg and Marquardt's method with a Huber kernel on each observation. Points are eliminated by
-/// the Schur complement (Triggs et al., Bundle Adjustment: A Modern Synthesis, 2000, section 6.1). One
-/// thread, the same bits every time.
+/// Levenberg and Marquardt's method with a Huber kernel on each observation. Points are eliminated
+/// by the Schur complement (Triggs et al., Bundle Adjustment: A Modern Synthesis, 2000,
+/// section 6.1). One thread, the same bits every time.
 class BundleSolver {
  public:
   /// Returns the camera's number: they count from 0.

@@ -103,10 +103,10 @@ TEST_F(BundleSolverTest, AgreesWithCeres) {
   ceres::Problem problem;
   for (std::size_t i = 0; i < points.size(); ++i)
     for (int camera = 0; camera < kCameras; ++camera)
-      problem.AddResidualBlock(
-          new ceres::AutoDiffCostFunction<Reprojection, 3, 6, 3>(
-              new Reprojection{measurements_[i][camera]}),
-          new ceres::HuberLoss(std::sqrt(kChiSquare3)), cameras[camera].data(), points[i].data());
+      problem.AddResidualBlock(new ceres::AutoDiffCostFunction<Reprojection, 3, 6, 3>(
+                                   new Reprojection{measurements_[i][camera]}),
+                               new ceres::HuberLoss(std::sqrt(kChiSquare3)), cameras[camera].data(),
+                               points[i].data());
   for (int i = 0; i < kFixedCameras; ++i) problem.SetParameterBlockConstant(cameras[i].data());
   ceres::Solver::Options options;
   options.linear_solver_type = ceres::DENSE_SCHUR;
@@ -142,8 +142,8 @@ TEST_F(BundleSolverTest, PointsAloneGoWhereTheirRaysMeet) {
   ours.add_point(points_[0] + Eigen::Vector3d(0.1, -0.1, 0.2));
   for (const int camera : {0, 1}) {
     const Eigen::Vector3d p = cameras_[camera == 0 ? 0 : 5] * points_[0];
-    ours.observe(camera, {500, 500, 320, 240, 500 * p.x() / p.z() + 320,
-                          500 * p.y() / p.z() + 240, 0, 1, 0});
+    ours.observe(camera, {500, 500, 320, 240, 500 * p.x() / p.z() + 320, 500 * p.y() / p.z() + 240,
+                          0, 1, 0});
   }
   ASSERT_TRUE(ours.solve(50, {}));
   EXPECT_LT((ours.point(0) - points_[0]).norm(), 1e-4);
