@@ -1,5 +1,7 @@
 #include "orb_slam/keyframe_policy.hpp"
 
+#include <algorithm>
+
 #include "orb_slam/landmark_geometry.hpp"
 
 namespace stillpoint::orb {
@@ -16,6 +18,24 @@ int established_landmarks(const KeyFrame& keyframe, const SparseMap& map) {
   return count;
 }
 
+// Of the features that have one, in metres; 0 without any.
+double median_depth(const Features& features) {
+  std::vector<float> depths;
+  std::ranges::copy_if(features.depth, std::back_inserter(depths), [](float z) { return z > 0; });
+  if (depths.empty()) return 0;
+  const auto middle = depths.begin() + static_cast<std::ptrdiff_t>(depths.size() / 2);
+  std::ranges::nth_element(depths, middle);
+  return *middle;
+}
+
+// How far the image has shifted, in focal lengths, roughly.
+double motion_since(const KeyFrame& reference, const ObservedFrame& frame) {
+  const Pose motion = reference.world_from_camera.inverse() * frame.world_from_camera;
+  const double depth = median_depth(*frame.features);
+  const double way = depth > 0 ? motion.translation().norm() / depth : 0;
+  return way + rotation_angle(motion);
+}
+
 }  // namespace
 
 void KeyFrameOptions::visit(OptionVisitor& v) {
@@ -25,6 +45,11 @@ void KeyFrameOptions::visit(OptionVisitor& v) {
     {.min = 0,
      .max = 1,
      .help = "new key frame when less than this share of the reference's landmarks is tracked"});
+  v("keyframe_moved", moved,
+    {.min = 0,
+     .help = "way in median depths, plus rotation in radians, that makes a camera moved"});
+  v("keyframe_moved_ratio", moved_tracked_ratio,
+    {.min = 0, .max = 1, .help = "as keyframe_tracked_ratio, once the camera has moved"});
   v("keyframe_min_inliers", min_inliers,
     {.min = 6, .help = "no key frame from a pose on fewer landmarks"});
   v("close_depth", close_depth,
@@ -38,8 +63,10 @@ void KeyFrameOptions::visit(OptionVisitor& v) {
 TrackingQuality tracking_quality(const ObservedFrame& frame, const SparseMap& map, int inliers,
                                  int frames_since_last, const KeyFrameOptions& options) {
   TrackingQuality quality{.inliers = inliers, .frames_since_last = frames_since_last};
-  if (const KeyFrame* reference = map.keyframe(frame.reference))
+  if (const KeyFrame* reference = map.keyframe(frame.reference)) {
     quality.reference_matches = established_landmarks(*reference, map);
+    quality.motion = motion_since(*reference, frame);
+  }
   for (std::uint32_t i = 0; i < frame.features->size(); ++i) {
     const float depth = frame.features->depth[i];
     if (depth <= 0 || depth > options.close_depth || !frame.usable(i)) continue;
@@ -57,7 +84,10 @@ bool needs_keyframe(const TrackingQuality& q, TrackHints hints, const KeyFrameOp
       q.close_tracked < options.min_close && q.close_untracked > options.max_close_untracked;
   if (q.held_by_depth) return needs_close && q.frames_since_last >= kHeldFramesBetween;
   if (q.inliers < options.min_inliers) return false;
-  const bool view_changed = q.inliers < options.min_tracked_ratio * q.reference_matches;
+  // From a camera that has not moved, landmarks are missing because somebody hides them.
+  const double least =
+      q.motion < options.moved ? options.min_tracked_ratio : options.moved_tracked_ratio;
+  const bool view_changed = q.inliers < least * q.reference_matches;
   if (!needs_close && !view_changed) return false;
   const bool urgent = needs_close || q.inliers < 0.25 * q.reference_matches;
   return urgent || q.frames_since_last >= options.max_frames_between || !hints.mapping_waiting;

@@ -9,7 +9,9 @@ namespace stillpoint::orb {
 
 struct KeyFrameOptions {
   int max_frames_between = 30;
-  double min_tracked_ratio = 0.9;
+  double min_tracked_ratio = 0.8;
+  double moved = 0.02;
+  double moved_tracked_ratio = 0.9;
   int min_inliers = 15;
   double close_depth = 3.0;
   int min_close = 100;
@@ -25,6 +27,7 @@ struct TrackingQuality {
   int close_tracked = 0;      ///< features with near depth and a fitting landmark
   int close_untracked = 0;    ///< features with near depth and none, which could become one
   int frames_since_last = 0;  ///< since the last key frame
+  double motion = 0;  ///< since the reference: way in median depths, plus rotation in radians
   bool held_by_depth = false;  ///< the pose does not depend on landmarks
 };
 

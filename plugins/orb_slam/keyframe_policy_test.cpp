@@ -32,6 +32,20 @@ TEST(NeedsKeyFrame, WhenTheViewHasChanged) {
   EXPECT_FALSE(needs_keyframe(quality, kIdle, options));
 }
 
+TEST(NeedsKeyFrame, WhenTheViewHasChangedALittleAndTheCameraHasMoved) {
+  const KeyFrameOptions options;
+  ASSERT_GT(options.moved_tracked_ratio, options.min_tracked_ratio);
+  TrackingQuality quality = good(options);
+  quality.inliers = static_cast<int>(options.moved_tracked_ratio * quality.reference_matches) - 5;
+  quality.motion = 0.9 * options.moved;
+  EXPECT_FALSE(needs_keyframe(quality, kIdle, options));
+  quality.motion = 1.1 * options.moved;
+  EXPECT_TRUE(needs_keyframe(quality, kIdle, options));
+  EXPECT_FALSE(needs_keyframe(quality, kBusy, options));
+  quality.inliers += 10;
+  EXPECT_FALSE(needs_keyframe(quality, kIdle, options)) << "nothing has changed";
+}
+
 TEST(NeedsKeyFrame, WhenNearPointsRunOut) {
   const KeyFrameOptions options;
   TrackingQuality quality = good(options);
@@ -106,6 +120,20 @@ TEST_F(TrackingQualityTest, CountsWellEstablishedLandmarksOfTheReference) {
   const TrackingQuality quality = tracking_quality(frame_, known_.map, 0, 0, options_);
   EXPECT_EQ(quality.reference_matches, established);
   EXPECT_LT(established, static_cast<int>(view_.features->size()));
+}
+
+TEST_F(TrackingQualityTest, MotionIsTheWayInDepthsPlusTheRotation) {
+  frame_.reference = 0;
+  frame_.world_from_camera = known_.map.world_from_keyframe(0);
+  EXPECT_NEAR(tracking_quality(frame_, known_.map, 0, 0, options_).motion, 0, 1e-9);
+  frame_.world_from_camera = frame_.world_from_camera * exp_se3({0, 0, 0, 0, 0.2, 0});
+  EXPECT_NEAR(tracking_quality(frame_, known_.map, 0, 0, options_).motion, 0.2, 1e-9);
+  std::vector<float> depths = view_.features->depth;
+  std::erase_if(depths, [](float z) { return z <= 0; });
+  std::ranges::sort(depths);
+  const double depth = depths[depths.size() / 2];
+  frame_.world_from_camera.translation().x() += 0.1 * depth;
+  EXPECT_NEAR(tracking_quality(frame_, known_.map, 0, 0, options_).motion, 0.3, 1e-6);
 }
 
 TEST_F(TrackingQualityTest, WithoutReferenceThereIsNothingToCompareWith) {
