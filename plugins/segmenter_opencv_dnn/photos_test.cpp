@@ -112,7 +112,7 @@ TEST_F(Photos, PersonNetwork) {
                      .mean = {128}};
   options.rule.result = ResultKind::kLogit;
   options.rule.margin = -0.25;
-  EXPECT_NEAR(total_iou(options), 0.705, kTolerance);
+  EXPECT_NEAR(total_iou(options), 0.798, kTolerance);
   options.rule.margin = -0.75;
   EXPECT_NEAR(total_iou(options), 0.775, kTolerance);
 }
