@@ -33,7 +33,7 @@ class OctomapBackend final : public MapBackend {
     double least = 0.12;          ///< probabilities are clamped, so that things may appear
     double most = 0.97;           ///< and disappear again
     double occupied_above = 0.5;  ///< probability
-    double tolerance = 0.25;      ///< voxels that key frames may move before they are fused again
+    double tolerance = 0.5;       ///< voxels that key frames may move before they are fused again
     double noise = 0.002;         ///< metres at 1 m; of depth
     int stride = 0;               ///< px; 0 = by resolution and range
     int min_weight = 128;         ///< of StaticWeights::map
