@@ -27,22 +27,14 @@ cv::Rect pixels_of(const cv::Rect2f& box, cv::Size image) {
   return cv::Rect(first, end) & cv::Rect({}, image);
 }
 
-/// The size and box of what better objects have left of each; too small ones are removed.
-void measure_objects(Segmentation& segmentation, int min_pixels) {
-  std::vector<SegmentedObject> kept;
+/// The size and box of what better objects have left of each.
+void measure_objects(Segmentation& segmentation) {
   for (std::size_t i = 0; i < segmentation.objects.size(); ++i) {
-    SegmentedObject object = segmentation.objects[i];
+    SegmentedObject& object = segmentation.objects[i];
     const cv::Mat mask = segmentation.instances(object.box) == static_cast<double>(i + 1);
     object.pixels = cv::countNonZero(mask);
-    const bool large = object.pixels >= std::max(1, min_pixels);
-    segmentation.instances(object.box)
-        .setTo(large ? static_cast<double>(kept.size() + 1) : 0, mask);
-    if (!large) segmentation.labels(object.box).setTo(0, mask);
-    if (!large) continue;
-    object.box = cv::boundingRect(mask) + object.box.tl();
-    kept.push_back(object);
+    if (object.pixels > 0) object.box = cv::boundingRect(mask) + object.box.tl();
   }
-  segmentation.objects = std::move(kept);
 }
 
 cv::Mat mirrored(const cv::Mat& image) {
@@ -88,8 +80,12 @@ void OpenCvDnnSegmenter::Options::visit(OptionVisitor& v) {
   v("margin", rule.margin, {.help = "lead that a class's logit needs over the background's"});
   v("refine", refinement, {.help = "guided filter that brings scores to the edges of the image"});
   v("boxes", boxes, {.help = "how boxes become masks"});
-  v("min_object_pixels", min_object_pixels,
+  v("min_object_pixels", smallest.pixels,
     {.min = 1, .unit = "px", .help = "smaller parts of a class are background"});
+  v("min_object_area", smallest.area,
+    {.min = 0,
+     .unit = "m^2",
+     .help = "parts of a class of which less than this is seen, by depth, are background"});
   v("mirror", mirror,
     {.help = "every second image is seen left for right, and its labels are turned back"});
   v("threads", threads,
@@ -186,7 +182,8 @@ Segmentation OpenCvDnnSegmenter::from_scores(const cv::Mat& output, const Frame&
         CellGrid(options_.cells, planes.front().size(), network_.input_size(), frame.bgr.size());
   Segmentation result;
   result.labels = label_pixels(competing(planes, options_.rule), grid_);
-  find_objects(result, options_.min_object_pixels);
+  find_objects(result, options_.smallest.pixels);
+  remove_small_objects(result, frame, options_.smallest);
   if (!result.objects.empty())
     score_objects(result, probabilities(planes, options_.rule.result), grid_);
   return result;
@@ -207,7 +204,8 @@ Segmentation OpenCvDnnSegmenter::from_boxes(std::vector<Detection> found,
     result.labels(box).setTo(detection.label, mask);
     result.instances(box).setTo(static_cast<double>(result.objects.size()), mask);
   }
-  measure_objects(result, options_.min_object_pixels);
+  measure_objects(result);
+  remove_small_objects(result, frame, options_.smallest);
   return result;
 }
 

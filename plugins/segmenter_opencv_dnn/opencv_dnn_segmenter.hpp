@@ -9,6 +9,7 @@
 #include "segmenter_opencv_dnn/detections.hpp"
 #include "segmenter_opencv_dnn/guided_filter.hpp"
 #include "segmenter_opencv_dnn/network.hpp"
+#include "segmenter_opencv_dnn/small_objects.hpp"
 #include "stillpoint/sdk.hpp"
 
 namespace stillpoint {
@@ -23,7 +24,7 @@ class OpenCvDnnSegmenter final : public Segmenter {
     std::vector<std::string> classes = {"person"};  ///< one: the name of a list
     RefinementOptions refinement;
     BoxMaskOptions boxes;
-    int min_object_pixels = 200;
+    SmallestObject smallest;
     bool mirror = false;  ///< every second image; what is overlooked one way may be seen the other
     int threads = 0;      ///< of OpenCV, in the whole process; 0: as many as the runtime allows
 

@@ -18,7 +18,7 @@ Options with(const NetworkOptions& network, ResultKind result, std::vector<std::
   options.network = network;
   options.rule.result = result;
   options.classes = std::move(classes);
-  options.min_object_pixels = 1;
+  options.smallest.pixels = 1;
   return options;
 }
 
@@ -181,7 +181,7 @@ TEST(OpenCvDnnSegmenter, SmallObjectsAreBackground) {
   const testing::TemporaryFolder folder;
   Options options = with(caffe_network(folder, subsampling(1), {4, 4}), ResultKind::kClassLogits,
                          {"background", "cat", "dog"});
-  options.min_object_pixels = 3;
+  options.smallest.pixels = 3;
   Frame frame;
   frame.bgr = cv::Mat(4, 4, CV_8UC3, cv::Scalar::all(0));
   frame.bgr(cv::Rect(0, 0, 1, 2)).setTo(cv::Scalar(0, 255, 0));

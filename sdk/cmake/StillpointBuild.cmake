@@ -68,7 +68,8 @@ endfunction()
 
 # stillpoint_add_project_plugin(NAME LINK libraries…): a plugin of this project from the sources in
 # the current folder: a static library with everything but plugin.cpp (for tests and tools), the
-# plugin itself, and a test program from *_test.cpp.
+# plugin itself, and a test program from *_test.cpp. What is in its folder `models` comes along beside
+# the plugin.
 function(stillpoint_add_project_plugin name)
   cmake_parse_arguments(ARG "" "" "LINK" ${ARGN})
   file(GLOB sources CONFIGURE_DEPENDS *.cpp)
@@ -93,5 +94,30 @@ function(stillpoint_add_project_plugin name)
 
   if(tests)
     stillpoint_add_tests(${name}_test SOURCES ${tests} LINK ${name}_code)
+  endif()
+  stillpoint_ship_models(${name})
+endfunction()
+
+# Copies the networks of the current folder's `models`, in the build tree as in an installation, and
+# compares them with their PROVENANCE.md in a test.
+function(stillpoint_ship_models name)
+  file(GLOB models CONFIGURE_DEPENDS models/*)
+  if(NOT models)
+    return()
+  endif()
+  foreach(model IN LISTS models)
+    get_filename_component(file ${model} NAME)
+    set(copy ${file})
+    if(file MATCHES "^(LICENSE|PROVENANCE)")  # every plugin has its own
+      set(copy ${name}_${file})
+    endif()
+    configure_file(${model} ${PROJECT_BINARY_DIR}/lib/stillpoint/plugins/models/${copy} COPYONLY)
+    install(FILES ${model} RENAME ${copy}
+      DESTINATION ${CMAKE_INSTALL_LIBDIR}/stillpoint/plugins/models)
+  endforeach()
+  if(STILLPOINT_BUILD_TESTS)
+    add_test(NAME Models.${name}.AreThoseOfTheirProvenance
+      COMMAND ${CMAKE_COMMAND} -DMODELS=${CMAKE_CURRENT_SOURCE_DIR}/models
+        -P ${PROJECT_SOURCE_DIR}/sdk/cmake/CheckModels.cmake)
   endif()
 endfunction()

@@ -1,7 +1,7 @@
 # Every network in MODELS is the one that PROVENANCE.md describes: a merge can bring back an older
 # file without a word.
 file(READ ${MODELS}/PROVENANCE.md provenance)
-file(GLOB networks ${MODELS}/*.onnx)
+file(GLOB networks ${MODELS}/*.onnx ${MODELS}/*.caffemodel)
 if(NOT networks)
   message(FATAL_ERROR "${MODELS}: no network")
 endif()
