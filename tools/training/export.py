@@ -55,9 +55,13 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument('checkpoint', type=Path, help='checkpoint.pt of a training')
     parser.add_argument('file', type=Path, help='to write: .onnx, or .caffemodel for a SegNet')
+    parser.add_argument('--size', type=int, nargs=2, metavar=('WIDTH', 'HEIGHT'),
+                        help='of the input, where that in use is not wanted; 32 divides both')
     args = parser.parse_args()
     network = averaged_network(args.checkpoint)
-    size = KINDS['segnet' if isinstance(network, SegNet) else 'person'].size
+    size = args.size or KINDS['segnet' if isinstance(network, SegNet) else 'person'].size
+    if min(size) < 32 or any(side % 32 for side in size):
+        parser.error('--size: 32 must divide both sides')
     needed = '.caffemodel' if isinstance(network, SegNet) else '.onnx'
     if args.file.suffix != needed:
         parser.error(f'{args.checkpoint} is of a network whose file ends in {needed}')

@@ -191,6 +191,14 @@ class TrainedSegNet(unittest.TestCase):
             self.assertTrue(torch.allclose(network(image), copy(image), atol=1e-4))
         self.assertEqual(caffe_files.input_size(self.caffe), (256, 192))
 
+    def test_a_segnet_may_have_another_size(self):
+        other = self.work.parent / 'other.caffemodel'
+        call('export.py', self.full / 'checkpoint.pt', other, '--size', 160, 128)
+        self.assertEqual(caffe_files.input_size(other), (160, 128))
+        self.assertEqual(other.read_bytes(), self.caffe.read_bytes())
+        with self.assertRaisesRegex(AssertionError, '32 must divide'):
+            call('export.py', self.full / 'checkpoint.pt', other, '--size', 160, 120)
+
     def test_a_segnet_is_evaluated_with_its_classes(self):
         said = call('evaluate.py', self.caffe, '--work', self.work)
         self.assertIn('clothing, held out', said)
