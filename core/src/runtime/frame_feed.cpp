@@ -5,19 +5,16 @@
 #include <mutex>
 #include <utility>
 
-#include "stillpoint/error.hpp"
+#include "stillpoint/runtime/stage_results.hpp"
 
 namespace stillpoint {
 namespace {
 
 constexpr std::size_t kFramesAhead = 2;
 
-std::optional<Frame> next_of(Source& source) {
+std::optional<Frame> next_of(Source& source, std::uint32_t index, const Frame* previous) {
   std::optional<Frame> frame = source.next();
-  if (frame &&
-      (frame->bgr.size() != frame->gray.size() || frame->depth.size() != frame->gray.size()))
-    throw Error(Fault::kStage, "the colour, grey and depth images of a frame differ in size", "",
-                "the source must give all three, of the camera's size");
+  if (frame) check_frame(*frame, index, previous);
   return frame;
 }
 
@@ -67,13 +64,14 @@ FramePtr FrameFeed::next() {
 
 FramePtr FrameFeed::read() {
   ScopedTime time(times_, "source", frames_read_);
-  std::optional<Frame> frame = source_.call_unmeasured(frames_read_, next_of);
+  std::optional<Frame> frame =
+      source_.call_unmeasured(frames_read_, next_of, frames_read_, previous_.get());
   if (!frame) {
     time.discard();  // the end is no frame
     return nullptr;
   }
   ++frames_read_;
-  return std::make_shared<const Frame>(std::move(*frame));
+  return previous_ = std::make_shared<const Frame>(std::move(*frame));
 }
 
 void FrameFeed::work() {

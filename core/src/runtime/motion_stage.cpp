@@ -2,7 +2,25 @@
 
 #include <utility>
 
+#include "stillpoint/runtime/stage_results.hpp"
+
 namespace stillpoint {
+namespace {
+
+MovingPoints check_motion(MovingChecker& checker, const Frame& previous, const Frame& frame) {
+  MovingPoints found = checker.check(previous, frame);
+  check_moving_points(found);
+  return found;
+}
+
+MapEvidence compare(MapChecker& checker, const Frame& frame, std::span<const Pose> guesses,
+                    const SparseMap& map) {
+  MapEvidence found = checker.check(frame, guesses, map);
+  check_evidence(found);
+  return found;
+}
+
+}  // namespace
 
 MotionStage::MotionStage(Stage<MovingChecker> moving_checker, Stage<MapChecker> map_checker,
                          SegmentationStage& segmentation, Mode mode, StopSignal& stop,
@@ -46,7 +64,7 @@ void MotionStage::find(const Job& job) {
   found_ = {};
   if (previous_)
     found_.points =
-        moving_checker_.call("moving_check", frame.index, &MovingChecker::check, *previous_, frame);
+        moving_checker_.call("moving_check", frame.index, check_motion, *previous_, frame);
   found_.evidence = compare_with_map(job);
   found_.labels = segmentation_.at(job.frame);  // waits (paper), or propagates the newest
   previous_ = job.frame;
@@ -59,7 +77,7 @@ MapEvidence MotionStage::compare_with_map(const Job& job) {
     map_checker_.call("map_check", index, &MapChecker::remember, *tracked);
   const std::vector<Pose> guesses = prediction_.guesses(job.frame->time, found_.points, *job.map);
   if (guesses.empty()) return {};
-  return map_checker_.call("map_check", index, &MapChecker::check, *job.frame, guesses, *job.map);
+  return map_checker_.call("map_check", index, compare, *job.frame, guesses, *job.map);
 }
 
 }  // namespace stillpoint

@@ -3,6 +3,8 @@
 #include <string>
 #include <utility>
 
+#include "stillpoint/runtime/stage_results.hpp"
+
 namespace stillpoint {
 namespace {
 
@@ -13,6 +15,20 @@ std::string message_of(const std::exception_ptr& failure) {
   } catch (const std::exception& error) {
     return error.what();
   }
+}
+
+StaticWeights decide(Decision& decision, const Frame& frame, const Segmentation& labels,
+                     const MovingPoints& moving, const MapEvidence& evidence) {
+  StaticWeights weights = decision.decide(frame, labels, moving, evidence);
+  check_weights(weights, labels, frame.gray.size());
+  return weights;
+}
+
+TrackResult track(Tracker& tracker, const FramePtr& frame, const StaticWeights& weights,
+                  const SparseMap& map, TrackHints hints, KeyFrameId next_keyframe) {
+  TrackResult result = tracker.track(frame, weights, map, hints);
+  check_tracking(result, *frame, map, next_keyframe);
+  return result;
 }
 
 NewKeyFrame new_keyframe(const KeyFrame& keyframe, const FramePtr& frame,
@@ -39,6 +55,7 @@ Pipeline::Pipeline(Stages stages, const RuntimeOptions& runtime,
       mapping_(std::move(stages.local_mapper), std::move(stages.loop_closer),
                std::move(stages.map_backend), std::move(stages.known_map), runtime.mode, stop_,
                times_) {
+  next_keyframe_ = static_cast<KeyFrameId>(mapping_.snapshot()->keyframe_id_end());
   for (Stage<Output>& output : stages.outputs)
     outputs_.emplace_back(std::move(output), "output", times_);
 }
@@ -66,10 +83,10 @@ void Pipeline::process(const FramePtr& frame) {
   const auto [moving, evidence, labels] = motion_.at(frame);
   if (!labels) return;  // stopped meanwhile
   const auto weights = std::make_shared<const StaticWeights>(
-      decision_.call("decision", index, &Decision::decide, *frame, *labels, moving, evidence));
-  const auto result =
-      tracker_.call("track", index, &Tracker::track, frame, *weights, *mapping_.snapshot(),
-                    TrackHints{mapping_.waiting(), localise_only_});
+      decision_.call("decision", index, decide, *frame, *labels, moving, evidence));
+  const auto result = tracker_.call("track", index, track, frame, *weights, *mapping_.snapshot(),
+                                    TrackHints{mapping_.waiting(), localise_only_}, next_keyframe_);
+  if (result.keyframe) ++next_keyframe_;
   if (result.keyframe) mapping_.push(new_keyframe(*result.keyframe, frame, labels, weights));
   motion_.tracked(frame, weights, result, mapping_.snapshot());
   report({*frame, *labels, moving, evidence, *weights, result, times_.take()});

@@ -2,27 +2,15 @@
 
 #include <algorithm>
 #include <array>
-#include <opencv2/core.hpp>
-#include <string>
 #include <utility>
 
-#include "stillpoint/error.hpp"
 #include "stillpoint/objects.hpp"
-#include "stillpoint/size_text.hpp"
+#include "stillpoint/runtime/stage_results.hpp"
 
 namespace stillpoint {
 namespace {
 
 constexpr int kMinObjectPixels = 1;  // segmenters that name no objects have all of them named
-
-void check_image(const cv::Mat& image, cv::Size frame, const std::string& what) {
-  if (image.type() == CV_8UC1 && image.size() == frame) return;
-  const std::string type = image.type() == CV_8UC1 ? "" : " of " + cv::typeToString(image.type());
-  throw Error(Fault::kStage,
-              what + " have " + size_text(image.size()) + " pixels" + type +
-                  ", but the frame has " + size_text(frame),
-              "", "the segmenter must give one byte per pixel of the frame");
-}
 
 /// The share of the image that one class has, at most.
 double largest_share(const Segmentation& segmentation) {
@@ -32,20 +20,17 @@ double largest_share(const Segmentation& segmentation) {
   return std::ranges::max(pixels) / static_cast<double>(segmentation.labels.total());
 }
 
-Segmentation segment(Segmenter& segmenter, const Frame& frame) {
+Segmentation segment(Segmenter& segmenter, const Frame& frame, std::size_t classes) {
   Segmentation found = segmenter.segment(frame);
-  if (!found.known()) return found;
-  check_image(found.labels, frame.gray.size(), "the labels");
-  if (found.instances.empty()) return found;
-  check_image(found.instances, frame.gray.size(), "the instances");
-  double highest = 0;
-  cv::minMaxLoc(found.instances, nullptr, &highest);
-  if (highest > static_cast<double>(found.objects.size()))
-    throw Error(Fault::kStage,
-                "a pixel belongs to object " + std::to_string(static_cast<int>(highest)) + " of " +
-                    std::to_string(found.objects.size()),
-                "", "the segmenter must number its instances from 1, as in its list of objects");
+  check_segmentation(found, frame.gray.size(), classes);
   return found;
+}
+
+Segmentation propagate(Propagator& propagator, const Segmentation& labels, const Frame& from,
+                       const Frame& to, std::size_t classes) {
+  Segmentation moved = propagator.propagate(labels, from, to);
+  check_segmentation(moved, to.gray.size(), classes);
+  return moved;
 }
 
 }  // namespace
@@ -58,6 +43,7 @@ SegmentationStage::SegmentationStage(Stage<Segmenter> segmenter, Stage<Propagato
       times_(times),
       segmenter_(std::move(segmenter), "segmentation", times),
       propagator_(std::move(propagator), "propagation", times),
+      classes_(segmenter_.object().classes().size()),
       network_(segmenter_.present() ? mode : Mode::kInline, 1, stop,
                [this](FramePtr frame) { segment(taken(std::move(frame))); }) {}
 
@@ -77,7 +63,7 @@ SegmentationPtr SegmentationStage::at(const FramePtr& frame) {
   const Labelled newest = wait_for(frame);
   if (!newest.frame) return nullptr;
   auto labels = std::make_shared<const Segmentation>(propagator_.call(
-      "propagate", frame->index, &Propagator::propagate, *newest.labels, *newest.frame, *frame));
+      "propagate", frame->index, propagate, *newest.labels, *newest.frame, *frame, classes_));
   unlabelled_ += segmenter_.present() && !labels->known() ? 1 : 0;
   return labels;
 }
@@ -98,7 +84,8 @@ void SegmentationStage::segment(FramePtr frame) {
 
 Segmentation SegmentationStage::labels_of(const Frame& frame) {
   try {
-    Segmentation labels = segmenter_.call("segmentation", frame.index, stillpoint::segment, frame);
+    Segmentation labels =
+        segmenter_.call("segmentation", frame.index, stillpoint::segment, frame, classes_);
     if (!labels.known()) return labels;
     if (labels.instances.empty()) find_objects(labels, kMinObjectPixels);
     // Nothing would be left to track by, and there is hardly such a thing.

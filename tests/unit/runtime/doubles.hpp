@@ -61,7 +61,7 @@ class Journal {
 };
 
 inline Frame make_frame(std::uint32_t index) {
-  static const auto camera = std::make_shared<const Camera>();
+  static const auto camera = std::make_shared<const Camera>(Camera{.width = 1, .height = 1});
   return {.index = index,
           .time = 10.0 + 0.1 * index,
           .bgr = cv::Mat(1, 1, CV_8UC3, cv::Scalar::all(0)),
@@ -152,7 +152,7 @@ class FakeDecision final : public Decision {
   StaticWeights decide(const Frame& frame, const Segmentation& segmentation, const MovingPoints&,
                        const MapEvidence&) override {
     journal_.write("decide", frame.index);
-    return {.object_moves = std::vector<bool>(segmentation.known() ? 1 : 0, true)};
+    return {.object_moves = std::vector<bool>(segmentation.objects.size(), true)};
   }
 
  private:
@@ -174,6 +174,7 @@ class FakeTracker final : public Tracker {
     if (frame->index % spacing_ == 0) {
       KeyFrame keyframe{.id = next_id_++, .frame = frame->index, .time = frame->time};
       keyframe.world_from_camera = pose;
+      keyframe.camera = frame->camera;
       keyframe.features = std::make_shared<const Features>();
       reference_ = keyframe;
       result.keyframe = std::move(keyframe);

@@ -43,6 +43,7 @@ class FrameFeed {
   TimeLog& times_;
   StageCaller<Source> source_;
   std::uint32_t frames_read_ = 0;
+  FramePtr previous_;  // the last one read
   std::size_t dropped_ = 0;
   double clock_ahead_ = 0.0;    // seconds from the recording's time to that of the clock
   std::exception_ptr failure_;  // written before the queue is closed, read after

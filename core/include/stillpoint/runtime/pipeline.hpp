@@ -46,6 +46,7 @@ class Pipeline {
   StageCaller<Tracker> tracker_;
   std::vector<StageCaller<Output>> outputs_;
 
+  KeyFrameId next_keyframe_ = 0;
   std::vector<TrackedPose> poses_;
   double wall_seconds_ = 0.0;
   double cpu_seconds_ = 0.0;

@@ -56,6 +56,7 @@ class SegmentationStage {
   TimeLog& times_;
   StageCaller<Segmenter> segmenter_;
   StageCaller<Propagator> propagator_;
+  const std::size_t classes_;  // of the segmenter
 
   std::mutex mutex_;
   std::condition_variable_any changed_;

@@ -1,0 +1,216 @@
+// Results as a plugin written in haste would give them: each is refused, with what is wrong and
+// what to do.
+#include "stillpoint/runtime/stage_results.hpp"
+
+#include <gmock/gmock.h>
+
+#include <functional>
+#include <limits>
+#include <opencv2/core.hpp>
+
+#include "stillpoint/error.hpp"
+
+namespace stillpoint {
+namespace {
+
+using ::testing::HasSubstr;
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+const cv::Size kSize(4, 3);
+constexpr std::size_t kClasses = 3;
+
+std::string message_of(const std::function<void()>& check) {
+  try {
+    check();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.fault(), Fault::kStage);
+    return error.what();
+  }
+  return "";
+}
+
+Frame right_frame(std::uint32_t index = 0) {
+  return {.index = index,
+          .time = 5.0 + index,
+          .bgr = cv::Mat(kSize, CV_8UC3, cv::Scalar::all(0)),
+          .gray = cv::Mat(kSize, CV_8UC1, cv::Scalar(0)),
+          .depth = cv::Mat(kSize, CV_32FC1, cv::Scalar(1)),
+          .camera = std::make_shared<const Camera>(Camera{.width = 4, .height = 3})};
+}
+
+struct FrameFault {
+  const char* name;
+  std::function<void(Frame&)> spoil;
+  const char* message;
+};
+
+class WrongFrame : public ::testing::TestWithParam<FrameFault> {};
+
+TEST_P(WrongFrame, IsRefused) {
+  const Frame previous = right_frame(6);
+  Frame frame = right_frame(7);
+  ASSERT_EQ(message_of([&] { check_frame(frame, 7, &previous); }), "");
+  GetParam().spoil(frame);
+  EXPECT_THAT(message_of([&] { check_frame(frame, 7, &previous); }), HasSubstr(GetParam().message));
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    StageResults, WrongFrame,
+    ::testing::Values(
+        FrameFault{"Index", [](Frame& f) { f.index = 9; }, "has index 9; indices count from 0"},
+        FrameFault{"NanTime", [](Frame& f) { f.time = kNan; }, "time of the frame is not finite"},
+        FrameFault{"Backwards", [](Frame& f) { f.time = 10.5; }, "0.500000 s older than the one"},
+        FrameFault{"NoImage", [](Frame& f) { f.gray.release(); }, "the frame has no image"},
+        FrameFault{"NoDepth", [](Frame& f) { f.depth.release(); }, "images of a frame differ"},
+        FrameFault{"DepthType", [](Frame& f) { f.depth = cv::Mat(kSize, CV_16UC1, 1.0); },
+                   "the depth image is of CV_16UC1; it must be of CV_32FC1"},
+        FrameFault{"ColourType", [](Frame& f) { f.bgr = cv::Mat(kSize, CV_8UC4); },
+                   "the colour image is of CV_8UC4"},
+        FrameFault{"NoCamera", [](Frame& f) { f.camera = nullptr; }, "the frame has no camera"},
+        FrameFault{"OtherCamera", [](Frame& f) { f.camera = std::make_shared<const Camera>(); },
+                   "the images have 4 x 3 pixels, the camera 640 x 480"},
+        FrameFault{"OtherSize",
+                   [](Frame& f) {
+                     f.camera = std::make_shared<const Camera>(Camera{.width = 2, .height = 2});
+                     f.bgr = cv::Mat(2, 2, CV_8UC3);
+                     f.gray = cv::Mat(2, 2, CV_8UC1);
+                     f.depth = cv::Mat(2, 2, CV_32FC1);
+                   },
+                   "another size than those before"}),
+    [](const auto& test) { return test.param.name; });
+
+Segmentation right_labels() {
+  Segmentation labels{.labels = cv::Mat::zeros(kSize, CV_8UC1),
+                      .instances = cv::Mat::zeros(kSize, CV_8UC1)};
+  labels.labels(cv::Rect(1, 1, 2, 1)).setTo(2);
+  labels.instances(cv::Rect(1, 1, 2, 1)).setTo(1);
+  labels.objects = {{.label = 2, .box = {1, 1, 2, 1}, .pixels = 2}};
+  return labels;
+}
+
+struct LabelFault {
+  const char* name;
+  std::function<void(Segmentation&)> spoil;
+  const char* message;
+};
+
+class WrongLabels : public ::testing::TestWithParam<LabelFault> {};
+
+TEST_P(WrongLabels, AreRefused) {
+  Segmentation labels = right_labels();
+  ASSERT_EQ(message_of([&] { check_segmentation(labels, kSize, kClasses); }), "");
+  GetParam().spoil(labels);
+  EXPECT_THAT(message_of([&] { check_segmentation(labels, kSize, kClasses); }),
+              HasSubstr(GetParam().message));
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    StageResults, WrongLabels,
+    ::testing::Values(
+        LabelFault{"Size", [](Segmentation& s) { s.labels = cv::Mat::zeros(3, 3, CV_8UC1); },
+                   "the labels have 3 x 3 pixels, but the frame has 4 x 3"},
+        LabelFault{"Type", [](Segmentation& s) { s.labels = cv::Mat::zeros(kSize, CV_32SC1); },
+                   "pixels of CV_32SC1"},
+        LabelFault{"Class", [](Segmentation& s) { s.labels.at<std::uint8_t>(0) = 3; },
+                   "a pixel has label 3, but there are 3 classes"},
+        LabelFault{"Instance", [](Segmentation& s) { s.instances.at<std::uint8_t>(0) = 2; },
+                   "belongs to object 2 of 1"},
+        LabelFault{"Object", [](Segmentation& s) { s.objects[0].label = 3; },
+                   "an object has label 3 of 3 classes"},
+        LabelFault{"Background", [](Segmentation& s) { s.objects[0].label = 0; },
+                   "an object has label 0"},
+        LabelFault{"Box", [](Segmentation& s) { s.objects[0].box.x = 3; },
+                   "the box of an object is not in the image"}),
+    [](const auto& test) { return test.param.name; });
+
+TEST(StageResults, LabelsThatAreNotKnownAreRight) {
+  EXPECT_EQ(message_of([] { check_segmentation({}, kSize, 0); }), "");
+}
+
+TEST(StageResults, WrongWeightsAreRefused) {
+  const Segmentation labels = right_labels();
+  const auto message = [&](const StaticWeights& weights) {
+    return message_of([&] { check_weights(weights, labels, kSize); });
+  };
+  EXPECT_EQ(message({}), "");
+  EXPECT_EQ(message({.track = cv::Mat(kSize, CV_8UC1), .object_moves = {true}}), "");
+  EXPECT_THAT(message({.track = cv::Mat(2, 4, CV_8UC1)}), HasSubstr("the weights have 4 x 2"));
+  EXPECT_THAT(message({.map = cv::Mat(kSize, CV_32FC1)}), HasSubstr("pixels of CV_32FC1"));
+  EXPECT_THAT(message({.object_moves = {true, false}}),
+              HasSubstr("2 objects are judged, but there are 1"));
+}
+
+TEST(StageResults, WrongMotionAndEvidenceAreRefused) {
+  MovingPoints moving{.points = {{.previous = {1, 2}, .current = {1, 2}}}, .reliable = true};
+  EXPECT_EQ(message_of([&] { check_moving_points(moving); }), "");
+  moving.points[0].current.y = static_cast<float>(kNan);
+  EXPECT_THAT(message_of([&] { check_moving_points(moving); }), HasSubstr("a point is not finite"));
+  moving = {.camera_motion = Pose(Eigen::Scaling(2.0))};
+  EXPECT_THAT(message_of([&] { check_moving_points(moving); }), HasSubstr("no rigid motion"));
+  EXPECT_EQ(message_of([] { check_evidence({}); }), "");
+  EXPECT_THAT(message_of([] { check_evidence({cv::Mat(1, 1, CV_64FC1)}); }),
+              HasSubstr("the evidence is of CV_64FC1"));
+}
+
+TrackResult right_result(const Frame& frame) {
+  TrackResult result{.state = TrackState::kTracking, .reference = 3};
+  KeyFrame keyframe{.id = 3, .frame = frame.index, .camera = frame.camera};
+  keyframe.features = std::make_shared<const Features>(
+      Features{.keypoints = {{}, {}}, .descriptors = {{}, {}}, .depth = {1, 1}});
+  keyframe.track_weights = keyframe.map_weights = {255, 255};
+  keyframe.landmarks = {kNoId, kNoId};
+  result.keyframe = keyframe;
+  return result;
+}
+
+struct TrackFault {
+  const char* name;
+  std::function<void(TrackResult&)> spoil;
+  const char* message;
+};
+
+class WrongTracking : public ::testing::TestWithParam<TrackFault> {};
+
+TEST_P(WrongTracking, IsRefused) {
+  const Frame frame = right_frame(7);
+  TrackResult result = right_result(frame);
+  const auto message = [&] { return message_of([&] { check_tracking(result, frame, {}, 3); }); };
+  ASSERT_EQ(message(), "");
+  GetParam().spoil(result);
+  EXPECT_THAT(message(), HasSubstr(GetParam().message));
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    StageResults, WrongTracking,
+    ::testing::Values(
+        TrackFault{"NanPose", [](TrackResult& r) { r.world_from_camera.translation().x() = kNan; },
+                   "the pose is no rigid motion"},
+        TrackFault{"Scaled", [](TrackResult& r) { r.reference_from_camera.linear() *= 1.1; },
+                   "the pose is no rigid motion"},
+        TrackFault{"NoReference", [](TrackResult& r) { r.reference = kNoId; },
+                   "the reference is key frame kNoId of 4"},
+        TrackFault{"ReferenceToCome", [](TrackResult& r) { r.reference = 4; },
+                   "the reference is key frame 4 of 4"},
+        TrackFault{"Id", [](TrackResult& r) { r.keyframe->id = 2; },
+                   "the key frame has id 2, but the next one is 3"},
+        TrackFault{"Frame", [](TrackResult& r) { r.keyframe->frame = 6; }, "is of frame 6"},
+        TrackFault{"Camera", [](TrackResult& r) { r.keyframe->camera = nullptr; },
+                   "the key frame has no camera"},
+        TrackFault{"Features", [](TrackResult& r) { r.keyframe->features = nullptr; },
+                   "the key frame has no features"},
+        TrackFault{"Weights", [](TrackResult& r) { r.keyframe->map_weights.pop_back(); },
+                   "has 2 keypoints, but 1 descriptors, depths, weights or landmarks"},
+        TrackFault{"Landmark", [](TrackResult& r) { r.keyframe->landmarks[0] = 0; },
+                   "sees a landmark that is not in the map"},
+        TrackFault{"KeyFramePose",
+                   [](TrackResult& r) { r.keyframe->world_from_camera.matrix()(0, 0) = kNan; },
+                   "the pose of the key frame is no rigid motion"}),
+    [](const auto& test) { return test.param.name; });
+
+TEST(StageResults, WhoIsLostNeedsNoPose) {
+  TrackResult result{.state = TrackState::kLost};
+  result.world_from_camera.translation().x() = kNan;
+  EXPECT_EQ(message_of([&] { check_tracking(result, right_frame(), {}, 0); }), "");
+}
+
+}  // namespace
+}  // namespace stillpoint
