@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <set>
 #include <thread>
 
@@ -220,6 +221,58 @@ TEST_P(PipelineInBothModes, FramesWithoutDepthAreTheSourcesFault) {
                  "differ in size; the source must give all three, of the camera's size");
   }
   EXPECT_EQ(f.output->finished, 1);
+}
+
+/// Right for three frames, then without a pose.
+class TrackerThatDiverges final : public Tracker {
+ public:
+  explicit TrackerThatDiverges(testing::Journal& journal) : tracker_(journal) {}
+  void prepare(FramePtr frame) override { tracker_.prepare(frame); }
+  TrackResult track(FramePtr frame, const StaticWeights& weights, const SparseMap& map,
+                    TrackHints hints) override {
+    TrackResult result = tracker_.track(frame, weights, map, hints);
+    if (frame->index == 3) result.world_from_camera.translation().x() = std::nan("");
+    return result;
+  }
+
+ private:
+  testing::FakeTracker tracker_;
+};
+
+/// Judges pixels of another image.
+class DecisionOnAnotherImage final : public Decision {
+ public:
+  StaticWeights decide(const Frame&, const Segmentation&, const MovingPoints&,
+                       const MapEvidence&) override {
+    return {.track = cv::Mat::zeros(2, 2, CV_8UC1)};
+  }
+};
+
+TEST_P(PipelineInBothModes, WrongResultsEndTheRunWithTheStageThatGaveThem) {
+  const auto message = [](Fixture& f, Stages stages) -> std::string {
+    try {
+      Pipeline(std::move(stages), runtime(GetParam()), {}).run();
+    } catch (const StageError& error) {
+      EXPECT_EQ(f.output->finished, 1);
+      EXPECT_EQ(f.output->failure, error.what());
+      return error.what();
+    }
+    return "no exception";
+  };
+  Fixture diverging;
+  Stages stages = diverging.stages();
+  stages.tracker = {std::make_shared<TrackerThatDiverges>(diverging.journal), "mine"};
+  EXPECT_EQ(
+      message(diverging, std::move(stages)),
+      "tracking (mine) failed on frame 3: the pose is no rigid motion; it must be finite, with "
+      "an orthonormal rotation; say kLost where there is none");
+  EXPECT_EQ(diverging.output->poses.size(), 3u);
+  Fixture misjudging;
+  stages = misjudging.stages();
+  stages.decision = {std::make_shared<DecisionOnAnotherImage>(), "mine"};
+  EXPECT_EQ(message(misjudging, std::move(stages)),
+            "decision (mine) failed on frame 0: the weights have 2 x 2 pixels, but the frame has "
+            "1 x 1; the decision must give one byte per pixel of the frame, or nothing");
 }
 
 TEST_P(PipelineInBothModes, AStopFromAnotherThreadEndsTheRun) {
