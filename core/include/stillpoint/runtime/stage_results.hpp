@@ -1,6 +1,6 @@
 // What stages give, checked where it enters the runtime: a plugin's mistake ends the run with the
 // plugin's name, and never becomes a wrong result or a read out of bounds. All checks of a frame
-// together take less than 0.1 ms. They throw Error(kStage), to be named by the caller (in_stage).
+// together take 0.1 ms. They throw Error(kStage), to be named by the caller (in_stage).
 #pragma once
 
 #include <opencv2/core/types.hpp>
