@@ -80,6 +80,16 @@ TEST_F(BadSetup, UnreadableYaml) {
   expect_refused(run(file.string(), on_recording()), file.string() + ":3:1: error: not valid YAML");
 }
 
+// yaml-cpp takes them for one empty document after the other, without end.
+TEST_F(BadSetup, TextsThatBeginWithAComma) {
+  const fs::path file = folder_.write("comma.yaml", ", a\n");
+  expect_refused(run(file.string(), on_recording()), file.string() + ":1:1: error: not valid YAML");
+  expect_refused(run("orb_baseline", on_recording({"--set", "tracker.features=, a"})),
+                 "not valid YAML: a value is missing");
+  expect_refused(run("orb_baseline", on_recording({"--camera", file.string()})),
+                 file.string() + ":1:1: error: not valid YAML: a value is missing");
+}
+
 TEST_F(BadSetup, RunFolderThatCannotBeWritten) {
   const fs::path file = folder_.write("file", "");
   const Outcome outcome = call({"run", "orb_baseline", "--dataset", simulated_recording().string(),

@@ -1,5 +1,6 @@
 #include "stillpoint/runtime/yaml_loader.hpp"
 
+#include <yaml-cpp/eventhandler.h>
 #include <yaml-cpp/yaml.h>
 
 #include <algorithm>
@@ -7,6 +8,7 @@
 #include <fstream>
 #include <iterator>
 #include <optional>
+#include <sstream>
 #include <utility>
 #include <vector>
 
@@ -87,17 +89,54 @@ class Converter {
   bool too_large_ = false;
 };
 
+/// Where documents begin.
+class DocumentStarts final : public YAML::EventHandler {
+ public:
+  void OnDocumentStart(const YAML::Mark& mark) override { marks.push_back(mark); }
+  void OnDocumentEnd() override {}
+  void OnNull(const YAML::Mark&, YAML::anchor_t) override {}
+  void OnAlias(const YAML::Mark&, YAML::anchor_t) override {}
+  void OnScalar(const YAML::Mark&, const std::string&, YAML::anchor_t,
+                const std::string&) override {}
+  void OnSequenceStart(const YAML::Mark&, const std::string&, YAML::anchor_t,
+                       YAML::EmitterStyle::value) override {}
+  void OnSequenceEnd() override {}
+  void OnMapStart(const YAML::Mark&, const std::string&, YAML::anchor_t,
+                  YAML::EmitterStyle::value) override {}
+  void OnMapEnd() override {}
+
+  std::vector<YAML::Mark> marks;
+};
+
+enum class Documents { kNone, kOne, kSeveral };
+
+/// Throws YAML::ParserException for what is no YAML, also for a text on which YAML::LoadAll never
+/// ends, such as ", a": the parser takes it for one empty document after the other.
+Documents documents_in(const std::string& text) {
+  std::istringstream stream(text);
+  YAML::Parser parser(stream);
+  DocumentStarts starts;
+  if (!parser.HandleNextDocument(starts)) return Documents::kNone;
+  if (!parser.HandleNextDocument(starts)) return Documents::kOne;
+  if (starts.marks[0].pos == starts.marks[1].pos)
+    throw YAML::ParserException(starts.marks[0], "a value is missing");
+  return Documents::kSeveral;
+}
+
 /// One document; nothing after a syntax error, which is added as a fault.
 std::optional<ConfigNode> parse(const std::string& text, Location origin, const fs::path& folder,
                                 FaultList& faults) {
   try {
-    const std::vector<YAML::Node> documents = YAML::LoadAll(text);
-    if (documents.size() > 1) {
-      faults.add(origin, "more than one YAML document ('---') in a file");
-      return std::nullopt;
+    switch (documents_in(text)) {
+      case Documents::kNone:
+        return ConfigNode();
+      case Documents::kOne:
+        return Converter(origin, folder, faults).convert(YAML::Load(text));
+      case Documents::kSeveral:
+        break;
     }
-    if (documents.empty()) return ConfigNode();
-    return Converter(origin, folder, faults).convert(documents.front());
+    faults.add(origin, "more than one YAML document ('---') in a file");
+    return std::nullopt;
   } catch (const YAML::Exception& error) {
     if (origin.line > 0 && !error.mark.is_null())
       origin = {origin.file, error.mark.line + 1, error.mark.column + 1};
