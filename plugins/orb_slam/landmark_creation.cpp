@@ -2,6 +2,7 @@
 
 #include <Eigen/LU>
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "orb_slam/landmark_geometry.hpp"
@@ -12,9 +13,9 @@
 namespace stillpoint::orb {
 namespace {
 
-constexpr double kMinBaselineShare = 0.01;     // of the median depth; less gives no parallax
-constexpr double kMaxParallaxCosine = 0.9998;  // 1.1 degrees
-constexpr double kChiSquare1 = 3.84;           // 95 % bound with one measurement
+constexpr double kMinBaselineShare = 0.01;  // of the median depth; less gives no parallax
+constexpr double kMinParallax = 10.0;       // standard deviations of a feature's direction
+constexpr double kChiSquare1 = 3.84;        // 95 % bound with one measurement
 
 bool wants_landmark(const KeyFrame& keyframe, std::uint32_t i) {
   return keyframe.landmarks[i] == kNoId && keyframe.map_weights[i] >= kMinMapWeight &&
@@ -58,7 +59,8 @@ class ViewPair {
         b_from_world_(b.world_from_camera.inverse()),
         b_from_a_(b_from_world_ * a.world_from_camera),
         essential_(skew(b_from_a_.translation()) * b_from_a_.linear()),
-        pyramid_(*b.features) {}
+        a_pyramid_(*a.features),
+        b_pyramid_(*b.features) {}
 
   double baseline() const { return b_from_a_.translation().norm(); }
 
@@ -66,17 +68,19 @@ class ViewPair {
   bool on_epipolar_line(const Eigen::Vector3d& line, std::uint32_t j) const {
     const Eigen::Vector3d x = ray(b_, j);
     const double distance = line.dot(x) / std::hypot(line.x(), line.y()) * b_.camera->fx;
-    const double sigma = pyramid_.pixel_sigma(b_.features->keypoints[j].octave);
+    const double sigma = b_pyramid_.pixel_sigma(b_.features->keypoints[j].octave);
     return distance * distance <= kChiSquare1 * sigma * sigma;
   }
   Eigen::Vector3d epipolar_line(std::uint32_t i) const { return essential_ * ray(a_, i); }
 
-  /// The point both features see; nothing when the rays are nearly parallel or do not meet.
+  /// The point both features see; nothing when the rays are too nearly parallel to tell its
+  /// distance, or do not meet.
   std::optional<Eigen::Vector3d> intersect(std::uint32_t i, std::uint32_t j) const {
     const Eigen::Vector3d u = a_.world_from_camera.linear() * ray(a_, i).normalized();
     const Eigen::Vector3d v = b_.world_from_camera.linear() * ray(b_, j).normalized();
     const double cosine = u.dot(v);
-    if (cosine > kMaxParallaxCosine) return std::nullopt;
+    if (std::atan2(u.cross(v).norm(), cosine) < kMinParallax * direction_sigma(i, j))
+      return std::nullopt;
     // Midpoint of the shortest segment between the rays.
     const Eigen::Vector3d w =
         b_.world_from_camera.translation() - a_.world_from_camera.translation();
@@ -93,11 +97,17 @@ class ViewPair {
   }
 
  private:
+  /// Radians: of the coarser of two features.
+  double direction_sigma(std::uint32_t i, std::uint32_t j) const {
+    return std::max(a_pyramid_.pixel_sigma(a_.features->keypoints[i].octave) / a_.camera->fx,
+                    b_pyramid_.pixel_sigma(b_.features->keypoints[j].octave) / b_.camera->fx);
+  }
+
   const KeyFrame& a_;
   const KeyFrame& b_;
   Pose a_from_world_, b_from_world_, b_from_a_;
   Eigen::Matrix3d essential_;
-  ScalePyramid pyramid_;
+  ScalePyramid a_pyramid_, b_pyramid_;
 };
 
 void triangulate_pair(MapEdit& edit, KeyFrameId a_id, KeyFrameId b_id,

@@ -122,6 +122,23 @@ TEST_F(TriangulateTest, TooLittleParallaxIsRefused) {
   EXPECT_TRUE(run(pose_at({0.04, 0, 0})).empty());
 }
 
+// The place of a feature of octave k is 1.2^k times as uncertain, and with it the distance.
+TEST_F(TriangulateTest, CoarseFeaturesNeedMoreParallax) {
+  const Pose second = pose_at({0.3, 0, 0});
+  int fine = 0, coarse = 0;
+  for (const LandmarkId id : run(second)) {
+    const Observation& o = edit_.map().landmark(id)->observations.front();
+    const int octave = first_.features->keypoints[o.feature].octave;
+    const Eigen::Vector3d& truth = world_.points()[first_.point[o.feature]].position;
+    const Eigen::Vector3d from_second = truth - second.translation();
+    const double parallax = std::atan2(truth.cross(from_second).norm(), truth.dot(from_second));
+    EXPECT_GT(parallax, 8 * std::pow(1.2, octave) / keyframe_of(first_, 0).camera->fx) << octave;
+    (octave < 4 ? fine : coarse) += 1;
+  }
+  EXPECT_GT(fine, 50);
+  EXPECT_LT(coarse, fine / 4);
+}
+
 TEST_F(TriangulateTest, TurningOnTheSpotGivesNothing) {
   EXPECT_TRUE(run(pose_at({0, 0, 0}, {0, 0.2, 0})).empty());
 }

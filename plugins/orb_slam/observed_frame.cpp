@@ -110,6 +110,13 @@ int ObservedFrame::matched() const {
       std::count_if(landmarks.begin(), landmarks.end(), [](LandmarkId id) { return id != kNoId; }));
 }
 
+int ObservedFrame::fitting() const {
+  int fitting = 0;
+  for (std::size_t i = 0; i < landmarks.size(); ++i)
+    fitting += landmarks[i] != kNoId && !outlier[i];
+  return fitting;
+}
+
 int solve_pose(ObservedFrame& observed, const SparseMap& map, double proving_time,
                KeyFrameId first_keyframe, const PoseTerm& term) {
   const Features& features = *observed.features;

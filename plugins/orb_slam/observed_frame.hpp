@@ -47,6 +47,7 @@ struct ObservedFrame {
   /// Takes away the temporary points.
   void drop_temporary();
   int matched() const;  ///< features with a landmark
+  int fitting() const;  ///< those whose landmark is no outlier
 };
 
 /// Samples depth at the keypoints.

@@ -22,13 +22,13 @@ constexpr double kHeldMetres = 0.010;   // standard deviation of a pose that nee
 constexpr double kHeldRadians = 0.010;  // the same
 constexpr int kMinPatches = 60;         // of 1,200, to hold a pose
 constexpr double kMinKnown = 0.25;      // share of the patches that key frames must know
-constexpr double kMinAgreement = 0.6;   // share of those that must fit
+constexpr double kMinAgreement = 0.6;   // share of those that must fit; the same of landmarks
 constexpr double kNewView = 0.7;        // fewer known patches ask for a key frame
 // A picture with so many features, hardly any of them of the last frame's, is of another place;
 // unless texture only begins again.
 constexpr int kManyFeatures = 500;
 constexpr double kMinShown = 0.1;
-constexpr int kMinLandmarks = 5;        // beside surfaces; fewer may all be wrong
+constexpr int kMinLandmarks = 12;       // beside surfaces; fewer may all be wrong
 constexpr double kFreshVelocity = 0.3;  // share of the newest velocity while surfaces hold
 constexpr double kMotionMetres = 0.5;   // per second: standard deviation of constant velocity
 constexpr double kMotionRadians = 0.5;  // per second, the same
@@ -293,21 +293,33 @@ bool OrbTracker::hold_by_depth(const SparseMap& map) {
   if (current_.matched() < kMinLandmarks) current_.clear_matches();
   const QuadraticCost motion = motion_prior();
   PlaneRegistration registration;
-  solve(map, [&](const Pose& camera_from_world, int round) {
-    registration = register_planes(view, around.views, camera_from_world, reach(round));
-    return registration.cost + motion.moved_to(camera_from_world);
-  });
+  const auto solve_with_surfaces = [&] {
+    solve(map, [&](const Pose& camera_from_world, int round) {
+      registration = register_planes(view, around.views, camera_from_world, reach(round));
+      return registration.cost + motion.moved_to(camera_from_world);
+    });
+  };
+  solve_with_surfaces();
+  // What fits by chance moves a camera along what no surface fixes, and looks as if it knew.
+  if (current_.matched() > 0 && !landmarks_agree()) {
+    current_.clear_matches();
+    current_.world_from_camera = before.world_from_camera;
+    solve_with_surfaces();
+  }
   current_.information -= motion.hessian;
   if (registration.patches < kMinPatches || registration.known() < kMinKnown ||
       registration.agreement() < kMinAgreement) {
     current_ = before;
     return false;
   }
-  inliers_ = 0;
-  for (std::size_t i = 0; i < current_.landmarks.size(); ++i)
-    inliers_ += current_.landmarks[i] != kNoId && !current_.outlier[i];
+  inliers_ = current_.fitting();
   held_ = registration;
   return true;
+}
+
+bool OrbTracker::landmarks_agree() const {
+  const int fitting = current_.fitting();
+  return fitting >= kMinLandmarks && fitting >= kMinAgreement * current_.matched();
 }
 
 // Where neither surfaces nor landmarks hold the camera, it goes on as it went.

@@ -55,6 +55,7 @@ class OrbTracker final : public Tracker {
   bool track_with_depth(const SparseMap& map);
   void match_neighbour(const SparseMap& map);
   bool hold_by_depth(const SparseMap& map);
+  bool landmarks_agree() const;
   QuadraticCost motion_prior() const;
   const DepthView& depth_view();
 

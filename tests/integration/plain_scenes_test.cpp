@@ -39,9 +39,7 @@ TEST_P(PlainScenes, ASlideDownACorridorIsReported) {
   const fs::path recording = recording_of("plain_corridor", 150);
   const auto summary = run(recording);
   EXPECT_EQ(summary["tracked_frames"], 150);
-  // Threaded, it was 10 to 112 frames in 40 runs, inline 104: what landmarks hold the camera
-  // depends on when they were added.
-  EXPECT_GT(summary["poorly_constrained_frames"], std::string(GetParam()) == "inline" ? 60 : 0);
+  EXPECT_GT(summary["poorly_constrained_frames"], 90);  // 113 to 120 in 30 threaded runs
 }
 
 INSTANTIATE_TEST_SUITE_P(Modes, PlainScenes, ::testing::Values("inline", "threaded"),
