@@ -22,6 +22,22 @@ struct NormalEquations {
   double cost = 0.0;
 };
 
+// Adds the hessian of a point to that of the twist that moves it; the upper right block is left out.
+// d p / d (translation, rotation) = [I, -skew(p)] for a perturbation on the left, so that the blocks
+// are A, skew(p) A and skew(p) A skew(p)^T: cross products, a third of the work of a 3 x 6 Jacobian.
+void add_moved_point(const Eigen::Vector3d& p, const Eigen::Matrix3d& point, Matrix6d& twist) {
+  Eigen::Matrix3d turned;
+  for (int i = 0; i < 3; ++i) turned.col(i) = p.cross(point.col(i));
+  twist.topLeftCorner<3, 3>() += point;
+  twist.bottomLeftCorner<3, 3>() += turned;
+  for (int i = 0; i < 3; ++i)
+    twist.block<3, 1>(3, 3 + i) += p.cross(turned.row(i).transpose());
+}
+
+void complete(Matrix6d& symmetric) {
+  symmetric.topRightCorner<3, 3>() = symmetric.bottomLeftCorner<3, 3>().transpose();
+}
+
 double bound(const PoseObservation& o) { return o.inverse_depth > 0 ? kChiSquare3 : kChiSquare2; }
 
 // Normalised residual (u, v, inverse depth); infinite error behind the camera.
@@ -100,6 +116,8 @@ class Solver {
     NormalEquations n;
     for (std::size_t i = 0; i < observations_.size(); ++i)
       if (solution_.inlier[i]) add(observations_[i], camera_from_world, n);
+    complete(n.hessian);
+    complete(n.temporary);
     if (term_) add(further_, camera_from_world, n);
     return n;
   }
@@ -124,18 +142,15 @@ class Solver {
     n.cost += o.weight * (robust_ ? huber_cost(squared, limit) : squared);
     if (robust_ && squared > limit) weight *= std::sqrt(limit / squared);
 
-    // d p / d (translation, rotation) = [I, -skew(p)] for a perturbation on the left.
     Eigen::Matrix3d by_point = camera_.measurement_jacobian(p);
-    by_point.topRows<2>() /= o.pixel_sigma;
+    by_point.topRows<2>() *= 1.0 / o.pixel_sigma;
     by_point(2, 2) = o.inverse_depth > 0 ? by_point(2, 2) / o.inverse_depth_sigma : 0.0;
-    Eigen::Matrix<double, 3, 6> jacobian;
-    jacobian.leftCols<3>() = by_point;
-    for (int row = 0; row < 3; ++row)
-      jacobian.row(row).tail<3>() = p.cross(by_point.row(row).transpose()).transpose();
-    const Matrix6d hessian = weight * (jacobian.transpose() * jacobian);
-    n.hessian += hessian;
-    if (o.temporary) n.temporary += hessian;
-    n.gradient.noalias() += weight * (jacobian.transpose() * r);
+    const Eigen::Matrix3d hessian = weight * (by_point.transpose() * by_point);
+    const Eigen::Vector3d gradient = weight * (by_point.transpose() * r);
+    add_moved_point(p, hessian, n.hessian);
+    if (o.temporary) add_moved_point(p, hessian, n.temporary);
+    n.gradient.head<3>() += gradient;
+    n.gradient.tail<3>() += p.cross(gradient);
   }
 
   // Whether the outliers are others than before.
