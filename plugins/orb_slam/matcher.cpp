@@ -95,16 +95,38 @@ std::vector<Match> finish(Assignment assignment, std::span<const Query> queries,
   return matches;
 }
 
-// popcnt is no part of the x86-64 baseline; every pair is compared here, so it pays to use it.
-__attribute__((target_clones("popcnt", "default"))) void distances_to_all(
-    const Descriptor& descriptor, const Descriptor* others, std::size_t count, std::uint16_t* out) {
-  for (std::size_t i = 0; i < count; ++i) {
-    const Descriptor& o = others[i];
-    out[i] = static_cast<std::uint16_t>(
-        __builtin_popcountll(descriptor[0] ^ o[0]) + __builtin_popcountll(descriptor[1] ^ o[1]) +
-        __builtin_popcountll(descriptor[2] ^ o[2]) + __builtin_popcountll(descriptor[3] ^ o[3]));
+// Features that a query may match.
+struct Candidates {
+  std::vector<std::uint32_t> features;
+  std::vector<Descriptor> descriptors;
+  std::vector<std::uint16_t> distances;
+
+  void clear() {
+    features.clear();
+    descriptors.clear();
   }
-}
+  void add(std::uint32_t feature, const Descriptor& descriptor) {
+    features.push_back(feature);
+    descriptors.push_back(descriptor);
+  }
+  void compare_with(const Descriptor& query) {
+    distances.resize(descriptors.size());
+    distances_to_all(query, descriptors.data(), descriptors.size(), distances.data());
+  }
+
+ private:
+  // popcnt is no part of the x86-64 baseline; all matching ends here, so it pays to use it.
+  __attribute__((target_clones("popcnt", "default"))) static void distances_to_all(
+      const Descriptor& descriptor, const Descriptor* others, std::size_t count,
+      std::uint16_t* out) {
+    for (std::size_t i = 0; i < count; ++i) {
+      const Descriptor& o = others[i];
+      out[i] = static_cast<std::uint16_t>(
+          __builtin_popcountll(descriptor[0] ^ o[0]) + __builtin_popcountll(descriptor[1] ^ o[1]) +
+          __builtin_popcountll(descriptor[2] ^ o[2]) + __builtin_popcountll(descriptor[3] ^ o[3]));
+    }
+  }
+};
 
 }  // namespace
 
@@ -114,14 +136,21 @@ std::vector<Match> match_near(std::span<const Query> queries, const Features& fe
   Assignment assignment(features.size());
   std::vector<bool> open(features.size());
   for (std::uint32_t i = 0; i < features.size(); ++i) open[i] = usable(i);
+  Candidates candidates;
   for (std::uint32_t q = 0; q < queries.size(); ++q) {
     const Query& query = queries[q];
-    Best best;
+    candidates.clear();
     grid.for_each_near(query.u, query.v, query.radius, [&](std::uint32_t i) {
       const int level = features.keypoints[i].octave;
-      if (level < query.min_level || level > query.max_level || !open[i]) return;
-      best.offer(hamming_distance(query.descriptor, features.descriptors[i]), i, level);
+      if (level >= query.min_level && level <= query.max_level && open[i])
+        candidates.add(i, features.descriptors[i]);
     });
+    candidates.compare_with(query.descriptor);
+    Best best;
+    for (std::size_t i = 0; i < candidates.features.size(); ++i) {
+      const std::uint32_t feature = candidates.features[i];
+      best.offer(candidates.distances[i], feature, features.keypoints[feature].octave);
+    }
     if (best.accepted(rules)) assignment.add(q, best.feature, best.distance);
   }
   return finish(std::move(assignment), queries, features, rules);
@@ -129,20 +158,15 @@ std::vector<Match> match_near(std::span<const Query> queries, const Features& fe
 
 std::vector<Match> match_anywhere(std::span<const Query> queries, const Features& features,
                                   const FeatureFilter& usable, const MatchRules& rules) {
-  std::vector<Descriptor> descriptors;
-  std::vector<std::uint32_t> index;
-  for (std::uint32_t i = 0; i < features.size(); ++i) {
-    if (!usable(i)) continue;
-    descriptors.push_back(features.descriptors[i]);
-    index.push_back(i);
-  }
+  Candidates candidates;
+  for (std::uint32_t i = 0; i < features.size(); ++i)
+    if (usable(i)) candidates.add(i, features.descriptors[i]);
   Assignment assignment(features.size());
-  std::vector<std::uint16_t> distances(descriptors.size());
   for (std::uint32_t q = 0; q < queries.size(); ++q) {
-    distances_to_all(queries[q].descriptor, descriptors.data(), descriptors.size(),
-                     distances.data());
+    candidates.compare_with(queries[q].descriptor);
     Best best;
-    for (std::size_t i = 0; i < distances.size(); ++i) best.offer(distances[i], index[i], 0);
+    for (std::size_t i = 0; i < candidates.features.size(); ++i)
+      best.offer(candidates.distances[i], candidates.features[i], 0);
     best.second_level = best.level;  // every other feature is a rival, on whatever level
     if (best.accepted(rules)) assignment.add(q, best.feature, best.distance);
   }
