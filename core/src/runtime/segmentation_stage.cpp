@@ -45,7 +45,9 @@ SegmentationStage::SegmentationStage(Stage<Segmenter> segmenter, Stage<Propagato
       propagator_(std::move(propagator), "propagation", times),
       classes_(segmenter_.object().classes().size()),
       network_(segmenter_.present() ? mode : Mode::kInline, 1, stop,
-               [this](FramePtr frame) { segment(taken(std::move(frame))); }) {}
+               [this](FramePtr frame) { segment(taken(std::move(frame))); },
+               options.schedule == Schedule::kLatest ? ThreadPriority::kBackground
+                                                     : ThreadPriority::kNormal) {}
 
 void SegmentationStage::offer(const FramePtr& frame) {
   if (options_.schedule == Schedule::kWait)
