@@ -7,9 +7,11 @@
 #include <fstream>
 #include <iomanip>
 #include <iostream>
+#include <opencv2/core/utility.hpp>
 #include <set>
 
 #include "people/maker.hpp"
+#include "stillpoint/runtime/freed_memory.hpp"
 #include "support/people_list.hpp"
 
 namespace {
@@ -58,6 +60,8 @@ int run(const std::vector<std::string>& arguments) {
 }  // namespace
 
 int main(int count, char** arguments) {
+  keep_freed_memory();
+  cv::setNumThreads(1);  // frames are made side by side
   if (count < 3) {
     std::cerr << "usage: paste_people LIST OUT [THREADS [NAME…]]\n";
     return 2;

@@ -9,6 +9,7 @@
 #include "commands.hpp"
 #include "stillpoint/did_you_mean.hpp"
 #include "stillpoint/error.hpp"
+#include "stillpoint/runtime/freed_memory.hpp"
 
 namespace {
 
@@ -60,6 +61,7 @@ int run(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  stillpoint::keep_freed_memory();
   try {
     return run(argc, argv);
   } catch (const stillpoint::ConfigError& error) {  // each of its lines says "error:" already
