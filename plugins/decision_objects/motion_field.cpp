@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace stillpoint::decision {
 namespace {
@@ -37,8 +38,8 @@ void MotionFieldOptions::visit(OptionVisitor& v) {
 
 void MotionField::update(const Frame& frame, const MovingPoints& moving) {
   sample_depth(frame.depth, depth_);
-  sums_.create(depth_.size(), CV_32FC2);
-  sums_.setTo(cv::Scalar::all(0));
+  evidence_ = cv::Mat::zeros(depth_.size(), CV_32F);
+  weight_ = cv::Mat::zeros(depth_.size(), CV_32F);
   for (const PointMotion& point : moving.points) {
     const float measured =
         !moving.reliable ? 0.0F
@@ -48,9 +49,10 @@ void MotionField::update(const Frame& frame, const MovingPoints& moving) {
   }
   log_odds_.create(depth_.size(), CV_32F);
   for (int y = 0; y < log_odds_.rows; ++y) {
-    const auto* sums = sums_.ptr<cv::Vec2f>(y);
+    const auto* evidence = evidence_.ptr<float>(y);
+    const auto* weight = weight_.ptr<float>(y);
     auto* out = log_odds_.ptr<float>(y);
-    for (int x = 0; x < log_odds_.cols; ++x) out[x] = sums[x][0] / (sums[x][1] + kDoubt);
+    for (int x = 0; x < log_odds_.cols; ++x) out[x] = evidence[x] / (weight[x] + kDoubt);
   }
 }
 
@@ -68,19 +70,25 @@ void MotionField::spread(const Frame& frame, const cv::Point2f& pixel, float evi
   const float reach =
       (z > 0 ? static_cast<float>(options_.reach) * focal / z : kBlindReach) / kCell;
   const int cells = std::min(static_cast<int>(reach), kMostReach);
-  const float gate = static_cast<float>(options_.depth_gate) * z;
+  // Where there is no depth, every surface is the point's.
+  const float gate = z > 0 ? static_cast<float>(options_.depth_gate) * z
+                           : std::numeric_limits<float>::infinity();
   const float falloff = 1 / (reach * reach);
   for (int y = std::max(0, centre.y - cells); y <= std::min(depth_.rows - 1, centre.y + cells);
        ++y) {
     const auto* depth = depth_.ptr<float>(y);
-    auto* sums = sums_.ptr<cv::Vec2f>(y);
-    for (int x = std::max(0, centre.x - cells); x <= std::min(depth_.cols - 1, centre.x + cells);
-         ++x) {
-      if (z > 0 && depth[x] > 0 && std::abs(depth[x] - z) > gate) continue;
-      const auto dx = static_cast<float>(x - centre.x), dy = static_cast<float>(y - centre.y);
-      const float weight = 1 - (dx * dx + dy * dy) * falloff;
-      if (weight <= 0) continue;
-      sums[x] += cv::Vec2f(weight * evidence, weight);
+    auto* sum = evidence_.ptr<float>(y);
+    auto* weights = weight_.ptr<float>(y);
+    const auto dy = static_cast<float>(y - centre.y);
+    const int first = std::max(0, centre.x - cells);
+    const int last = std::min(depth_.cols - 1, centre.x + cells);
+    for (int x = first; x <= last; ++x) {  // without branches: vectorised
+      const auto dx = static_cast<float>(x - centre.x);
+      const float near = std::max(0.0F, 1 - (dx * dx + dy * dy) * falloff);
+      const bool other = (depth[x] > 0) & (std::abs(depth[x] - z) > gate);
+      const float weight = other ? 0.0F : near;
+      sum[x] += weight * evidence;
+      weights[x] += weight;
     }
   }
 }

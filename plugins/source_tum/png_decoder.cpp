@@ -5,6 +5,7 @@
 #include <opencv2/core/hal/interface.h>
 #include <algorithm>
 #include <cstring>
+#include <opencv2/imgproc.hpp>
 #include <stdexcept>
 #include <string_view>
 
@@ -101,14 +102,6 @@ void unfilter(int filter, const std::uint8_t* in, const std::uint8_t* above, std
   }
 }
 
-void rgb_to_bgr(const std::uint8_t* in, std::uint8_t* out, int pixels) {
-  for (int i = 0; i < pixels; ++i) {
-    out[3 * i] = in[3 * i + 2];
-    out[3 * i + 1] = in[3 * i + 1];
-    out[3 * i + 2] = in[3 * i];
-  }
-}
-
 void big_endian_16(const std::uint8_t* in, std::uint16_t* out, int pixels) {
   for (int i = 0; i < pixels; ++i)
     out[i] = static_cast<std::uint16_t>(in[2 * i] << 8 | in[2 * i + 1]);
@@ -193,13 +186,12 @@ cv::Mat PngDecoder::decode(std::span<const std::uint8_t> file) {
     const std::uint8_t* in = &filtered_[static_cast<std::size_t>(row_size + 1) * y];
     std::uint8_t* row = rows_[y % 2].data();
     undo(in[0], in + 1, rows_[1 - y % 2].data(), row, row_size);
-    if (type == CV_8UC3)
-      rgb_to_bgr(row, image.ptr(y), header.width);
-    else if (type == CV_16UC1)
+    if (type == CV_16UC1)
       big_endian_16(row, image.ptr<std::uint16_t>(y), header.width);
     else
       std::copy_n(row, row_size, image.ptr(y));
   }
+  if (type == CV_8UC3) cv::cvtColor(image, image, cv::COLOR_RGB2BGR);
   return image;
 }
 

@@ -38,15 +38,20 @@ std::vector<int> nearest_pixels(const cv::Mat& x, const cv::Mat& y, const Camera
   return indices;
 }
 
+std::vector<float> metres_of_raw(const CameraModel& model) {
+  std::vector<float> metres(65536, 0.0F);
+  const double nearest = std::ceil(std::min(model.min_depth * model.depth_factor, 65536.0));
+  const double farthest = std::min(model.max_depth * model.depth_factor, 65535.0);
+  const auto factor = static_cast<float>(model.depth_factor);
+  for (int raw = std::max(1, static_cast<int>(nearest)); raw <= static_cast<int>(farthest); ++raw)
+    metres[static_cast<std::size_t>(raw)] = static_cast<float>(raw) / factor;
+  return metres;
+}
+
 }  // namespace
 
 Rectifier::Rectifier(const CameraModel& model)
-    : crop_(crop_of(model)),
-      camera_(model.undistorted()),
-      depth_factor_(static_cast<float>(model.depth_factor)),
-      min_raw_(std::max(
-          1, static_cast<int>(std::ceil(std::min(model.min_depth * model.depth_factor, 65536.0))))),
-      max_raw_(static_cast<int>(std::min(model.max_depth * model.depth_factor, 65535.0))) {
+    : crop_(crop_of(model)), camera_(model.undistorted()), metres_(metres_of_raw(model)) {
   if (!is_distorted(model)) return;
   cv::Mat x, y;
   undistortion_map(model, camera_, x, y);
@@ -62,22 +67,19 @@ cv::Mat Rectifier::color(const cv::Mat& bgr) const {
 }
 
 cv::Mat Rectifier::depth(const cv::Mat& raw) const {
-  cv::Mat metres(camera_.height, camera_.width, CV_32FC1);
-  const auto convert = [this](int value) {
-    return value >= min_raw_ && value <= max_raw_ ? static_cast<float>(value) / depth_factor_ : 0.f;
-  };
-  for (int y = 0; y < metres.rows; ++y) {
-    float* out = metres.ptr<float>(y);
+  cv::Mat depth(camera_.height, camera_.width, CV_32FC1);
+  for (int y = 0; y < depth.rows; ++y) {
+    float* out = depth.ptr<float>(y);
     if (depth_map_.empty()) {
       const std::uint16_t* in = raw.ptr<std::uint16_t>(y + crop_.y) + crop_.x;
-      for (int x = 0; x < metres.cols; ++x) out[x] = convert(in[x]);
+      for (int x = 0; x < depth.cols; ++x) out[x] = metres_[in[x]];
     } else {
-      const int* from = &depth_map_[static_cast<std::size_t>(y) * metres.cols];
+      const int* from = &depth_map_[static_cast<std::size_t>(y) * depth.cols];
       const std::uint16_t* in = raw.ptr<std::uint16_t>();
-      for (int x = 0; x < metres.cols; ++x) out[x] = from[x] < 0 ? 0.f : convert(in[from[x]]);
+      for (int x = 0; x < depth.cols; ++x) out[x] = from[x] < 0 ? 0.0F : metres_[in[from[x]]];
     }
   }
-  return metres;
+  return depth;
 }
 
 }  // namespace stillpoint

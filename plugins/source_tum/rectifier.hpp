@@ -28,9 +28,7 @@ class Rectifier {
  private:
   cv::Rect crop_;
   Camera camera_;
-  float depth_factor_;
-  int min_raw_;  // range of usable depth values
-  int max_raw_;
+  std::vector<float> metres_;  // by raw depth; 0 outside the usable range
   // Empty without distortion:
   cv::Mat color_map_;           // CV_16SC2: source pixel
   cv::Mat color_weights_;       // CV_16UC1: where between its neighbours

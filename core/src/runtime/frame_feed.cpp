@@ -90,7 +90,7 @@ void FrameFeed::deliver(FramePtr frame) {
   }
   if (frame->index == 0) clock_ahead_ = clock_.now() - frame->time;
   clock_.wait_until(frame->time + clock_ahead_, stop_.token());
-  dropped_ += queue_.push_or_replace(std::move(frame));
+  if (queue_.push_or_drop_oldest(std::move(frame))) ++dropped_;
 }
 
 }  // namespace stillpoint

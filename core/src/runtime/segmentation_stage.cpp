@@ -46,7 +46,7 @@ SegmentationStage::SegmentationStage(Stage<Segmenter> segmenter, Stage<Propagato
       classes_(segmenter_.object().classes().size()),
       network_(segmenter_.present() ? mode : Mode::kInline, 1, stop,
                [this](FramePtr frame) { segment(taken(std::move(frame))); },
-               options.schedule == Schedule::kLatest ? ThreadPriority::kBackground
+               options.schedule == Schedule::kLatest ? ThreadPriority::kReduced
                                                      : ThreadPriority::kNormal) {}
 
 void SegmentationStage::offer(const FramePtr& frame) {
@@ -55,7 +55,7 @@ void SegmentationStage::offer(const FramePtr& frame) {
   else if (frame->index < next_)
     return;
   else if (network_.threaded())
-    network_.push_or_replace(frame);
+    network_.push_or_drop_oldest(frame);
   else
     waiting_ = frame;
 }

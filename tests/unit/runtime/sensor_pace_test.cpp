@@ -49,12 +49,12 @@ class ManualClock final : public PaceClock {
   double waits_for_ = -1.0;
 };
 
-TEST_P(SensorPace, TwoFramesWaitAndAThirdReplacesThem) {
+TEST_P(SensorPace, TwoFramesWaitAndTheOldestMakesRoom) {
   Fixture f(8);  // 0.1 s apart
   auto clock = std::make_unique<ManualClock>();
   ManualClock* time = clock.get();
   f.journal.hook = [&](const std::string& entry) {
-    if (entry == "track 0") time->advance(0.45);   // 1 and 2 wait, 3 takes their place, 4 waits
+    if (entry == "track 0") time->advance(0.45);   // 3 and 4 wait, 1 and 2 had to go
     if (entry == "output 4") time->advance(0.65);  // 5 and 6 wait
     if (entry == "output 6") time->set(0.75);      // frame 7, the last
   };

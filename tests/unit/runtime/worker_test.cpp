@@ -104,7 +104,7 @@ TEST(Worker, ItemsPastTheLimitNeverWait) {
   EXPECT_EQ(handled, (std::vector<int>{0, 1, 2, 3}));
 }
 
-TEST(Worker, WithoutRoomAnItemTakesThePlaceOfThoseWaiting) {
+TEST(Worker, WithoutRoomTheOldestThatWaitsIsDropped) {
   StopSignal stop;
   std::vector<int> handled;
   std::latch busy(1);
@@ -116,12 +116,12 @@ TEST(Worker, WithoutRoomAnItemTakesThePlaceOfThoseWaiting) {
       release.wait();
     }
   });
-  worker.push_or_replace(0);
+  worker.push_or_drop_oldest(0);
   busy.wait();
-  for (int i = 1; i < 5; ++i) worker.push_or_replace(i);  // 3 finds no room
+  for (int i = 1; i < 6; ++i) worker.push_or_drop_oldest(i);  // 3, 4 and 5 find no room
   release.count_down();
   worker.end();
-  EXPECT_EQ(handled, (std::vector<int>{0, 3, 4}));
+  EXPECT_EQ(handled, (std::vector<int>{0, 4, 5}));
 }
 
 TEST(Worker, AHandlerMayPushToItself) {

@@ -34,18 +34,14 @@ class BoundedQueue {
     append(std::move(item));
   }
 
-  /// Never waits: without room the item takes the place of everything that waits. Returns how many
-  /// items that were.
-  std::size_t push_or_replace(T item) {
+  /// Never waits: without room the item that has waited longest is dropped. Whether one was.
+  bool push_or_drop_oldest(T item) {
     const std::lock_guard lock(mutex_);
-    if (closed_) return 0;
-    std::size_t replaced = 0;
-    if (items_.size() >= capacity_) {
-      replaced = items_.size();
-      items_.clear();
-    }
+    if (closed_) return false;
+    const bool full = items_.size() >= capacity_;
+    if (full) items_.pop_front();
     append(std::move(item));
-    return replaced;
+    return full;
   }
 
   /// The next item, or nothing after a stop or when the closed queue is empty. Whoever takes an

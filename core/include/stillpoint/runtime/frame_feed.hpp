@@ -15,7 +15,7 @@ namespace stillpoint {
 /// `inline` and `pace: free`: next() asks the source. Otherwise the source has a thread of its own:
 /// * `free`: it decodes up to two frames ahead, and every frame is used;
 /// * `sensor`: it delivers frames at the rate at which they were recorded. Two may wait; when a
-///   third comes, it takes their place, and they are dropped and counted.
+///   third comes, the oldest is dropped and counted.
 class FrameFeed {
  public:
   FrameFeed(Stage<Source> source, const RuntimeOptions& options, PaceClock& clock, StopSignal& stop,

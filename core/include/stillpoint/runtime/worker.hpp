@@ -49,10 +49,10 @@ class Worker {
     else
       handler_(std::move(item));
   }
-  /// Never waits: without room the item takes the place of those waiting.
-  void push_or_replace(T item) {
+  /// Never waits: without room the item that has waited longest is dropped.
+  void push_or_drop_oldest(T item) {
     if (threaded_)
-      queue_.push_or_replace(std::move(item));
+      queue_.push_or_drop_oldest(std::move(item));
     else
       handler_(std::move(item));
   }
