@@ -37,7 +37,8 @@ MappingSystem::MappingSystem(Stage<LocalMapper> local_mapper, Stage<LoopCloser> 
                          map(std::move(*keyframe));
                        else
                          correct(std::get<Correction>(item));
-                     }),
+                     },
+                     ThreadPriority::kMapping),
       loop_closing_(
           loop_closer_.present() ? mode : Mode::kInline, kQueriesWaiting, stop,
           [this](const LoopItem& item) {

@@ -46,8 +46,8 @@ SegmentationStage::SegmentationStage(Stage<Segmenter> segmenter, Stage<Propagato
       classes_(segmenter_.object().classes().size()),
       network_(segmenter_.present() ? mode : Mode::kInline, 1, stop,
                [this](FramePtr frame) { segment(taken(std::move(frame))); },
-               options.schedule == Schedule::kLatest ? ThreadPriority::kReduced
-                                                     : ThreadPriority::kNormal) {}
+               options.schedule == Schedule::kLatest ? ThreadPriority::kNetwork
+                                                     : ThreadPriority::kTracking) {}
 
 void SegmentationStage::offer(const FramePtr& frame) {
   if (options_.schedule == Schedule::kWait)

@@ -24,7 +24,7 @@ class Worker {
   using Handler = std::function<void(T)>;
 
   Worker(Mode mode, std::size_t capacity, StopSignal& stop, Handler handler,
-         ThreadPriority priority = ThreadPriority::kNormal)
+         ThreadPriority priority = ThreadPriority::kTracking)
       : threaded_(mode == Mode::kThreaded),
         stop_(stop),
         handler_(std::move(handler)),
