@@ -85,7 +85,8 @@ void OpenCvDnnSegmenter::Options::visit(OptionVisitor& v) {
   v("min_object_area", smallest.area,
     {.min = 0,
      .unit = "m^2",
-     .help = "parts of a class of which less than this is seen, by depth, are background"});
+     .help = "parts of a class are background of which less is seen, by depth and times the mean "
+             "probability"});
   v("mirror", mirror,
     {.help = "every second image is seen left for right, and its labels are turned back"});
   v("threads", threads,
@@ -183,9 +184,9 @@ Segmentation OpenCvDnnSegmenter::from_scores(const cv::Mat& output, const Frame&
   Segmentation result;
   result.labels = label_pixels(competing(planes, options_.rule), grid_);
   find_objects(result, options_.smallest.pixels);
-  remove_small_objects(result, frame, options_.smallest);
   if (!result.objects.empty())
     score_objects(result, probabilities(planes, options_.rule.result), grid_);
+  remove_small_objects(result, frame, options_.smallest);
   return result;
 }
 

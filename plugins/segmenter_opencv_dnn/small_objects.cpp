@@ -14,7 +14,7 @@ bool is_small(const Segmentation& segmentation, std::size_t object, const Frame&
   if (segmentation.objects[object].pixels < std::max(1, smallest.pixels)) return true;
   if (smallest.area <= 0) return false;
   const std::optional<double> area = seen_area(segmentation, object, frame);
-  return area && *area < smallest.area;
+  return area && segmentation.objects[object].score * *area < smallest.area;
 }
 
 }  // namespace

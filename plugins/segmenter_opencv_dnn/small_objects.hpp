@@ -10,7 +10,7 @@ namespace stillpoint {
 
 struct SmallestObject {
   int pixels = 200;
-  double area = 0;  ///< m², of the surface that is seen; 0: any
+  double area = 0;  ///< m², expected: of the surface that is seen, times its score; 0: any
 };
 
 /// In square metres, of the part of the object that is seen, as if it faced the camera. Pixels

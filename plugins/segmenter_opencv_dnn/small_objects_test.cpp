@@ -46,6 +46,15 @@ TEST_F(TwoParts, WhatIsSmallBecomesBackground) {
   EXPECT_EQ(cv::countNonZero(segmentation.instances == 1), right.area());
 }
 
+TEST_F(TwoParts, WhoIsNotCertainMustBeLarger) {
+  for (SegmentedObject& object : segmentation.objects) object.score = 0.75F;
+  remove_small_objects(segmentation, frame, {.pixels = 1, .area = 0.05});
+  ASSERT_EQ(segmentation.objects.size(), 1u);
+  EXPECT_EQ(segmentation.objects[0].box, right);
+  remove_small_objects(segmentation, frame, {.pixels = 1, .area = 0.4});
+  EXPECT_EQ(segmentation.objects.size(), 1u);  // 0.54 m² of 0.75
+}
+
 TEST_F(TwoParts, PixelsWithoutDepthAreAsFarAsTheOthers) {
   frame.depth(cv::Rect(left.tl(), cv::Size(20, 20))).setTo(0);
   remove_small_objects(segmentation, frame, {.pixels = 1, .area = 0.05});

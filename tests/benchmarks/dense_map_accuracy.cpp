@@ -1,7 +1,8 @@
-// How right a dense map is, against the truth of the simulator.
+// How right a dense map is, against a recording's true poses and labels.
 //   dense_map_accuracy TRUTH RUN...
 // TRUTH: the recording's twin without noise, `stillpoint simulate SCENE --set
-// source.sensor.ideal=true` with the same seeds, and with labels. RUN: folders of `stillpoint run`
+// source.sensor.ideal=true` with the same seeds, and with labels; for ghosts alone the recording
+// itself will do, such as those of tools/real_people. RUN: folders of `stillpoint run`
 // with map_backend octomap; their maps are laid onto the truth by the best alignment of their
 // trajectories. One line of JSON each.
 #include <algorithm>

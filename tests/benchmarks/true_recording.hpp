@@ -1,4 +1,4 @@
-// Simulated recordings with their true poses, for programs that measure.
+// Recordings with true poses and a camera.yaml of their own, for programs that measure.
 #pragma once
 
 #include <cstdlib>
@@ -12,7 +12,9 @@
 #include <vector>
 
 #include "evaluation/trajectory.hpp"
+#include "source_tum/rectifier.hpp"
 #include "stillpoint/contracts/frame.hpp"
+#include "stillpoint/runtime/pipeline_config.hpp"
 
 namespace stillpoint {
 
@@ -24,10 +26,9 @@ struct TrueFrame {
 
 /// Every n-th frame of a recording, numbered from 0.
 inline std::vector<TrueFrame> read_true_frames(const std::filesystem::path& folder, int every = 1) {
-  constexpr double kDepthFactor = 5000;
   const auto truth = evaluation::read_trajectory(folder / "groundtruth.txt");
-  const auto camera = std::make_shared<const Camera>(
-      Camera{.fx = 535.4, .fy = 539.2, .cx = 320.1, .cy = 247.6, .depth_noise = 0.0016});
+  const Rectifier rectifier(load_camera((folder / "camera.yaml").string()));
+  const auto camera = std::make_shared<const Camera>(rectifier.camera());
   std::vector<TrueFrame> frames;
   std::ifstream list(folder / "associations.txt");
   int line_number = 0;
@@ -40,9 +41,8 @@ inline std::vector<TrueFrame> read_true_frames(const std::filesystem::path& fold
     frame->index = static_cast<std::uint32_t>(frames.size());
     frame->time = time;
     frame->camera = camera;
-    cv::cvtColor(cv::imread(folder / color), frame->gray, cv::COLOR_BGR2GRAY);
-    cv::imread(folder / depth, cv::IMREAD_UNCHANGED)
-        .convertTo(frame->depth, CV_32F, 1 / kDepthFactor);
+    cv::cvtColor(rectifier.color(cv::imread(folder / color)), frame->gray, cv::COLOR_BGR2GRAY);
+    frame->depth = rectifier.depth(cv::imread(folder / depth, cv::IMREAD_UNCHANGED));
     frames.push_back({frame, std::filesystem::path(color).filename(), pose_at(truth, time)});
   }
   return frames;
