@@ -71,8 +71,8 @@ void MotionField::spread(const Frame& frame, const cv::Point2f& pixel, float evi
       (z > 0 ? static_cast<float>(options_.reach) * focal / z : kBlindReach) / kCell;
   const int cells = std::min(static_cast<int>(reach), kMostReach);
   // Where there is no depth, every surface is the point's.
-  const float gate = z > 0 ? static_cast<float>(options_.depth_gate) * z
-                           : std::numeric_limits<float>::infinity();
+  const float gate =
+      z > 0 ? static_cast<float>(options_.depth_gate) * z : std::numeric_limits<float>::infinity();
   const float falloff = 1 / (reach * reach);
   for (int y = std::max(0, centre.y - cells); y <= std::min(depth_.rows - 1, centre.y + cells);
        ++y) {

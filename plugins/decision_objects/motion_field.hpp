@@ -42,7 +42,7 @@ class MotionField {
 
   MotionFieldOptions options_;
   cv::Mat log_odds_;
-  cv::Mat depth_;  // CV_32FC1, m, per cell; 0 = none
+  cv::Mat depth_;     // CV_32FC1, m, per cell; 0 = none
   cv::Mat evidence_;  // CV_32FC1, per cell: sum of what points near it say, weighted
   cv::Mat weight_;    // CV_32FC1, per cell: sum of their weights
 };

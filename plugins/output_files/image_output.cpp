@@ -5,6 +5,7 @@
 #include <cctype>
 #include <cstdio>
 #include <opencv2/imgcodecs.hpp>
+#include <utility>
 
 #include "stillpoint/atomic_file.hpp"
 
@@ -35,10 +36,10 @@ ImageOutput::ImageOutput(const Options& options, const StageContext& context)
   std::filesystem::create_directories(folder_, error);
   if (error)
     throw Error(Fault::kUsage, "cannot make the folder: " + error.message(), folder_.string());
-  remove_pictures(folder_);
 }
 
 void ImageOutput::frame(const FrameReport& report) {
+  if (!std::exchange(begun_, true)) remove_pictures(folder_);
   if (report.frame.index % static_cast<std::uint32_t>(options_.every) != 0) return;
   const char* extension = options_.format == Options::Format::kPng ? ".png" : ".jpg";
   std::vector<unsigned char> bytes;

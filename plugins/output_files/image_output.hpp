@@ -38,6 +38,7 @@ class ImageOutput final : public Output {
  private:
   Options options_;
   std::filesystem::path folder_;
+  bool begun_ = false;  // until then the folder is an earlier run's
 };
 
 }  // namespace stillpoint

@@ -55,6 +55,23 @@ TEST_P(Interruption, LeavesWhatWasComputed) {
   EXPECT_GT(count_poses(out / "keyframes.txt"), 0u);
 }
 
+TEST(RunFolder, IsOneRunsAtATime) {
+  const TemporaryFolder folder;
+  const RecordingCopy recording(20);
+  list_repeatedly(recording, 20, 1000);
+  const fs::path out = folder.path() / "out";
+  const std::vector<std::string> arguments = {
+      "run", "orb_baseline", "--dataset", recording.path().string(), "-o", out.string()};
+  Program first(arguments);
+  ASSERT_TRUE(first.wait_for(" key frames  tracking")) << "no line of progress";
+  const Outcome second = call(arguments);
+  EXPECT_EQ(second.exit_code, 2);
+  EXPECT_THAT(second.err, HasSubstr(out.string() + ": cannot write the run folder: another run"));
+  first.send(SIGINT);
+  first.finish();
+  EXPECT_GT(count_poses(out / "trajectory.txt"), 0u);
+}
+
 INSTANTIATE_TEST_SUITE_P(Modes, Interruption, ::testing::Values("inline", "threaded"),
                          [](const auto& mode) { return std::string(mode.param); });
 

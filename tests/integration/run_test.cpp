@@ -155,6 +155,25 @@ TEST_F(Run, EarlierRunIsReplaced) {
   EXPECT_EQ(count_poses(out() / "same/trajectory.txt"), 2u);
 }
 
+TEST_F(Run, EarlierRunInTheFolderStaysWhenThisOneCannotBegin) {
+  const std::string recording = simulated_recording().string();
+  const std::vector<std::string> good = {"--dataset", recording, "--set", "source.limit=2"};
+  ASSERT_EQ(run("same", "orb_baseline", good).exit_code, 0);
+  const std::string trajectory = text_of(out() / "same/trajectory.txt");
+  const std::vector<std::vector<std::string>> bad = {
+      {"--dataset", "/nowhere"},
+      {"--dataset", recording, "--camera", "nobodys"},
+      {"--dataset", recording, "--load-map", "/nowhere.map"},
+      {"--dataset", recording, "--set", "segmenter.type=opencv_dnn", "--set",
+       "segmenter.model=/nowhere.onnx"}};
+  for (const auto& arguments : bad) {
+    EXPECT_NE(run("same", "orb_baseline", arguments).exit_code, 0);
+    EXPECT_EQ(text_of(out() / "same/trajectory.txt"), trajectory) << arguments.back();
+    EXPECT_NE(run("new", "orb_baseline", arguments).exit_code, 0);
+    EXPECT_FALSE(fs::exists(out() / "new")) << arguments.back();
+  }
+}
+
 TEST_F(Run, EarlierDenseMapDoesNotOutliveItsRun) {
   const auto run_with = [&](const std::string& backend) {
     const Outcome outcome = run("same", "orb_baseline",

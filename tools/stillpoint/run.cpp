@@ -82,14 +82,14 @@ void run(const Arguments& arguments) {
   std::shared_ptr<MapSaver> saver;
   if (!arguments.save_map.empty()) saver = std::make_shared<MapSaver>(arguments.save_map);
   Console console;
-  const RunFolder folder(
-      arguments.output.empty() ? fs::path("out") / config.file.stem() : arguments.output,
-      config.effective_yaml, console);
+  RunFolder folder(
+      arguments.output.empty() ? fs::path("out") / config.file.stem() : arguments.output, console);
   folder.log(LogLevel::kInfo, "stillpoint " STILLPOINT_VERSION ", " + config.file.string());
   warn_of_labels(config, folder);
   Stages stages =
       make_stages(config, folder.path(),
                   [&folder](LogLevel level, std::string_view text) { folder.log(level, text); });
+  folder.begin(config.effective_yaml);
   stages.outputs.push_back(
       {std::make_shared<Progress>(console, stages.source.object->size()), "progress"});
   stages.known_map = std::move(known_map);

@@ -1,7 +1,10 @@
 #include "run_folder.hpp"
 
+#include <fcntl.h>
 #include <spdlog/logger.h>
 #include <spdlog/sinks/basic_file_sink.h>
+#include <sys/file.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
@@ -42,15 +45,34 @@ spdlog::level::level_enum level_of(LogLevel level) {
 
 }  // namespace
 
-RunFolder::RunFolder(fs::path path, const std::string& effective_yaml, Console& console)
-    : path_(std::move(path)), console_(console) {
+RunFolder::RunFolder(fs::path path, Console& console) : path_(std::move(path)), console_(console) {
   std::error_code error;
-  fs::create_directories(path_, error);
+  made_ = fs::create_directories(path_, error);
   if (error) fail(path_, error.message());
+  lock();
+  if (::access(path_.c_str(), W_OK) != 0) fail(path_, std::strerror(errno));
+}
+
+RunFolder::~RunFolder() {
+  std::error_code ignored;
+  if (made_ && !log_) fs::remove(path_, ignored);
+  if (locked_ >= 0) ::close(locked_);
+}
+
+// The kernel lets go of it however the process ends. File systems without locks do without.
+void RunFolder::lock() {
+  locked_ = ::open(path_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (locked_ < 0) fail(path_, std::strerror(errno));
+  if (::flock(locked_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK)
+    fail(path_, "another run is writing into it");
+}
+
+void RunFolder::begin(const std::string& effective_yaml) {
   remove_earlier_results();
   note_earlier_maps();
   std::ofstream yaml(path_ / "pipeline.yaml");
   if (!(yaml << effective_yaml << std::flush)) fail(path_ / "pipeline.yaml", std::strerror(errno));
+  const std::lock_guard lock(mutex_);
   try {
     auto sink =
         std::make_shared<spdlog::sinks::basic_file_sink_mt>((path_ / "log.txt").string(), true);
@@ -61,10 +83,17 @@ RunFolder::RunFolder(fs::path path, const std::string& effective_yaml, Console& 
   log_->set_pattern("%Y-%m-%d %H:%M:%S.%e  %l  %v");
   log_->set_level(spdlog::level::debug);
   log_->flush_on(spdlog::level::info);
+  for (const auto& [level, text] : early_) log_->log(level_of(level), text);
 }
 
 void RunFolder::log(LogLevel level, std::string_view text) const {
-  log_->log(level_of(level), text);
+  {
+    const std::lock_guard lock(mutex_);
+    if (log_)
+      log_->log(level_of(level), text);
+    else
+      early_.emplace_back(level, text);
+  }
   if (level == LogLevel::kWarning) console_.line("warning: " + std::string(text));
   if (level == LogLevel::kError) console_.line("error: " + std::string(text));
 }

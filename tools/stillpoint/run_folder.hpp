@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <mutex>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -17,12 +18,20 @@ class logger;
 
 namespace stillpoint {
 
-/// Made with its parents; results of an earlier run in it are removed, its dense map only at the
-/// end. Holds pipeline.yaml and log.txt from the start.
+/// Made with its parents, and nobody else's until the end of the process. What an earlier run has
+/// left in it stays until begin().
 class RunFolder {
  public:
-  /// Throws Error(kUsage) when the folder cannot be written.
-  RunFolder(std::filesystem::path path, const std::string& effective_yaml, Console& console);
+  /// Throws Error(kUsage) when the folder cannot be written or another run is writing into it.
+  RunFolder(std::filesystem::path path, Console& console);
+  /// Leaves no empty folder of its own behind where no run began.
+  ~RunFolder();
+  RunFolder(const RunFolder&) = delete;
+  RunFolder& operator=(const RunFolder&) = delete;
+
+  /// Once all that the run needs is there: removes results of an earlier run, but for its dense
+  /// map, and writes pipeline.yaml and log.txt. Throws Error(kUsage) when that is not possible.
+  void begin(const std::string& effective_yaml);
 
   const std::filesystem::path& path() const { return path_; }
   /// Into log.txt; warnings and errors also to the console. May be called from any thread.
@@ -33,12 +42,17 @@ class RunFolder {
   std::vector<std::string> contents() const;
 
  private:
+  void lock();
   void remove_earlier_results() const;
   void note_earlier_maps();
 
   std::filesystem::path path_;
   Console& console_;
-  std::shared_ptr<spdlog::logger> log_;
+  bool made_ = false;  // by this run
+  int locked_ = -1;    // descriptor of the folder
+  mutable std::mutex mutex_;
+  std::shared_ptr<spdlog::logger> log_;                          // guarded, like early_
+  mutable std::vector<std::pair<LogLevel, std::string>> early_;  // lines before begin()
   std::vector<std::pair<std::filesystem::path, std::filesystem::file_time_type>> earlier_maps_;
 };
 

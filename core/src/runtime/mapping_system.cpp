@@ -31,14 +31,15 @@ MappingSystem::MappingSystem(Stage<LocalMapper> local_mapper, Stage<LoopCloser> 
       loop_closer_(std::move(loop_closer), "loop closing", times),
       map_backend_(std::move(map_backend), "dense mapping", times),
       map_(std::move(known_map)),
-      local_mapping_(mode, kKeyFramesWaiting, stop,
-                     [this](MappingItem item) {
-                       if (auto* keyframe = std::get_if<NewKeyFrame>(&item))
-                         map(std::move(*keyframe));
-                       else
-                         correct(std::get<Correction>(item));
-                     },
-                     ThreadPriority::kMapping),
+      local_mapping_(
+          mode, kKeyFramesWaiting, stop,
+          [this](MappingItem item) {
+            if (auto* keyframe = std::get_if<NewKeyFrame>(&item))
+              map(std::move(*keyframe));
+            else
+              correct(std::get<Correction>(item));
+          },
+          ThreadPriority::kMapping),
       loop_closing_(
           loop_closer_.present() ? mode : Mode::kInline, kQueriesWaiting, stop,
           [this](const LoopItem& item) {

@@ -44,10 +44,11 @@ SegmentationStage::SegmentationStage(Stage<Segmenter> segmenter, Stage<Propagato
       segmenter_(std::move(segmenter), "segmentation", times),
       propagator_(std::move(propagator), "propagation", times),
       classes_(segmenter_.object().classes().size()),
-      network_(segmenter_.present() ? mode : Mode::kInline, 1, stop,
-               [this](FramePtr frame) { segment(taken(std::move(frame))); },
-               options.schedule == Schedule::kLatest ? ThreadPriority::kNetwork
-                                                     : ThreadPriority::kTracking) {}
+      network_(
+          segmenter_.present() ? mode : Mode::kInline, 1, stop,
+          [this](FramePtr frame) { segment(taken(std::move(frame))); },
+          options.schedule == Schedule::kLatest ? ThreadPriority::kNetwork
+                                                : ThreadPriority::kTracking) {}
 
 void SegmentationStage::offer(const FramePtr& frame) {
   if (options_.schedule == Schedule::kWait)
