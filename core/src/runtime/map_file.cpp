@@ -32,8 +32,10 @@ void flush(const fs::path& file) {
   if (!flushed) throw std::system_error(error, std::generic_category());
 }
 
-// Written beside its place first.
-fs::path part_of(const fs::path& file) { return file.string() + ".part"; }
+// Written beside its place first, under a name that is nobody else's.
+fs::path part_of(const fs::path& file) {
+  return file.string() + '.' + std::to_string(::getpid()) + ".part";
+}
 
 }  // namespace
 
@@ -41,6 +43,8 @@ void require_writable(const fs::path& file) {
   std::error_code failed;
   if (file.has_parent_path()) fs::create_directories(file.parent_path(), failed);
   if (failed) cannot_write(file, failed.message());
+  if (fs::exists(file, failed) && !fs::is_regular_file(file, failed))
+    cannot_write(file, "there is something else of that name, such as a folder or a device");
   const int descriptor = ::open(part_of(file).c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0644);
   if (descriptor < 0) cannot_write(file, std::strerror(errno));
   ::close(descriptor);

@@ -2,6 +2,8 @@
 
 #include <gmock/gmock.h>
 #include <sqlite3.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -146,7 +148,7 @@ TEST_F(MapFile, GivesBackWhatWasSaved) {
   expect_same(map, loaded);
   EXPECT_EQ(loaded.keyframe_id_end(), loaded.keyframe_count()) << "ids without gaps";
   EXPECT_EQ(loaded.keyframe(0)->camera, loaded.keyframe(1)->camera) << "one camera, kept once";
-  EXPECT_FALSE(fs::exists(file_.string() + ".part"));
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder_.path()), {}), 1) << "nothing else is left";
 }
 
 TEST_F(MapFile, SavingTwiceGivesTheSameBytes) {
@@ -223,20 +225,43 @@ TEST_F(MapFile, ImpossibleContentIsRefused) {
   refused_after("DROP TABLE landmark", "no such table");
 }
 
-TEST_F(MapFile, WhatCannotBeWrittenLeavesTheEarlierFile) {
-  save_map(small_map(), file_);
-  const std::string before = read_bytes(file_);
-  fs::create_directory(file_.string() + ".part");  // in the way of the new file
-  std::ofstream(file_.string() + ".part/x") << "x";
+TEST_F(MapFile, WhatCannotBeWrittenIsSaid) {
   try {
-    save_map(small_map(3), file_);
+    save_map(small_map(3), "/proc/nowhere/map");
     FAIL() << "written";
   } catch (const Error& error) {
     EXPECT_EQ(error.fault(), Fault::kUsage);
     EXPECT_THAT(error.what(), HasSubstr("cannot be written"));
   }
+}
+
+TEST_F(MapFile, WithoutRoomTheEarlierFileStays) {
+  save_map(small_map(), file_);
+  const std::string before = read_bytes(file_);
+  rlimit unlimited{};
+  ASSERT_EQ(::getrlimit(RLIMIT_FSIZE, &unlimited), 0);
+  const rlimit small{.rlim_cur = 4096, .rlim_max = unlimited.rlim_max};  // bytes
+  const auto handler = std::signal(SIGXFSZ, SIG_IGN);
+  ::setrlimit(RLIMIT_FSIZE, &small);
+  EXPECT_THROW(save_map(small_map(30), file_), Error);
+  ::setrlimit(RLIMIT_FSIZE, &unlimited);
+  std::signal(SIGXFSZ, handler);
   EXPECT_EQ(read_bytes(file_), before);
-  EXPECT_THROW(save_map(small_map(), "/proc/nowhere/map"), Error);
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder_.path()), {}), 1) << "nothing else is left";
+}
+
+TEST_F(MapFile, WhatIsNoFileStays) {
+  ASSERT_EQ(::mkfifo(file_.c_str(), 0600), 0);
+  EXPECT_THROW(save_map(small_map(), file_), Error);
+  EXPECT_TRUE(fs::is_fifo(file_));
+  EXPECT_THROW(save_map(small_map(), folder_.path()), Error);
+}
+
+TEST_F(MapFile, FilesBesideItStay) {
+  const fs::path mine = file_.string() + ".part";
+  std::ofstream(mine) << "mine";
+  save_map(small_map(), file_);
+  EXPECT_EQ(read_bytes(mine), "mine");
 }
 
 // The process dies while it saves, ninety times, before or after its first and second file: the
