@@ -52,12 +52,15 @@ TEST(Trajectory, EveryFaultNamesFileAndLine) {
   EXPECT_THAT(message_for(good + "2.5 nan 2 3 0 0 0 1\n"), HasSubstr("bad.txt:2: 'nan' is not a"));
   EXPECT_THAT(message_for(good + "2.5 1 2 3 0 0 0 0\n"), HasSubstr("bad.txt:2: the quaternion"));
   EXPECT_THAT(message_for(good + "0.5 1 2 3 0 0 0 1\n"), HasSubstr("bad.txt:2: the time is earl"));
+  EXPECT_THAT(message_for(good + "2.5 1e300 2 3 0 0 0 1\n"), HasSubstr("bad.txt:2: the position"));
+  EXPECT_THAT(message_for(good + std::string(100'000, '7')), HasSubstr("bad.txt: a line is too"));
   EXPECT_THAT(message_for("# only a comment\n"), HasSubstr("bad.txt: the file holds no data line"));
 }
 
 TEST(Trajectory, MissingFileAndFolderAreNamed) {
   EXPECT_THROW(read_trajectory("no/such/file.txt"), Error);
   EXPECT_THROW(read_trajectory(STILLPOINT_BINARY_DIR), Error);
+  EXPECT_THROW(read_trajectory("/dev/zero"), Error);
 }
 
 TEST(Trajectory, StampsAreTheFirstColumnOfAnyList) {

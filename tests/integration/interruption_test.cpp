@@ -66,10 +66,22 @@ TEST(RunFolder, IsOneRunsAtATime) {
   ASSERT_TRUE(first.wait_for(" key frames  tracking")) << "no line of progress";
   const Outcome second = call(arguments);
   EXPECT_EQ(second.exit_code, 2);
-  EXPECT_THAT(second.err, HasSubstr(out.string() + ": cannot write the run folder: another run"));
+  EXPECT_THAT(second.err,
+              HasSubstr(out.string() + ": another run or study is writing into this folder"));
   first.send(SIGINT);
   first.finish();
   EXPECT_GT(count_poses(out / "trajectory.txt"), 0u);
+}
+
+// As with `stillpoint run … |& head`.
+TEST(ReaderThatGoes, CostsNoResults) {
+  const TemporaryFolder folder;
+  const fs::path out = folder.path() / "out";
+  Program program({"run", "orb_baseline", "--dataset", simulated_recording().string(), "-o",
+                   out.string(), "--set", "source.limit=20"});
+  program.stop_reading();
+  EXPECT_EQ(program.finish().exit_code, 0);
+  EXPECT_EQ(count_poses(out / "trajectory.txt"), 20u);
 }
 
 INSTANTIATE_TEST_SUITE_P(Modes, Interruption, ::testing::Values("inline", "threaded"),

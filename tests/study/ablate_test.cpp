@@ -156,6 +156,17 @@ TEST_F(Ablate, NamesEveryFaultOfAStudyWithItsPlace) {
   for (const std::string& line : expected) EXPECT_THAT(outcome.err, HasSubstr(line));
 }
 
+TEST_F(Ablate, AnEmptyNameIsNoFolder) {
+  fs::create_directories(out() / "recordings/mine");
+  const Outcome outcome = ablate(
+      "version: 1\n"
+      "sequences: [{name: '', scene: office}]\n"
+      "variants: [{name: v, pipeline: orb_baseline}]\n");
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_THAT(outcome.err, HasSubstr("'' also names a folder"));
+  EXPECT_TRUE(fs::exists(out() / "recordings/mine"));
+}
+
 TEST_F(Ablate, AStudyWithoutVersionOrVariantsIsRefused) {
   const Outcome outcome = ablate("sequences: []\n");
   EXPECT_EQ(outcome.exit_code, 2);

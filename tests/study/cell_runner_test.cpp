@@ -11,9 +11,7 @@
 #include <thread>
 
 #include "fixtures.hpp"
-#include "stillpoint/error.hpp"
 #include "study/child_process.hpp"
-#include "study/folder_lock.hpp"
 #include "study/text_file.hpp"
 #include "support/recording_writer.hpp"
 
@@ -173,15 +171,6 @@ TEST_F(CellRunner, AStopEndsWhatRunsAndKeepsWhatIsDone) {
 TEST(ChildProcess, ThatCannotBeStartedSaysSo) {
   const testing::TemporaryFolder folder;
   EXPECT_EQ(run_process({"/no/such/program"}, folder.path() / "console", {}).exit_code, 127);
-}
-
-TEST(FolderLock, HoldsOneStudy) {
-  const testing::TemporaryFolder folder;
-  {
-    const FolderLock lock(folder.path());
-    EXPECT_THROW(FolderLock(folder.path()), Error);
-  }
-  EXPECT_NO_THROW(FolderLock(folder.path()));
 }
 
 }  // namespace

@@ -69,7 +69,7 @@ class Program {
   }
   ~Program() {
     if (process_ > 0) finish();
-    ::close(err_);
+    if (err_ >= 0) ::close(err_);
   }
   Program(const Program&) = delete;
   Program& operator=(const Program&) = delete;
@@ -81,6 +81,11 @@ class Program {
     return true;
   }
   void send(int signal) const { ::kill(process_, signal); }
+  /// Nobody listens to standard error any more.
+  void stop_reading() {
+    ::close(err_);
+    err_ = -1;
+  }
 
   /// Waits for the end.
   Outcome finish() {
@@ -122,6 +127,7 @@ class Program {
 
   // False at the end of standard error.
   bool read_more() {
+    if (err_ < 0) return false;
     std::array<char, 4096> bytes{};
     const ssize_t count = ::read(err_, bytes.data(), bytes.size());
     if (count > 0) outcome_.err.append(bytes.data(), static_cast<std::size_t>(count));

@@ -13,6 +13,9 @@ namespace stillpoint::evaluation {
 namespace {
 
 constexpr double kMinQuaternionNorm = 1e-3;  // shorter ones are placeholders, not rotations
+constexpr double kFarthest = 1e7;            // metres; farther positions are no measurements
+constexpr std::size_t kLongestLine = 1 << 16;
+constexpr int kMostLines = 10'000'000;  // four days at 30 Hz
 constexpr const char* kPoseFormat = "a line reads 'time tx ty tz qx qy qz qw'";
 
 struct Line {
@@ -38,12 +41,16 @@ void for_each_line(const std::filesystem::path& file, const std::function<void(L
   std::ifstream stream(file);
   if (!stream || std::filesystem::is_directory(file))
     throw Error(Fault::kData, "cannot be read as a file", file.string());
-  std::string text;
-  for (int number = 1; std::getline(stream, text); ++number) {
-    std::vector<std::string> fields = split(text);
+  std::string text(kLongestLine, '\0');
+  for (int number = 1; stream.getline(text.data(), kLongestLine); ++number) {
+    const std::string where = file.string() + ":" + std::to_string(number);
+    if (number > kMostLines) throw Error(Fault::kData, "too many lines for a trajectory", where);
+    std::vector<std::string> fields = split(text.c_str());
     if (fields.empty() || fields.front().front() == '#') continue;
-    handle({file.string() + ":" + std::to_string(number), std::move(fields)});
+    handle({where, std::move(fields)});
   }
+  if (!stream.eof())
+    throw Error(Fault::kData, "a line is too long, or cannot be read", file.string(), kPoseFormat);
 }
 
 double parse_number(const std::string& field, const std::string& where) {
@@ -70,6 +77,9 @@ StampedPose parse_pose(const Line& line) {
   StampedPose pose{v[0], Pose::Identity()};
   pose.world_from_camera.linear() = rotation.normalized().toRotationMatrix();
   pose.world_from_camera.translation() = Eigen::Vector3d(v[1], v[2], v[3]);
+  if (pose.world_from_camera.translation().norm() > kFarthest)
+    throw Error(Fault::kData, "the position is more than 10,000 km away", line.where,
+                "positions are in metres");
   return pose;
 }
 

@@ -1,5 +1,6 @@
 // The command line. Exit codes: 0 done, 1 a stage failed, 2 wrong usage or configuration,
 // 3 unusable data.
+#include <csignal>
 #include <exception>
 #include <iostream>
 #include <span>
@@ -62,6 +63,7 @@ int run(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   stillpoint::keep_freed_memory();
+  std::signal(SIGPIPE, SIG_IGN);  // a reader such as `head` that goes early must cost no results
   try {
     return run(argc, argv);
   } catch (const stillpoint::ConfigError& error) {  // each of its lines says "error:" already

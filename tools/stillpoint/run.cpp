@@ -59,6 +59,11 @@ void run_and_print(Stages stages, const PipelineConfig& config, const RunFolder&
   }
   folder.remove_earlier_maps();
   print();
+  if (table->nothing_tracked())
+    folder.log(
+        LogLevel::kWarning,
+        "no frame was tracked: the trajectory is empty; 'stillpoint inspect' says whether the "
+        "camera and the depth fit the images");
 }
 
 /// What is allowed, but seldom meant.

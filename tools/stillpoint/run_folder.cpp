@@ -1,9 +1,7 @@
 #include "run_folder.hpp"
 
-#include <fcntl.h>
 #include <spdlog/logger.h>
 #include <spdlog/sinks/basic_file_sink.h>
-#include <sys/file.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -49,22 +47,13 @@ RunFolder::RunFolder(fs::path path, Console& console) : path_(std::move(path)), 
   std::error_code error;
   made_ = fs::create_directories(path_, error);
   if (error) fail(path_, error.message());
-  lock();
+  lock_.emplace(path_);
   if (::access(path_.c_str(), W_OK) != 0) fail(path_, std::strerror(errno));
 }
 
 RunFolder::~RunFolder() {
   std::error_code ignored;
   if (made_ && !log_) fs::remove(path_, ignored);
-  if (locked_ >= 0) ::close(locked_);
-}
-
-// The kernel lets go of it however the process ends. File systems without locks do without.
-void RunFolder::lock() {
-  locked_ = ::open(path_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (locked_ < 0) fail(path_, std::strerror(errno));
-  if (::flock(locked_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK)
-    fail(path_, "another run is writing into it");
 }
 
 void RunFolder::begin(const std::string& effective_yaml) {

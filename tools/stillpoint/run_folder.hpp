@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -11,6 +12,7 @@
 
 #include "console.hpp"
 #include "stillpoint/plugin.hpp"
+#include "stillpoint/runtime/folder_lock.hpp"
 
 namespace spdlog {
 class logger;
@@ -42,14 +44,13 @@ class RunFolder {
   std::vector<std::string> contents() const;
 
  private:
-  void lock();
   void remove_earlier_results() const;
   void note_earlier_maps();
 
   std::filesystem::path path_;
   Console& console_;
   bool made_ = false;  // by this run
-  int locked_ = -1;    // descriptor of the folder
+  std::optional<FolderLock> lock_;
   mutable std::mutex mutex_;
   std::shared_ptr<spdlog::logger> log_;                          // guarded, like early_
   mutable std::vector<std::pair<LogLevel, std::string>> early_;  // lines before begin()

@@ -16,6 +16,8 @@ class RunTable final : public Output {
   void finish(const RunSummary& summary) override;
 
   void print(std::ostream& stream) const;
+  /// There were frames, and none of them has a pose.
+  bool nothing_tracked() const { return tracking_.frames > 0 && tracking_.tracked == 0; }
 
  private:
   void print_run(std::ostream& stream) const;

@@ -84,11 +84,16 @@ class StudyChecker {
     return node ? node->location : elements->children[i].location;
   }
 
+  bool has_name(const char* list, std::size_t i) const {
+    const ConfigNode* elements = tree_.find(list);
+    return elements && i < elements->children.size() && elements->children[i].find("name");
+  }
+
   void check_names(const char* list, const std::vector<std::string>& names) {
     if (names.empty() && tree_.find(list))
       faults_.add(place(list), std::string(list) + " is empty");
     for (std::size_t i = 0; i < names.size(); ++i) {
-      if (names[i].empty()) continue;  // missing, which is known
+      if (names[i].empty() && !has_name(list, i)) continue;  // which is known
       if (!is_usable_name(names[i]))
         faults_.add(place(list, i, "name"),
                     "'" + names[i] + "' also names a folder: letters, digits and _ - + . only");
