@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "stillpoint/runtime/map_layout.hpp"
+#include "stillpoint/runtime/map_values.hpp"
 #include "stillpoint/runtime/sqlite_file.hpp"
 
 namespace stillpoint {
@@ -89,6 +90,7 @@ class MapReader {
     require(number("PRAGMA application_id") == map_layout::kApplication,
             "it is no map of Stillpoint");
     const std::int64_t version = number("PRAGMA user_version");
+    require(version >= 1, "it has no version");
     require(version <= map_layout::kVersion, "its version is " + std::to_string(version) +
                                                  ", this program knows up to " +
                                                  std::to_string(map_layout::kVersion));
@@ -109,6 +111,7 @@ class MapReader {
       camera->cx = row->real(5);
       camera->cy = row->real(6);
       camera->depth_noise = row->real(7);
+      check_values(*camera);
       cameras_.push_back(std::move(camera));
     }
   }
@@ -129,6 +132,7 @@ class MapReader {
       landmark.static_log_odds = static_cast<float>(row->real(13));
       const auto words = values_of<std::uint64_t>(row->bytes(14), 4, "a descriptor");
       std::ranges::copy(words, landmark.descriptor.begin());
+      check_values(landmark);
       edit_.add_landmark(landmark);
     }
   }
@@ -139,6 +143,7 @@ class MapReader {
   }
 
   KeyFrame keyframe(const RowReader& row) const {
+    require(row->integer(6) >= 0, "a key frame has impossible values");
     const auto count = static_cast<std::size_t>(row->integer(6));
     const auto camera = static_cast<std::size_t>(row->integer(3));
     require(camera < cameras_.size(), "a camera is missing");
@@ -164,6 +169,7 @@ class MapReader {
       keyframe.landmarks.push_back(id < 0 ? kNoId : static_cast<LandmarkId>(id));
     }
     keyframe.features = std::move(features);
+    check_values(keyframe);
     return keyframe;
   }
 

@@ -2,6 +2,8 @@
 
 #include <sqlite3.h>
 
+#include <utility>
+
 namespace stillpoint {
 
 SqliteStatement::SqliteStatement(sqlite3_stmt* statement)
@@ -80,6 +82,12 @@ SqliteFile::SqliteFile(const std::filesystem::path& file, Mode mode)
   const int code = sqlite3_open_v2(file.c_str(), &opened, flags, nullptr);
   database_.reset(opened);
   if (code != SQLITE_OK) throw SqliteFault(sqlite3_errmsg(opened));
+  // No SQL of the file itself is run.
+  for (const auto& [setting, on] : {std::pair{SQLITE_DBCONFIG_DEFENSIVE, 1},
+                                    {SQLITE_DBCONFIG_TRUSTED_SCHEMA, 0},
+                                    {SQLITE_DBCONFIG_ENABLE_VIEW, 0},
+                                    {SQLITE_DBCONFIG_ENABLE_TRIGGER, 0}})
+    sqlite3_db_config(opened, setting, on, nullptr);
 }
 
 void SqliteFile::execute(const std::string& sql) {
