@@ -8,10 +8,15 @@
 #include <span>
 #include <string>
 
+#include "source_tum/image_size.hpp"
 #include "stillpoint/error.hpp"
+#include "stillpoint/size_text.hpp"
 
 namespace stillpoint {
 namespace {
+
+constexpr std::uintmax_t kLargestFile = 256 << 20;  // bytes
+constexpr std::int64_t kMostPixels = 100'000'000;
 
 [[noreturn]] void fail(const std::filesystem::path& file, const std::string& problem,
                        const std::string& remedy = {}) {
@@ -37,20 +42,27 @@ std::string kind_of(const cv::Mat& image) {
 }  // namespace
 
 void ImageReader::load(const std::filesystem::path& file) {
+  std::error_code error;
+  // A pipe would be waited for.
+  if (std::filesystem::exists(file, error) && !std::filesystem::is_regular_file(file, error))
+    fail(file, "is no regular file");
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> stream(
       std::fopen(file.c_str(), "rb"), [](std::FILE* f) { return std::fclose(f); });
-  std::error_code error;
-  if (!stream || std::filesystem::is_directory(file, error))
+  if (!stream)
     fail(file, std::filesystem::exists(file, error) ? "cannot be opened" : "no such file");
   const auto size = std::filesystem::file_size(file, error);
   if (error) fail(file, "cannot be read: " + error.message());
   if (size == 0) fail(file, "the file is empty");
+  if (size > kLargestFile) fail(file, "is larger than 256 MiB: no image of a camera");
   bytes_.resize(size);
   if (std::fread(bytes_.data(), 1, size, stream.get()) != size) fail(file, "cannot be read");
 }
 
 cv::Mat ImageReader::decode(const std::filesystem::path& file, int imread_flags) {
   load(file);
+  if (const auto size = stated_size(bytes_);
+      size && std::int64_t{size->width} * size->height > kMostPixels)
+    fail(file, "an image of " + size_text(*size) + " pixels is more than any camera gives");
   cv::Mat image;
   try {
     if (PngDecoder::is_png(bytes_)) image = png_.decode(bytes_);

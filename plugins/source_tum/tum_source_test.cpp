@@ -2,8 +2,11 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
+#include <algorithm>
 #include <functional>
+#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
 #include "support/recording_writer.hpp"
@@ -161,6 +164,53 @@ TEST_F(TumSourceTest, SkipsATruncatedJpeg) {
   cv::imencode(".jpg", noise, bytes);
   folder_.write("rgb/1.200000.png", std::string(bytes.begin(), bytes.begin() + bytes.size() / 2));
   expect_skipped("truncated JPEG");
+}
+
+// Small files whose headers state gigapixels.
+void expect_too_large(const std::filesystem::path& file) {
+  try {
+    ImageReader().color(file);
+    FAIL() << "decoded";
+  } catch (const Error& error) {
+    EXPECT_THAT(error.what(), HasSubstr("an image of 32000 x 32000 pixels is more than"));
+  }
+}
+
+TEST_F(TumSourceTest, DecodesNoPngThatIsTooLarge) {
+  std::vector<std::uint8_t> bytes;
+  cv::imencode(".png", color_image(7), bytes);
+  for (const std::size_t side : {16, 20}) {  // four bytes each
+    bytes[side + 2] = 32000 >> 8;
+    bytes[side + 3] = 32000 & 255;
+  }
+  expect_too_large(folder_.write("big.png", std::string(bytes.begin(), bytes.end())));
+}
+
+TEST_F(TumSourceTest, DecodesNoJpegThatIsTooLarge) {
+  std::vector<std::uint8_t> bytes;
+  cv::imencode(".jpg", color_image(7), bytes);
+  constexpr std::uint8_t kFrameHeader[] = {0xff, 0xc0};
+  const auto frame =
+      std::search(bytes.begin(), bytes.end(), std::begin(kFrameHeader), std::end(kFrameHeader));
+  ASSERT_GT(bytes.end() - frame, 9);
+  for (const int side : {5, 7}) {  // two bytes each
+    frame[side] = 32000 >> 8;
+    frame[side + 1] = 32000 & 255;
+  }
+  expect_too_large(folder_.write("big.jpg", std::string(bytes.begin(), bytes.end())));
+}
+
+TEST_F(TumSourceTest, SkipsAFileTooLargeToBeAnImage) {
+  write(5);
+  std::filesystem::resize_file(depth_files_[2], 20ULL << 30);  // sparse
+  expect_skipped("is larger than 256 MiB");
+}
+
+TEST_F(TumSourceTest, SkipsAPipe) {
+  write(5);
+  std::filesystem::remove(color_files_[2]);
+  ASSERT_EQ(::mkfifo(color_files_[2].c_str(), 0600), 0);
+  expect_skipped("is no regular file");
 }
 
 TEST_F(TumSourceTest, SkipsWhatIsNoImage) {
