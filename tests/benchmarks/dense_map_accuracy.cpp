@@ -1,9 +1,10 @@
 // How right a dense map is, against a recording's true poses and labels.
-//   dense_map_accuracy TRUTH RUN...
+//   dense_map_accuracy TRUTH[,PEOPLE] RUN...
 // TRUTH: the recording's twin without noise, `stillpoint simulate SCENE --set
-// source.sensor.ideal=true` with the same seeds, and with labels; for ghosts alone the recording
-// itself will do, such as those of tools/real_people. RUN: folders of `stillpoint run`
-// with map_backend octomap; their maps are laid onto the truth by the best alignment of their
+// source.sensor.ideal=true` with the same seeds, and with labels. Where there is no such twin with
+// people, PEOPLE is the recording itself and TRUTH the same without people (tools/real_people):
+// what people were in is then PEOPLE's, the rest TRUTH's. RUN: folders of `stillpoint run` with
+// map_backend octomap; their maps are laid onto the truth by the best alignment of their
 // trajectories. One line of JSON each.
 #include <algorithm>
 #include <array>
@@ -144,12 +145,18 @@ Pose map_from_truth_of(const std::filesystem::path& truth, const std::filesystem
 }
 
 void run(const std::vector<std::filesystem::path>& folders) {
-  const std::vector<LabelledFrame> frames = read_labelled_frames(folders[0], kEvery);
+  const std::string names = folders[0].string();
+  const std::filesystem::path room = names.substr(0, names.find(','));
+  const std::filesystem::path crowd =
+      names.substr(names.find(',') + 1);  // the same without a comma
+  const std::vector<LabelledFrame> frames = read_labelled_frames(room, kEvery);
+  const std::vector<LabelledFrame> with_people = read_labelled_frames(crowd, kEvery);
   for (std::size_t i = 1; i < folders.size(); ++i) {
     const SavedOctree saved = read_octree(folders[i] / "map" / "map.ot");
-    const Pose map_from_truth = map_from_truth_of(folders[0], folders[i]);
+    const Pose map_from_truth = map_from_truth_of(room, folders[i]);
     const double edge = saved.tree->getResolution();
-    const Truth truth = truth_in(frames, map_from_truth, edge);
+    Truth truth = truth_in(frames, map_from_truth, edge);
+    truth.people = truth_in(with_people, map_from_truth, edge).people;
     nlohmann::json result = {{"run", folders[i].string()}};
     result.update(judge(*saved.tree, truth));
     result["cost_map"] =
@@ -162,5 +169,6 @@ void run(const std::vector<std::filesystem::path>& folders) {
 }  // namespace stillpoint
 
 int main(int argc, char** argv) {
-  return stillpoint::run_on_folders(argc, argv, "dense_map_accuracy TRUTH RUN...", stillpoint::run);
+  return stillpoint::run_on_folders(argc, argv, "dense_map_accuracy TRUTH[,PEOPLE] RUN...",
+                                    stillpoint::run);
 }
