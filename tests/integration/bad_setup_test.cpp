@@ -140,6 +140,22 @@ TEST_F(BadPlugins, AreListedWithTheirReasonsBesideTheGoodOnes) {
   EXPECT_EQ(count_poses(out() / "trajectory.txt"), 6u);
 }
 
+TEST_F(BadPlugins, AListForProgramsAndForScripts) {
+  const Outcome good = call({"plugins", "list", "--strict"});
+  EXPECT_EQ(good.exit_code, 0) << good.err;
+  Surroundings surroundings = with_plugins();
+  surroundings.environment["STILLPOINT_PLUGIN_PATH"] += ":/nowhere";
+  const Outcome bad = call({"plugins", "list", "--strict", "--json"}, surroundings);
+  EXPECT_EQ(bad.exit_code, 2);
+  const auto list = nlohmann::json::parse(bad.out);
+  EXPECT_GT(list["types"].size(), 20u);
+  EXPECT_TRUE(list["types"][0].contains("library"));
+  EXPECT_GT(list["unusable"].size(), 5u);
+  EXPECT_EQ(list["missing_folders"], nlohmann::json({"/nowhere"}));
+  EXPECT_THAT(call({"plugins", "list"}, surroundings).out,
+              HasSubstr("folders that are not there:\n  /nowhere\n"));
+}
+
 TEST_F(BadPlugins, ReasonsExplainWhyATypeIsMissing) {
   const Outcome outcome =
       run("orb_baseline", on_recording({"--set", "moving_checker.type=older_api"}), with_plugins());

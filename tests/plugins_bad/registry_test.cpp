@@ -122,8 +122,14 @@ TEST_F(RegistryTest, Folder) {
 
 TEST_F(RegistryTest, DuplicateTypeGoesToTheFirst) {
   use("second_good");
-  EXPECT_EQ(reason(), "moving_checker 'good' is already provided by " +
-                          (folder_ / "libstillpoint_good.so").string());
+  const fs::path first = folder_ / "libstillpoint_good.so";
+  EXPECT_EQ(reason(), "moving_checker 'good' is already provided by " + first.string());
+  Registry registry;
+  registry.search(folder_);
+  EXPECT_EQ(registry.find("moving_checker", "good")->library, first);
+  ASSERT_NE(registry.find("moving_checker", "unique"), nullptr) << "the rest can be used";
+  EXPECT_EQ(registry.find("moving_checker", "unique")->library,
+            folder_ / "libstillpoint_second_good.so");
 }
 
 TEST_F(RegistryTest, TruncatedAnywhere) {
@@ -183,6 +189,9 @@ TEST_F(RegistryTest, MissingFolderHasNoPlugins) {
   registry.search(folder_ / "nowhere");
   EXPECT_TRUE(registry.types().empty() && registry.unusable().empty());
   EXPECT_EQ(registry.searched().size(), 1u);
+  EXPECT_EQ(registry.missing_folders(), registry.searched());
+  EXPECT_NE(registry.explain_missing("tracker", "orb").find("nowhere (not there)"),
+            std::string::npos);
 }
 
 }  // namespace

@@ -3,6 +3,8 @@
 #include <iomanip>
 #include <iostream>
 #include <memory>
+#include <nlohmann/json.hpp>
+#include <tuple>
 
 #include "commands.hpp"
 #include "stillpoint/did_you_mean.hpp"
@@ -34,18 +36,55 @@ Registry search_plugins(const std::vector<std::string>& first) {
   return registry;
 }
 
-void list(const Registry& registry) {
+struct ListOptions {
+  bool json = false;
+  bool strict = false;
+};
+
+std::vector<PluginType> sorted_types(const Registry& registry) {
   std::vector<PluginType> types = registry.types();
   std::ranges::stable_sort(types, {},
                            [](const PluginType& type) { return std::tie(type.kind, type.type); });
+  return types;
+}
+
+void list_for_people(const Registry& registry) {
   std::vector<Row> rows = {{"KIND", "TYPE", "VERSION", "FILE"}};
-  for (const PluginType& type : types)
+  for (const PluginType& type : sorted_types(registry))
     rows.push_back({type.kind, type.type, type.version, type.library.string()});
   print_table(rows);
-  if (registry.unusable().empty()) return;
-  std::cout << "\nnot usable:\n";
+  if (!registry.unusable().empty()) std::cout << "\nnot usable:\n";
   for (const UnusableLibrary& library : registry.unusable())
     std::cout << "  " << library.library.string() << ": " << library.reason << '\n';
+  if (!registry.missing_folders().empty()) std::cout << "\nfolders that are not there:\n";
+  for (const auto& folder : registry.missing_folders())
+    std::cout << "  " << folder.string() << '\n';
+}
+
+void list_as_json(const Registry& registry) {
+  nlohmann::ordered_json types = nlohmann::json::array(), unusable = nlohmann::json::array(),
+                         missing = nlohmann::json::array();
+  for (const PluginType& type : sorted_types(registry))
+    types.push_back({{"kind", type.kind},
+                     {"type", type.type},
+                     {"summary", type.summary},
+                     {"plugin", type.plugin},
+                     {"version", type.version},
+                     {"library", type.library.string()}});
+  for (const UnusableLibrary& library : registry.unusable())
+    unusable.push_back({{"library", library.library.string()}, {"reason", library.reason}});
+  for (const auto& folder : registry.missing_folders()) missing.push_back(folder.string());
+  std::cout << nlohmann::ordered_json{{"types", types},
+                                      {"unusable", unusable},
+                                      {"missing_folders", missing}}
+                   .dump(2)
+            << '\n';
+}
+
+void list(const Registry& registry, const ListOptions& options) {
+  options.json ? list_as_json(registry) : list_for_people(registry);
+  if (options.strict && !(registry.unusable().empty() && registry.missing_folders().empty()))
+    throw Error(Fault::kUsage, "not every plugin or folder can be used");
 }
 
 void describe(const PluginType& type) {
@@ -90,8 +129,13 @@ void add_plugins(CLI::App& app) {
       ->type_name("DIR")
       ->allow_extra_args(false);
 
-  command->add_subcommand("list", "Every stage type with version and file, and unusable libraries")
-      ->callback([folders] { list(search_plugins(*folders)); });
+  CLI::App* list_command = command->add_subcommand(
+      "list", "Every stage type with version and file, and what cannot be used");
+  auto options = std::make_shared<ListOptions>();
+  list_command->add_flag("--json", options->json, "For programs");
+  list_command->add_flag("--strict", options->strict,
+                         "Exit code 2 when a library, a type or a folder cannot be used");
+  list_command->callback([folders, options] { list(search_plugins(*folders), *options); });
 
   CLI::App* describe_command =
       command->add_subcommand("describe", "The options of a type, as in 'describe octomap'");

@@ -45,15 +45,23 @@ void Registry::add(const PluginDescriptor& descriptor, const fs::path& file,
   const std::span<const PluginEntry> entries(descriptor.entries, descriptor.entry_count);
   for (const PluginEntry& entry : entries) {
     const PluginType* first = find(entry.kind, entry.type);
-    if (!first) continue;
+    if (!first) {
+      types_.push_back({entry.kind, entry.type, entry.summary, descriptor.name, descriptor.version,
+                        file, &entry, handle});
+      continue;
+    }
     const std::string provider = first->library.empty() ? "this program" : first->library.string();
     unusable_.push_back({file, std::string(entry.kind) + " '" + entry.type +
                                    "' is already provided by " + provider});
-    return;
   }
-  for (const PluginEntry& entry : entries)
-    types_.push_back({entry.kind, entry.type, entry.summary, descriptor.name, descriptor.version,
-                      file, &entry, handle});
+}
+
+std::vector<fs::path> Registry::missing_folders() const {
+  std::vector<fs::path> missing;
+  std::error_code error;
+  for (const fs::path& folder : searched_)
+    if (!fs::is_directory(folder, error)) missing.push_back(folder);
+  return missing;
 }
 
 const PluginType* Registry::find(std::string_view kind, std::string_view type) const {
@@ -74,7 +82,9 @@ std::string Registry::explain_missing(std::string_view kind, std::string_view ty
   for (const UnusableLibrary& library : unusable_)
     text += "\n  not usable: " + library.library.filename().string() + ": " + library.reason;
   std::vector<std::string> folders;
-  for (const fs::path& folder : searched_) folders.push_back(folder.string());
+  std::error_code error;
+  for (const fs::path& folder : searched_)
+    folders.push_back(folder.string() + (fs::is_directory(folder, error) ? "" : " (not there)"));
   return text + "\n  searched:   " + (folders.empty() ? "nothing" : join(folders)) +
          "      (add folders with STILLPOINT_PLUGIN_PATH)";
 }

@@ -23,25 +23,28 @@ struct PluginType {
   std::shared_ptr<const void> handle;  ///< keeps the library loaded
 };
 
-/// A library that was found and cannot be used.
+/// A library that was found and cannot be used, or cannot provide one of its types.
 struct UnusableLibrary {
   std::filesystem::path library;
   std::string reason;
 };
 
-/// The first library found with a (kind, type) provides it. A library that fails a check is listed
-/// with its reason and the others still load. Loaded libraries stay in memory until the process
-/// ends, also after the registry is gone: exceptions and shared objects point into their code.
+/// The first library found with a (kind, type) provides it; the other types of later ones can be
+/// used. A library that fails a check is listed with its reason and the others still load. Loaded
+/// libraries stay in memory until the process ends, also after the registry is gone: exceptions and
+/// shared objects point into their code.
 class Registry {
  public:
   /// Stages linked into the program, for tests. The descriptor must outlive every object.
   void add(const PluginDescriptor& descriptor);
-  /// Loads every libstillpoint_*.so of a folder; a folder that does not exist has none.
+  /// Loads every libstillpoint_*.so of a folder; one that does not exist is among
+  /// missing_folders().
   void search(const std::filesystem::path& folder);
 
   const std::vector<PluginType>& types() const { return types_; }
   const std::vector<UnusableLibrary>& unusable() const { return unusable_; }
   const std::vector<std::filesystem::path>& searched() const { return searched_; }
+  std::vector<std::filesystem::path> missing_folders() const;
 
   /// Null when there is none.
   const PluginType* find(std::string_view kind, std::string_view type) const;
