@@ -132,6 +132,22 @@ TEST_F(RegistryTest, DuplicateTypeGoesToTheFirst) {
             folder_ / "libstillpoint_second_good.so");
 }
 
+TEST_F(RegistryTest, TypesWithWrongOptionsAreRefusedOneByOne) {
+  use("bad_options");
+  Registry registry;
+  registry.search(folder_);
+  std::vector<std::string> reasons;
+  for (const UnusableLibrary& library : registry.unusable()) reasons.push_back(library.reason);
+  EXPECT_EQ(
+      reasons,
+      (std::vector<std::string>{
+          "the options of moving_checker 'outside': the default of 'share', 2, is outside its "
+          "range, [0, 1]",
+          "the options of moving_checker 'twice': two options are named 'points'",
+          "the options of moving_checker 'type': an option must not be named 'type'"}));
+  EXPECT_NE(registry.find("moving_checker", "right"), nullptr);
+}
+
 TEST_F(RegistryTest, TruncatedAnywhere) {
   const std::string bytes = bytes_of("good");
   for (std::size_t part = 0; part < 64; ++part) {

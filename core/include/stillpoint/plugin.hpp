@@ -111,6 +111,12 @@ void* create(OptionVisitor& visitor, const StageContext& context) {
 template <class Interface, class Implementation>
 constexpr PluginEntry provide(const char* type, const char* summary) {
   static_assert(std::is_base_of_v<Interface, Implementation>);
+  using Options = typename detail::OptionsOf<Implementation>::type;
+  static_assert(std::is_same_v<Options, detail::NoOptions> ||
+                    std::is_constructible_v<Implementation, Options, const StageContext&> ||
+                    std::is_constructible_v<Implementation, Options>,
+                "a class with Options needs a constructor that takes them, (Options) or (Options, "
+                "const StageContext&): what users write in the pipeline file would be lost");
   return {Interface::kKind, type, summary, &detail::describe<Implementation>,
           &detail::create<Interface, Implementation>};
 }

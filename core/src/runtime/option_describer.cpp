@@ -1,5 +1,7 @@
 #include "stillpoint/runtime/option_describer.hpp"
 
+#include <set>
+
 #include "stillpoint/did_you_mean.hpp"
 #include "stillpoint/runtime/option_record.hpp"
 
@@ -13,14 +15,34 @@ void OptionDescriber::add(std::string_view name, std::string type, const T& v,
                    std::string(info.unit), std::string(info.help)});
 }
 
+template <class T>
+void OptionDescriber::add_number(std::string_view name, std::string type, const T& v,
+                                 const OptionInfo& info) {
+  add(name, std::move(type), v, info);
+  if (info.required || (v >= info.min && v <= info.max)) return;
+  bad_defaults_.push_back("the default of '" + rows_.back().name + "', " + yaml_text(v) +
+                          ", is outside its range, " + range_text(info));
+}
+
+std::vector<std::string> OptionDescriber::faults() const {
+  std::vector<std::string> faults = bad_defaults_;
+  std::set<std::string> names;
+  for (const OptionRow& row : rows_) {
+    if (row.name == "type") faults.emplace_back("an option must not be named 'type'");
+    if (!names.insert(row.name).second)
+      faults.push_back("two options are named '" + row.name + "'");
+  }
+  return faults;
+}
+
 void OptionDescriber::value(std::string_view name, bool& v, const OptionInfo& info) {
   add(name, "true | false", v, info);
 }
 void OptionDescriber::value(std::string_view name, int& v, const OptionInfo& info) {
-  add(name, "integer", v, info);
+  add_number(name, "integer", v, info);
 }
 void OptionDescriber::value(std::string_view name, double& v, const OptionInfo& info) {
-  add(name, "number", v, info);
+  add_number(name, "number", v, info);
 }
 void OptionDescriber::value(std::string_view name, std::string& v, const OptionInfo& info,
                             const std::vector<std::string_view>& choices) {

@@ -5,6 +5,7 @@
 
 #include "stillpoint/did_you_mean.hpp"
 #include "stillpoint/error.hpp"
+#include "stillpoint/runtime/option_describer.hpp"
 #include "stillpoint/runtime/plugin_library.hpp"
 
 namespace stillpoint {
@@ -21,6 +22,19 @@ std::vector<fs::path> plugin_files(const fs::path& folder) {
   }
   std::ranges::sort(files);
   return files;
+}
+
+/// What is wrong with the options that a plugin declares; empty: nothing.
+std::string fault_of_options(const PluginEntry& entry) {
+  try {
+    OptionDescriber describer;
+    entry.describe(describer);
+    return join(describer.faults());
+  } catch (const std::exception& error) {
+    return error.what();
+  } catch (...) {
+    return "describing them threw something that is not a std::exception";
+  }
 }
 
 }  // namespace
@@ -44,6 +58,11 @@ void Registry::add(const PluginDescriptor& descriptor, const fs::path& file,
                    std::shared_ptr<const void> handle) {
   const std::span<const PluginEntry> entries(descriptor.entries, descriptor.entry_count);
   for (const PluginEntry& entry : entries) {
+    const std::string name = std::string(entry.kind) + " '" + entry.type + "'";
+    if (const std::string fault = fault_of_options(entry); !fault.empty()) {
+      unusable_.push_back({file, "the options of " + name + ": " + fault});
+      continue;
+    }
     const PluginType* first = find(entry.kind, entry.type);
     if (!first) {
       types_.push_back({entry.kind, entry.type, entry.summary, descriptor.name, descriptor.version,
@@ -51,8 +70,7 @@ void Registry::add(const PluginDescriptor& descriptor, const fs::path& file,
       continue;
     }
     const std::string provider = first->library.empty() ? "this program" : first->library.string();
-    unusable_.push_back({file, std::string(entry.kind) + " '" + entry.type +
-                                   "' is already provided by " + provider});
+    unusable_.push_back({file, name + " is already provided by " + provider});
   }
 }
 

@@ -20,6 +20,9 @@ struct OptionRow {
 class OptionDescriber final : public OptionVisitor {
  public:
   const std::vector<OptionRow>& rows() const { return rows_; }
+  /// Mistakes of the plugin's author: names used twice, the name 'type', which is the pipeline
+  /// file's own, defaults outside their range.
+  std::vector<std::string> faults() const;
 
  protected:
   void value(std::string_view name, bool& v, const OptionInfo& info) override;
@@ -41,11 +44,14 @@ class OptionDescriber final : public OptionVisitor {
 
  private:
   template <class T>
+  void add_number(std::string_view name, std::string type, const T& v, const OptionInfo& info);
+  template <class T>
   void add(std::string_view name, std::string type, const T& v, const OptionInfo& info);
   void enter(std::string_view name, std::string_view suffix, std::string_view type,
              const OptionInfo& info);
 
   std::vector<OptionRow> rows_;
+  std::vector<std::string> bad_defaults_;
   std::vector<std::string> prefixes_ = {""};
 };
 
