@@ -10,8 +10,10 @@ import numpy as np
 
 import samples
 from segnet import PERSON, VOC_IDS
+from sources import TRUE_CLASSES
 from teachers import enlarge, input_size, label_size
 
+UNKNOWN = 255  # class of what is no person and has no true label
 LEAST_SURE = 0.35  # probability of the teacher's best class below which a pixel says nothing
 
 CLASS_OF_VOC = np.zeros(256, np.uint8)
@@ -61,4 +63,14 @@ def load(photo):
     sample.things = np.where(doubtful, 0, things).astype(np.uint8)
     sure = np.clip((probability - LEAST_SURE) / (1 - LEAST_SURE), 0, 1) * ~doubtful
     sample.weight = np.where(person, sample.weight, sample.weight * sure).astype(np.float32)
+    return sample
+
+
+def load_true(photo):
+    """The same; without a teacher's opinion on things, which are UNKNOWN."""
+    if photo.source in TRUE_CLASSES:
+        return load(photo)
+    sample = samples.load(photo)
+    if sample is not None:
+        sample.things = np.full(sample.target.shape, UNKNOWN, np.uint8)
     return sample

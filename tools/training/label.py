@@ -3,6 +3,7 @@
 
 import argparse
 import os
+import random
 import sys
 import time
 from pathlib import Path
@@ -21,7 +22,7 @@ def arguments():
     parser.add_argument('work', type=Path, help='working folder, see prepare.py')
     parser.add_argument('models', type=Path,
                         help='folder with deeplabv3_mnv2_voc21.onnx, bodypix_mnv1_075_person.onnx')
-    parser.add_argument('--source', action='append', choices=ARCHIVES, help='default: all, in turn')
+    parser.add_argument('--source', action='append', choices=ARCHIVES, help='default: all')
     parser.add_argument('--classes', action='store_true',
                         help='all classes by DeepLab, for the SegNet, instead of people')
     parser.add_argument('--masked', action='store_true', help='those with a true mask, too')
@@ -38,8 +39,10 @@ def write_whole(path, image):
 
 
 def to_label(args):
-    """Photographs and the files for their labels. A true mask says nothing of other classes."""
+    """Photographs and the files for their labels, mixed: whoever stops early has some of each. A true
+    mask says nothing of other classes."""
     photos = photographs(args.work, args.source or ARCHIVES)
+    random.Random(0).shuffle(photos)
     if args.classes:
         return [(photo, photo.classes_path) for photo in photos]
     return [(photo, photo.teachers_path) for photo in photos

@@ -29,6 +29,17 @@ def of_person(logits, target, weight):
             DICE_SHARE * lack_of_overlap(torch.sigmoid(logits), target, weight))
 
 
+def of_probabilities(scores, target, weight):
+    """`target`: the probability of every class."""
+    scores = scores.float()
+    entropy = -(target * scores.log_softmax(dim=1)).sum(dim=1, keepdim=True)
+    share = (target * scores.new_tensor(CLASS_WEIGHTS)[:, None, None]).sum(dim=1, keepdim=True)
+    share = share * (weight + LEAST_WEIGHT)
+    person = scores.softmax(dim=1)[:, PERSON:PERSON + 1]
+    return ((entropy * share).sum() / share.sum().clamp(min=1) +
+            DICE_SHARE * lack_of_overlap(person, target[:, PERSON:PERSON + 1], weight))
+
+
 def of_classes(scores, target, weight):
     """`target`: the class of every pixel. Pixels whose label is not believed do not count."""
     scores, target = scores.float(), target[:, 0].long()

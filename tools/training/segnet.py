@@ -40,22 +40,30 @@ class SegNet(nn.Module):
         self.scores = nn.Conv2d(CHANNELS[0], len(CLASSES), 3, padding=1)
 
     def forward(self, x):
-        pooled = []
+        return self.decode(self.encode(x))
+
+    def encode(self, x):
+        """The output of every level, and where the maxima of its pooling are."""
+        levels = []
         for level in self.encoder:
-            x = level(x)
-            size = x.shape
-            x, places = F.max_pool2d(x, 2, 2, return_indices=True)
-            pooled.append((places, size))
+            before = level(x)
+            x, places = F.max_pool2d(before, 2, 2, return_indices=True)
+            levels.append((before, places))
+        return x, levels
+
+    def decode(self, encoded):
+        x, levels = encoded
+        levels = list(levels)
         for level in self.decoder:
-            x = level(unpooled(x, *pooled.pop()))
-        return self.scores(unpooled(x, *pooled.pop()))
+            x = level(unpooled(x, *levels.pop()))
+        return self.scores(unpooled(x, *levels.pop()))
 
     def convolutions(self):
         return [module for module in self.modules() if isinstance(module, nn.Conv2d)]
 
 
-def unpooled(x, places, size):
-    return F.max_unpool2d(x, places, 2, 2, output_size=size)
+def unpooled(x, pooled, places):
+    return F.max_unpool2d(x, places, 2, 2, output_size=pooled.shape)
 
 
 def person_margin(scores):

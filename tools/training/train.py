@@ -15,11 +15,13 @@ sys.dont_write_bytecode = True
 import cv2  # noqa: E402
 import numpy as np  # noqa: E402
 import torch  # noqa: E402
+from torch import nn  # noqa: E402
 from torch.utils.data import DataLoader  # noqa: E402
 
 import caffe_files  # noqa: E402
 import checkpoint  # noqa: E402
 import onnx_weights  # noqa: E402
+from distil import Distillation  # noqa: E402
 from held_out import HeldOut  # noqa: E402
 from kinds import KINDS  # noqa: E402
 from network import normalised_input, set_weights  # noqa: E402
@@ -52,6 +54,12 @@ def arguments():
     parser.add_argument('--workers', type=int, default=1, help='processes that make images')
     parser.add_argument('--precision', choices=['float', 'bfloat16', 'auto'], default='auto',
                         help='of convolutions; auto: bfloat16 on what is fast with it')
+    parser.add_argument('--cache', action='store_true',
+                        help='use the images of fill_cache.py: SegNet only')
+    parser.add_argument('--hints', type=float, default=0, metavar='WEIGHT', help=
+                        "with --cache: of the teachers' features in the loss; falls as the rate")
+    parser.add_argument('--hints-only', type=int, default=0, metavar='ITERATIONS',
+                        help='at first only hints: the decoder rests')
     parser.add_argument('--save-every', type=int, default=100, help='iterations')
     args = parser.parse_args()
     args.size = tuple(args.size or KINDS[args.network].size)
@@ -73,9 +81,10 @@ def scale_of(value, normalise):
     return 1.0 if normalise else max(0.01, float(value.detach().square().mean().sqrt()))
 
 
-def make_optimiser(network, normalise):
+def make_optimiser(network, normalise, more):
     groups = [{'params': [value], 'weight_decay': 0.02 if value.ndim > 1 and normalise else 0,
                'scale': scale_of(value, normalise)} for value in network.parameters()]
+    groups += [{'params': [value], 'weight_decay': 0, 'scale': 1.0} for value in more]
     return torch.optim.AdamW(groups, lr=0)
 
 
@@ -99,10 +108,35 @@ def start_state(args):
     return {'normalise': False, 'weights': reader.read(args.start)}
 
 
-class Training:
-    """Network, optimiser and average; made anew or from a checkpoint."""
+class Labels(nn.Module):
+    """Training with images made anew, and their labels."""
 
-    def __init__(self, args):
+    def __init__(self, photos, args):
+        super().__init__()
+        self.args, self.kind = args, KINDS[args.network]
+        self.collection = Collection(photo for photo in photos if not photo.held_out)
+        print(f'to train on: {self.collection}', flush=True)
+        if not all((self.collection.people, self.collection.empty, self.collection.cut_outs)):
+            sys.exit('train: needs photographs with people, some with outlines to cut out, and '
+                     'empty ones: run prepare.py and label.py')
+
+    def batches(self, first):
+        args = self.args
+        images = self.kind.images(self.collection, args.seed, first * args.batch,
+                                  (args.iterations - first) * args.batch, args.size)
+        return DataLoader(images, args.batch, num_workers=args.workers,
+                          worker_init_fn=one_thread, pin_memory='cuda' in args.device)
+
+    def loss(self, network, _, images, target, weight):
+        return self.kind.loss(network(images), target, weight)
+
+
+class Training:
+    """Network, optimiser and average; made anew or from a checkpoint. `task`: what gives batches
+    and the loss; it may have parameters of its own, which are not exported."""
+
+    def __init__(self, task, args):
+        self.task = task.to(args.device)
         self.args, self.file = args, args.output / 'checkpoint.pt'
         self.bfloat16 = use_bfloat16(args.precision, args.device)
         state = torch.load(self.file, map_location='cpu') if self.file.exists() else None
@@ -121,23 +155,24 @@ class Training:
         elif 'weights' in begun:
             set_weights(self.network, begun['weights'])
         self.network.to(args.device, memory_format=torch.channels_last).train()
-        self.optimiser = make_optimiser(self.network, self.normalise)
+        self.optimiser = make_optimiser(self.network, self.normalise, task.parameters())
         self.average = checkpoint.Average(self.network)
         if state:
             self.optimiser.load_state_dict(state['optimiser'])
             for name, value in state['average'].items():
                 self.average.state[name].copy_(value)
+            self.task.load_state_dict(state.get('task', {}))
             restore_random_state(state['random'])
 
-    def step(self, images, target, weight):
+    def step(self, images, *labels):
         for group in self.optimiser.param_groups:
             group['lr'] = rate_at(self.iteration, self.args) * group['scale']
         device = self.args.device
         images = normalised_input(images.to(device, non_blocking=True).float())
         images = images.contiguous(memory_format=torch.channels_last)
+        labels = [label.to(device) for label in labels]
         with torch.autocast(device.split(':')[0], torch.bfloat16, enabled=self.bfloat16):
-            logits = self.network(images)
-        loss = KINDS[self.args.network].loss(logits, target.to(device), weight.to(device))
+            loss = self.task.loss(self.network, self.iteration, images, *labels)
         self.optimiser.zero_grad(set_to_none=True)
         loss.backward()
         torch.nn.utils.clip_grad_norm_(self.network.parameters(), LARGEST_GRADIENT)
@@ -150,7 +185,8 @@ class Training:
         checkpoint.save(self.file, kind=self.args.network, iteration=self.iteration,
                         normalise=self.normalise,
                         network=self.network.state_dict(), average=self.average.state,
-                        optimiser=self.optimiser.state_dict(), random=random_state())
+                        optimiser=self.optimiser.state_dict(), task=self.task.state_dict(),
+                        random=random_state())
 
 
 def random_state():
@@ -175,14 +211,9 @@ def one_thread(_):
     torch.set_num_threads(1)
 
 
-def run(training, collection, held_out, args):
-    remaining = args.iterations - training.iteration
-    images = KINDS[args.network].images(collection, args.seed, training.iteration * args.batch,
-                                        remaining * args.batch, args.size)
-    loader = DataLoader(images, args.batch, num_workers=args.workers, worker_init_fn=one_thread,
-                        pin_memory='cuda' in args.device)
+def run(training, held_out, args):
     start, losses = time.monotonic(), []
-    for batch in loader:
+    for batch in training.task.batches(training.iteration):
         losses.append(training.step(*batch))
         if training.iteration % args.save_every and training.iteration != args.iterations:
             continue
@@ -201,17 +232,12 @@ def main():
     np.random.seed(args.seed)
     torch.manual_seed(args.seed)
     photos = photographs(args.work)
-    collection = Collection(photo for photo in photos if not photo.held_out)
-    print(f'to train on: {collection}', flush=True)
     held_out = HeldOut([photo for photo in photos if photo.held_out], KINDS[args.network],
                        args.size)
-    training = Training(args)
+    training = Training(Distillation(args) if args.cache else Labels(photos, args), args)
     if training.iteration >= args.iterations:
         sys.exit(f'train: {training.file} has {training.iteration} iterations: nothing to do')
-    if not collection.people or not collection.empty or not collection.cut_outs:
-        sys.exit('train: needs photographs with people, some with outlines to cut out, and empty '
-                 'ones: run prepare.py and label.py')
-    run(training, collection, held_out, args)
+    run(training, held_out, args)
 
 
 if __name__ == '__main__':

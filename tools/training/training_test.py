@@ -23,6 +23,7 @@ except ImportError as error:
     print(f'skipped: {error}; see tools/training/README.md')
     sys.exit(SKIPPED)
 
+import cache  # noqa: E402
 import caffe_files  # noqa: E402
 import export  # noqa: E402
 import models  # noqa: E402
@@ -30,6 +31,7 @@ import onnx_weights  # noqa: E402
 import render_desks  # noqa: E402
 from batches import Images  # noqa: E402
 from checkpoint import averaged_network  # noqa: E402
+from class_labels import UNKNOWN  # noqa: E402
 from class_labels import load as load_classes  # noqa: E402
 from network import PersonNetwork, folded, normalised_input, set_weights  # noqa: E402
 from samples import Collection, load  # noqa: E402
@@ -323,7 +325,63 @@ class Desks(unittest.TestCase):
         self.assertEqual(first.read_bytes(), before)
 
 
+class Distilled(unittest.TestCase):
+    """A SegNet from images of a cache, with features beside them; all are noise."""
+
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = tempfile.TemporaryDirectory()
+        root = Path(cls.folder.name)
+        cls.work, cls.output = made_up_work(root), root / 'run'
+        (cls.work / 'cache').mkdir()
+        data = np.random.default_rng(3).bytes(cache.RECORDS * cache.RECORD.itemsize)
+        records = np.frombuffer(data, cache.RECORD).copy()
+        records['things'] = np.where(records['things'] < 100, CLASSES.index('sofa'), UNKNOWN)
+        records.tofile(cls.work / 'cache/000000.images')
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.folder.cleanup()
+
+    def test_first_only_hints_then_all_and_goes_on(self):
+        for iterations in (1, 2):
+            said = call('train.py', self.work, self.output, '--network', 'segnet', '--cache',
+                        '--hints', 1, '--hints-only', 1, '--size', *SMALL, '--batch', 2,
+                        '--iterations', iterations, '--device', 'cpu')
+            self.assertIn(f'{iterations} of {iterations}', said)
+        state = torch.load(self.output / 'checkpoint.pt')
+        self.assertEqual(state['iteration'], 2)
+        self.assertIn('adapters.layers.deeplab.weight', state['task'])
+
+    def test_the_same_batch_follows_from_the_same_number(self):
+        stored = cache.Cache(self.work / 'cache')
+        one, two = (stored.batch(np.random.default_rng(5), 3, SMALL) for _ in range(2))
+        self.assertTrue(all(torch.equal(a, b) for a, b in zip(one, two)))
+        self.assertEqual(one[0].shape, (3, 3, 64, 96))
+        self.assertTrue(torch.allclose(one[1].sum(dim=1), torch.ones(3, 64, 96), atol=1e-4))
+
+
 class Parts(unittest.TestCase):
+    def test_cells_are_cut_out_as_pixels_are(self):
+        across = np.tile(np.linspace(0, 200, 240, dtype=np.float32), (192, 1))
+        coarse = torch.from_numpy(cv2.resize(across, (40, 32), interpolation=cv2.INTER_AREA))
+        for seed in range(4):
+            part = cache.Part(np.random.default_rng(seed))
+            maps = torch.from_numpy(part.map())[None]
+            cells = cache.cells_of(coarse[None, None], maps, (20, 16), False)[0, 0].numpy()
+            pixels = cv2.resize(part.of(across, (80, 64)), (20, 16), interpolation=cv2.INTER_AREA)
+            self.assertLess(np.abs(cells - pixels)[:, 1:-1].max(), 2)
+
+    def test_people_are_as_labelled_and_other_classes_as_known_or_taught(self):
+        opinion = torch.zeros(1, len(CLASSES), 1, 3)
+        opinion[0, CLASSES.index('chair')], opinion[0, CLASSES.index('person')] = 0.5, 0.5
+        things = torch.tensor([[[UNKNOWN, CLASSES.index('sofa'), UNKNOWN]]])
+        person = torch.tensor([[[[0, 0.25, 1]]]])
+        target = cache.soft_target(person, things.reshape(1, 1, 3), opinion)[0, :, 0]
+        self.assertGreater(target[CLASSES.index('chair'), 0], 0.99)
+        self.assertEqual(target[CLASSES.index('sofa'), 1], 0.75)
+        self.assertEqual(target[CLASSES.index('person')].tolist(), [0, 0.25, 1])
+
     def test_a_segnets_person_is_who_scores_above_all_other_classes(self):
         scores = torch.zeros(1, len(CLASSES), 1, 2)
         scores[0, CLASSES.index('person'), 0, 0] = 2
