@@ -1,28 +1,11 @@
 #include "source_tum/image_size.hpp"
 
-#include <algorithm>
-#include <limits>
-
 #include "source_tum/png_decoder.hpp"
 
 namespace stillpoint {
 namespace {
 
-std::uint32_t big_endian(std::span<const std::uint8_t> bytes) {
-  std::uint32_t value = 0;
-  for (const std::uint8_t byte : bytes) value = value << 8 | byte;
-  return value;
-}
-
-int side(std::uint32_t pixels) {
-  return static_cast<int>(std::min<std::uint32_t>(pixels, std::numeric_limits<int>::max()));
-}
-
-/// The header comes first (PNG specification, 11.2.2).
-std::optional<cv::Size> size_of_png(std::span<const std::uint8_t> file) {
-  if (file.size() < 24) return std::nullopt;
-  return cv::Size(side(big_endian(file.subspan(16, 4))), side(big_endian(file.subspan(20, 4))));
-}
+int big_endian(std::uint8_t high, std::uint8_t low) { return high << 8 | low; }
 
 /// Segments of a marker and a length follow each other up to the frame header (ITU-T T.81, B.2.2).
 std::optional<cv::Size> size_of_jpeg(std::span<const std::uint8_t> file) {
@@ -35,9 +18,9 @@ std::optional<cv::Size> size_of_jpeg(std::span<const std::uint8_t> file) {
     }
     const bool table = marker == 0xc4 || marker == 0xc8 || marker == 0xcc;
     if (marker >= 0xc0 && marker <= 0xcf && !table)
-      return cv::Size(side(big_endian(file.subspan(at + 7, 2))),
-                      side(big_endian(file.subspan(at + 5, 2))));
-    at += 2 + big_endian(file.subspan(at + 2, 2));
+      return cv::Size(big_endian(file[at + 7], file[at + 8]),
+                      big_endian(file[at + 5], file[at + 6]));
+    at += 2 + static_cast<std::size_t>(big_endian(file[at + 2], file[at + 3]));
   }
   return std::nullopt;
 }
@@ -45,7 +28,7 @@ std::optional<cv::Size> size_of_jpeg(std::span<const std::uint8_t> file) {
 }  // namespace
 
 std::optional<cv::Size> stated_size(std::span<const std::uint8_t> file) {
-  if (PngDecoder::is_png(file)) return size_of_png(file);
+  if (PngDecoder::is_png(file)) return PngDecoder::stated_size(file);
   if (file.size() > 2 && file[0] == 0xff && file[1] == 0xd8) return size_of_jpeg(file);
   return std::nullopt;
 }

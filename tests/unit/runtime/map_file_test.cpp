@@ -11,7 +11,6 @@
 #include <csignal>
 #include <fstream>
 #include <functional>
-#include <limits>
 #include <random>
 
 #include "stillpoint/error.hpp"
@@ -227,7 +226,7 @@ TEST_F(MapFile, ImpossibleContentIsRefused) {
   refused_after("DROP TABLE landmark", "no such table");
 }
 
-// With right checksums.
+// With right checksums; which values, says MapValues.
 TEST_F(MapFile, ImpossibleValuesAreRefused) {
   const auto refused = [&](const std::string& what, const std::function<void(MapEdit&)>& spoil) {
     MapEdit edit(small_map());
@@ -235,45 +234,13 @@ TEST_F(MapFile, ImpossibleValuesAreRefused) {
     save_map(std::move(edit).finish(), file_);
     expect_refused(what + " has impossible values");
   };
-  constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  const auto feature = [&](const std::function<void(Features&)>& spoil) {
-    refused("a key frame", [&](MapEdit& edit) {
-      auto features = std::make_shared<Features>(*edit.keyframe(0).features);
-      spoil(*features);
-      edit.keyframe(0).features = features;
-    });
-  };
-  feature([](Features& f) { f.keypoints[3].octave = std::numeric_limits<int>::max(); });
-  feature([](Features& f) { f.keypoints[3].octave = std::numeric_limits<int>::min(); });
-  feature([](Features& f) { f.keypoints[3].pt.x = 1e9F; });
-  feature([&](Features& f) { f.keypoints[3].pt.y = static_cast<float>(kNaN); });
-  feature([](Features& f) { f.depth[3] = -1; });
-  feature([](Features& f) { f.scale_factor = 1e300; });
-  feature([](Features& f) { f.levels = 2'000'000'000; });
-  const auto pose = [&](double& (*element)(Pose&), double value) {
-    refused("a key frame", [&](MapEdit& e) { element(e.keyframe(0).world_from_camera) = value; });
-  };
-  pose([](Pose& p) -> double& { return p.matrix()(0, 3); }, kNaN);
-  pose([](Pose& p) -> double& { return p.matrix()(1, 3); }, 1e300);
-  pose([](Pose& p) -> double& { return p.matrix()(0, 0); }, 2);
-  pose([](Pose& p) -> double& { return p.matrix()(3, 3); }, 0);
-  refused("a key frame", [&](MapEdit& e) { e.keyframe(0).time = kInfinity; });
-  refused("a landmark", [&](MapEdit& e) { e.landmark(0).position_in_world.x() = kInfinity; });
-  refused("a landmark", [](MapEdit& e) { e.landmark(0).mean_view *= 1e9; });
-  refused("a landmark", [](MapEdit& e) { e.landmark(0).max_distance = -1; });
-  refused("a landmark",
-          [&](MapEdit& e) { e.landmark(0).static_log_odds = static_cast<float>(kInfinity); });
-  const auto camera = [&](double Camera::*value, double spoilt) {
-    refused("a camera", [&](MapEdit& edit) {
-      auto changed = std::make_shared<Camera>();
-      (*changed).*value = spoilt;
-      edit.keyframe(0).camera = changed;
-    });
-  };
-  camera(&Camera::fx, 1e308);
-  camera(&Camera::fy, 0);
-  camera(&Camera::cx, kInfinity);
+  refused("a landmark", [](MapEdit& edit) { edit.landmark(0).max_distance = -1; });
+  refused("a key frame", [](MapEdit& edit) { edit.keyframe(0).world_from_camera(0, 3) = 1e300; });
+  refused("a camera", [](MapEdit& edit) {
+    auto camera = std::make_shared<Camera>();
+    camera->fx = 1e308;
+    edit.keyframe(0).camera = camera;
+  });
 }
 
 TEST_F(MapFile, NoSqlOfTheFileIsRun) {
