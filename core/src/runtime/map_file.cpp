@@ -44,7 +44,8 @@ void require_writable(const fs::path& file) {
   if (file.has_parent_path()) fs::create_directories(file.parent_path(), failed);
   if (failed) cannot_write(file, failed.message());
   if (fs::exists(file, failed) && !fs::is_regular_file(file, failed))
-    cannot_write(file, "there is something else of that name, such as a folder or a device");
+    throw Error(Fault::kUsage, "the map cannot be written: this is a folder, a device or a pipe",
+                file.string(), "choose another name");
   const int descriptor = ::open(part_of(file).c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0644);
   if (descriptor < 0) cannot_write(file, std::strerror(errno));
   ::close(descriptor);
