@@ -7,7 +7,7 @@
 namespace stillpoint {
 namespace {
 
-constexpr float kEdge = 0.06F;  // of the depth, between neighbouring cells of one surface
+constexpr float kSurfaceEdge = 0.06F;  // of the depth, between neighbouring cells of one surface
 
 }  // namespace
 
@@ -51,7 +51,7 @@ cv::Mat surface_normals(const cv::Mat& cells, const CellCamera& camera) {
     auto* out = normals.ptr<cv::Vec3f>(y);
     for (int x = 1; x + 1 < cells.cols; ++x) {
       const float z = row[x], left = row[x - 1], right = row[x + 1];
-      const float edge = kEdge * z;
+      const float edge = kSurfaceEdge * z;
       const auto apart = [&](float other) { return other <= 0 || std::abs(other - z) > edge; };
       if (z <= 0 || apart(left) || apart(right) || apart(above[x]) || apart(below[x])) continue;
       const auto u = static_cast<float>(x), v = static_cast<float>(y);

@@ -14,7 +14,7 @@ namespace {
 constexpr int kLanes = cv::v_float32::nlanes;
 constexpr float kMinDepth = 0.1F;  // m before a view
 // Nearest and farthest of the neighbours this many tolerances apart: an edge, between two surfaces.
-constexpr float kEdge = 5.0F;
+constexpr float kTolerancesAtEdge = 5.0F;
 constexpr float kSameSurface = 0.03F;  // of the depth, between neighbouring cells
 
 // What has been said of the cells of a row.
@@ -145,7 +145,7 @@ class Judge {
       const auto off = [&](const cv::v_float32& surface) {
         return cv::v_abs(z - surface) > tolerance;
       };
-      const cv::v_float32 edge = far - near > all(kEdge) * tolerance;
+      const cv::v_float32 edge = far - near > all(kTolerancesAtEdge) * tolerance;
       const cv::v_float32 beside =
           edge & off(near) & off(far) & off(cv::v_lut(view.depth.ptr<float>(), place));
       const cv::v_float32 same = measured & between & ~beside;

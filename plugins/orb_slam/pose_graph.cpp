@@ -13,7 +13,7 @@ namespace {
 constexpr int kMinShared = 100;     // landmarks, of an edge of the essential graph
 constexpr double kMetres = 0.01;    // standard deviation of an edge
 constexpr double kRadians = 0.005;  // standard deviation of an edge
-constexpr int kIterations = 30;
+constexpr int kGraphIterations = 30;
 
 // Ends with the best result so far, after the current iteration.
 class StopCallback final : public ceres::IterationCallback {
@@ -32,7 +32,7 @@ ceres::Solver::Options solver_options(StopCallback& stop) {
   options.linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;
   // CHOLMOD, the default, starts threads of its own and rounds as the machine's BLAS does.
   options.sparse_linear_algebra_library_type = ceres::EIGEN_SPARSE;
-  options.max_num_iterations = kIterations;
+  options.max_num_iterations = kGraphIterations;
   options.logging_type = ceres::SILENT;
   options.callbacks = {&stop};
   return options;

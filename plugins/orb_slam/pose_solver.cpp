@@ -10,7 +10,7 @@ namespace {
 constexpr int kRounds = 4;
 constexpr int kTermRounds = 6;    // with a further term, whose minimum moves with its linearisation
 constexpr int kRobustRounds = 2;  // later ones trust the outlier decision alone
-constexpr int kIterations = 6;    // per round
+constexpr int kIterationsPerRound = 6;
 constexpr double kConverged = 1e-6;  // metres and radians
 constexpr int kMinObservations = 6;
 constexpr double kMinDepth = 0.05;  // metres in front of the camera
@@ -83,7 +83,7 @@ class Solver {
   void iterate() {
     double lambda = 1e-4;
     NormalEquations current = build(solution_.camera_from_world);
-    for (int i = 0; i < kIterations; ++i) {
+    for (int i = 0; i < kIterationsPerRound; ++i) {
       Matrix6d damped = current.hessian;
       damp(damped, lambda);
       const Vector6d step = damped.ldlt().solve(-current.gradient);

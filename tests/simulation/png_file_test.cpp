@@ -12,7 +12,7 @@ namespace {
 
 /// What another reader, OpenCV's, makes of it.
 TEST(PngFile, ReadsAsItWasWritten) {
-  const std::string file = testing::TempDir() + "png_file_test.png";
+  const std::string file = ::testing::TempDir() + "png_file_test.png";
   for (const int type : {CV_8UC1, CV_8UC3, CV_16UC1}) {
     cv::Mat image(37, 53, type);
     cv::randu(image, 0, type == CV_16UC1 ? 65536 : 256);
@@ -31,7 +31,7 @@ TEST(PngFile, SaysWhichFileCannotBeWritten) {
     FAIL();
   } catch (const Error& error) {
     EXPECT_EQ(error.fault(), Fault::kUsage);
-    EXPECT_THAT(error.what(), testing::HasSubstr("/dev/null/picture.png"));
+    EXPECT_THAT(error.what(), ::testing::HasSubstr("/dev/null/picture.png"));
   }
 }
 

@@ -11,11 +11,11 @@
 namespace stillpoint::simulation {
 namespace {
 
-class RecordingWriterTest : public testing::Test {
+class RecordingWriterTest : public ::testing::Test {
  protected:
   RecordingWriterTest()
-      : folder_(std::filesystem::path(testing::TempDir()) /
-                testing::UnitTest::GetInstance()->current_test_info()->name()) {
+      : folder_(std::filesystem::path(::testing::TempDir()) /
+                ::testing::UnitTest::GetInstance()->current_test_info()->name()) {
     std::filesystem::remove_all(folder_);
   }
   ~RecordingWriterTest() override { std::filesystem::remove_all(folder_); }
@@ -42,7 +42,7 @@ TEST_F(RecordingWriterTest, WritesAFolderOfTheBenchmark) {
   writer.write(simulator.frame(1));
   writer.write_ground_truth(simulator, 2);
 
-  EXPECT_THAT(text("rgb.txt"), testing::EndsWith("1000.033333 rgb/1000.033333.png\n"));
+  EXPECT_THAT(text("rgb.txt"), ::testing::EndsWith("1000.033333 rgb/1000.033333.png\n"));
   EXPECT_EQ(text("associations.txt"),
             "1000.000000 rgb/1000.000000.png 1000.005000 depth/1000.005000.png\n"
             "1000.033333 rgb/1000.033333.png 1000.038333 depth/1000.038333.png\n");
@@ -113,7 +113,7 @@ TEST_F(RecordingWriterTest, DoesNotWriteOverARecording) {
     FAIL();
   } catch (const Error& error) {
     EXPECT_EQ(error.fault(), Fault::kUsage);
-    EXPECT_THAT(error.what(), testing::HasSubstr("recording already"));
+    EXPECT_THAT(error.what(), ::testing::HasSubstr("recording already"));
   }
 }
 

@@ -207,7 +207,7 @@ TEST(Simulator, RefusesADistortedCamera) {
     FAIL();
   } catch (const Error& error) {
     EXPECT_EQ(error.fault(), Fault::kUsage);
-    EXPECT_THAT(error.what(), testing::HasSubstr("distortion"));
+    EXPECT_THAT(error.what(), ::testing::HasSubstr("distortion"));
   }
 }
 

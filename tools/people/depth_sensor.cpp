@@ -17,7 +17,7 @@ using simulation::Stream;
 constexpr float kBaselineFocal = 43.5F;  // px m
 constexpr float kStep = 0.125F;          // px of disparity
 constexpr float kNoise = 0.055F;         // px of disparity, standard deviation
-constexpr float kNearest = 0.4F;         // m
+constexpr float kNearestSensed = 0.4F;   // m
 constexpr float kEdgeLoss = 0.5F;        // share of the pixels lost along outlines
 constexpr int kWindow = 5;               // px over which errors are shared
 
@@ -64,7 +64,7 @@ void measure(const cv::Mat& z, std::uint32_t seed, std::uint32_t frame, cv::Mat&
     const RowNoise losses(seed, frame, Stream::kDepthJitter, y);
     for (int x = 0; x < z.cols; ++x) {
       if (pasted[x] <= 0) continue;
-      const bool lost = pasted[x] < kNearest ||
+      const bool lost = pasted[x] < kNearestSensed ||
                         (inner.at<std::uint8_t>(y, x) == 0 && losses.uniform(x) < kEdgeLoss);
       out[x] = lost ? 0 : measured(pasted[x], noise.at<float>(y, x));
     }

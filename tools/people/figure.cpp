@@ -10,8 +10,8 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr double kNearest = 0.3;  // m
-constexpr double kWidest = 0.6;   // heights from the middle
+constexpr double kNearestDrawn = 0.3;  // m
+constexpr double kWidest = 0.6;        // heights from the middle
 
 // Shares of a standing person's height; whoever sits has the thighs towards the camera.
 constexpr double kKnees = 0.27;
@@ -143,7 +143,7 @@ cv::Rect Figure::rough_box(const Board& board, const Rays& rays) const {
   for (int y = 0; y < rays.size().height; y += kStep) {
     for (int x = 0; x < rays.size().width; x += kStep) {
       const Vector3d at = board.hit(rays.at(y, x)[0], rays.at(y, x)[1]);
-      const bool near = at.z() >= kNearest && at.y() > -margin &&
+      const bool near = at.z() >= kNearestDrawn && at.y() > -margin &&
                         at.y() < 1.05 * plan_.height + margin &&
                         std::abs(at.x()) < kWidest * plan_.height + margin;
       if (near) box |= cv::Rect(x - kStep, y - kStep, 2 * kStep + 1, 2 * kStep + 1);
@@ -157,7 +157,7 @@ Figure::Traced Figure::trace(const Pose& level_from_camera, const Rays& rays, do
   const Board board = board_at(level_from_camera, stance, time);
   const Swing swing = swing_at(stance, time);
   const double distance = board.normal.dot(board.foot);
-  if (distance < kNearest) return {};
+  if (distance < kNearestDrawn) return {};
   const cv::Rect box = rough_box(board, rays);
   if (box.empty()) return {};
   const CutOut& cut = level_for(distance, rays.focal());
@@ -169,7 +169,7 @@ Figure::Traced Figure::trace(const Pose& level_from_camera, const Rays& rays, do
     for (int x = box.x; x < box.br().x; ++x) {
       const cv::Vec2f& ray = rays.at(y, x);
       const Vector3d at = board.hit(ray[0], ray[1]);
-      const bool off = at.z() < kNearest || at.y() < 0 || at.y() > 1.05 * plan_.height ||
+      const bool off = at.z() < kNearestDrawn || at.y() < 0 || at.y() > 1.05 * plan_.height ||
                        std::abs(at.x()) > kWidest * plan_.height;
       if (off) continue;
       const Vector2d own = swing.own_place(at.x(), at.y());

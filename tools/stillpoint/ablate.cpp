@@ -31,7 +31,7 @@ namespace fs = std::filesystem;
 using namespace study;
 using evaluation::fixed;
 
-struct Arguments {
+struct AblateArguments {
   std::string study;
   fs::path output;
   int jobs = 1;
@@ -46,7 +46,7 @@ std::string minutes(double seconds) {
 /// One call of `stillpoint ablate`.
 class Ablation {
  public:
-  explicit Ablation(const Arguments& arguments)
+  explicit Ablation(const AblateArguments& arguments)
       : file_(load_study(arguments.study, registry_)),
         output_(fs::absolute(arguments.output.empty() ? fs::path("out") / file_.file.stem()
                                                       : arguments.output)
@@ -222,7 +222,7 @@ class Ablation {
 }  // namespace
 
 void add_ablate(CLI::App& app) {
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<AblateArguments>();
   CLI::App* command =
       app.add_subcommand("ablate", "Run a matrix of sequences, variants and repeats; make tables");
   command

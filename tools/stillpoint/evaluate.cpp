@@ -15,13 +15,13 @@
 namespace stillpoint {
 namespace {
 
-struct Arguments {
+struct EvaluateArguments {
   std::string reference, estimate, frames, plot, delta_unit = "s";
   evaluation::EvaluationOptions options;
   bool json = false;
 };
 
-void run(const Arguments& arguments) {
+void print_evaluation(const EvaluateArguments& arguments) {
   using namespace evaluation;
   EvaluationOptions options = arguments.options;
   require_numbers({options.max_difference, options.offset, options.delta.length});
@@ -41,7 +41,7 @@ void run(const Arguments& arguments) {
 }  // namespace
 
 void add_evaluate(CLI::App& app) {
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<EvaluateArguments>();
   CLI::App* command =
       app.add_subcommand("evaluate", "Compare a trajectory with ground truth: ATE, RPE, coverage");
   const auto file = [&](const char* name, std::string& path, const char* help) {
@@ -69,7 +69,7 @@ void add_evaluate(CLI::App& app) {
       ->type_name("s|f");
   command->add_flag("--json", arguments->json, "Print JSON instead of a table");
   file("--plot", arguments->plot, "Draw both trajectories and the error, PNG file");
-  command->callback([arguments] { run(*arguments); });
+  command->callback([arguments] { print_evaluation(*arguments); });
 }
 
 }  // namespace stillpoint

@@ -10,21 +10,21 @@
 namespace stillpoint {
 namespace {
 
-struct Arguments {
+struct InspectArguments {
   std::string folder, camera;
   inspection::AuditOptions options;
   bool json = false;
 };
 
 /// The camera that is named, or the one that lies beside the recording.
-std::optional<CameraModel> camera_for(const Arguments& arguments) {
+std::optional<CameraModel> camera_for(const InspectArguments& arguments) {
   if (!arguments.camera.empty()) return load_camera(arguments.camera);
   const auto beside = std::filesystem::path(arguments.folder) / "camera.yaml";
   if (std::filesystem::is_regular_file(beside)) return load_camera(beside.string());
   return std::nullopt;
 }
 
-void run(Arguments arguments) {
+void print_inspection(InspectArguments arguments) {
   arguments.options.camera = camera_for(arguments);
   const auto audit = inspection::audit_recording(arguments.folder, arguments.options);
   if (arguments.json)
@@ -36,7 +36,7 @@ void run(Arguments arguments) {
 }  // namespace
 
 void add_inspect(CLI::App& app) {
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<InspectArguments>();
   CLI::App* command = app.add_subcommand(
       "inspect", "Audit a recording: pairs, gaps, depth, time offset, ground truth");
   command->add_option("recording", arguments->folder, "Folder in the format of the TUM benchmark")
@@ -60,7 +60,7 @@ void add_inspect(CLI::App& app) {
       ->capture_default_str()
       ->check(CLI::PositiveNumber);
   command->add_flag("--json", arguments->json, "Print JSON instead of a table");
-  command->callback([arguments] { run(*arguments); });
+  command->callback([arguments] { print_inspection(*arguments); });
 }
 
 }  // namespace stillpoint

@@ -21,7 +21,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Arguments {
+struct RunArguments {
   PipelineRequest request;
   fs::path output;
   fs::path save_map, load_map;
@@ -80,7 +80,7 @@ void warn_of_labels(const PipelineConfig& config, const RunFolder& folder) {
         "segmentation.interval means nothing with schedule 'wait': every frame is segmented");
 }
 
-void run(const Arguments& arguments) {
+void run(const RunArguments& arguments) {
   Registry registry;
   const PipelineConfig config = load_pipeline(arguments.request, registry);
   SparseMap known_map = arguments.load_map.empty() ? SparseMap() : load_map(arguments.load_map);
@@ -114,7 +114,7 @@ void run(const Arguments& arguments) {
 }  // namespace
 
 void add_run(CLI::App& app) {
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<RunArguments>();
   CLI::App* command = app.add_subcommand("run", "Process a recording with a pipeline");
   add_pipeline_options(*command, arguments->request);
   command

@@ -19,7 +19,7 @@
 namespace stillpoint {
 namespace {
 
-struct Arguments {
+struct SimulateArguments {
   std::string scene;
   std::filesystem::path output;
   std::vector<std::string> assignments;
@@ -67,7 +67,7 @@ void write_frames(const simulation::Simulator& simulator, simulation::RecordingW
   });
 }
 
-void simulate(const Arguments& arguments) {
+void simulate(const SimulateArguments& arguments) {
   SceneFile file = load_scene(arguments.scene, arguments.assignments);
   if (arguments.frames > 0) file.scene.frames = arguments.frames;
   const int threads = arguments.threads > 0
@@ -84,7 +84,7 @@ void simulate(const Arguments& arguments) {
 }  // namespace
 
 void add_simulate(CLI::App& app) {
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<SimulateArguments>();
   CLI::App* command =
       app.add_subcommand("simulate", "Write a TUM-format recording with true poses and labels");
   command->add_option("scene", arguments->scene, "Scene file, or the name of one in configs/scenes")

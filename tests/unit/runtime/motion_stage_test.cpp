@@ -12,7 +12,7 @@ namespace {
 using testing::Journal;
 using Strings = std::vector<std::string>;
 
-struct Fixture {
+struct MotionFixture {
   Journal journal;
   StopSignal stop;
   TimeLog times;
@@ -51,7 +51,7 @@ INSTANTIATE_TEST_SUITE_P(Modes, MotionStageInBothModes,
                          });
 
 TEST_P(MotionStageInBothModes, GivesPointsAndLabelsOfTheFrame) {
-  Fixture f;
+  MotionFixture f;
   const auto stage = f.make(GetParam());
   for (std::uint32_t i = 0; i < 3; ++i) {
     const SceneMotion motion = stage->at(f.offer(*stage, i));
@@ -63,7 +63,7 @@ TEST_P(MotionStageInBothModes, GivesPointsAndLabelsOfTheFrame) {
 }
 
 TEST_P(MotionStageInBothModes, AFailureOfTheCheckIsNamed) {
-  Fixture f;
+  MotionFixture f;
   f.journal.failing = "check 0 1";
   const auto stage = f.make(GetParam());
   stage->at(f.offer(*stage, 0));
@@ -77,7 +77,7 @@ TEST_P(MotionStageInBothModes, AFailureOfTheCheckIsNamed) {
 }
 
 TEST(MotionStage, InlineWaitsForTheFeatures) {
-  Fixture f;
+  MotionFixture f;
   const auto stage = f.make(Mode::kInline);
   stage->at(f.offer(*stage, 0));
   const FramePtr frame = f.offer(*stage, 1);
@@ -87,7 +87,7 @@ TEST(MotionStage, InlineWaitsForTheFeatures) {
 }
 
 TEST(MotionStage, ThreadedRunsBesideItsCaller) {
-  Fixture f;
+  MotionFixture f;
   const auto stage = f.make(Mode::kThreaded);
   stage->at(f.offer(*stage, 0));
   const FramePtr frame = f.offer(*stage, 1);
@@ -96,7 +96,7 @@ TEST(MotionStage, ThreadedRunsBesideItsCaller) {
 }
 
 TEST(MotionStage, AStopEndsTheWait) {
-  Fixture f;
+  MotionFixture f;
   std::latch release(1);
   f.journal.hook = [&](const std::string& entry) {
     if (entry == "check 0 1") release.wait();
@@ -111,7 +111,7 @@ TEST(MotionStage, AStopEndsTheWait) {
 }
 
 TEST_P(MotionStageInBothModes, WithoutACheckThereAreLabelsOnly) {
-  Fixture f;
+  MotionFixture f;
   f.checker = {};
   const auto stage = f.make(GetParam());
   for (std::uint32_t i = 0; i < 2; ++i) {
@@ -123,7 +123,7 @@ TEST_P(MotionStageInBothModes, WithoutACheckThereAreLabelsOnly) {
 }
 
 TEST_P(MotionStageInBothModes, TheMapIsComparedWhereTheCameraMayBe) {
-  Fixture f;
+  MotionFixture f;
   const auto checker = std::make_shared<testing::FakeMapChecker>(f.journal);
   f.map_checker = {checker, "depth"};
   const auto stage = f.make(GetParam());
@@ -142,7 +142,7 @@ TEST_P(MotionStageInBothModes, TheMapIsComparedWhereTheCameraMayBe) {
 }
 
 TEST_P(MotionStageInBothModes, ALostCameraIsComparedWithNothing) {
-  Fixture f;
+  MotionFixture f;
   f.map_checker = {std::make_shared<testing::FakeMapChecker>(f.journal), "depth"};
   const auto stage = f.make(GetParam());
   const FramePtr first = f.offer(*stage, 0);
@@ -157,7 +157,7 @@ TEST_P(MotionStageInBothModes, ALostCameraIsComparedWithNothing) {
 }
 
 TEST(MotionStage, WaitingIsMeasured) {
-  Fixture f;
+  MotionFixture f;
   const auto stage = f.make(Mode::kThreaded);
   stage->at(f.offer(*stage, 7));
   Strings stages;

@@ -10,8 +10,8 @@
 
 namespace stillpoint::testing {
 
-struct Fixture {
-  explicit Fixture(std::uint32_t frames = 6)
+struct PipelineFixture {
+  explicit PipelineFixture(std::uint32_t frames = 6)
       : source(std::make_shared<FakeSource>(journal, frames)) {}
 
   Stages stages() {

@@ -11,7 +11,7 @@
 namespace stillpoint {
 namespace {
 
-using testing::Fixture;
+using testing::PipelineFixture;
 using testing::runtime;
 using Strings = std::vector<std::string>;
 
@@ -22,7 +22,7 @@ INSTANTIATE_TEST_SUITE_P(Modes, PipelineInBothModes,
                          });
 
 TEST(Pipeline, InlineCallsTheBoxesInTheOrderOfThePaper) {
-  Fixture f(2);
+  PipelineFixture f(2);
   Pipeline(f.stages(), runtime(Mode::kInline), {}).run();
   EXPECT_EQ(f.journal.entries(),
             (Strings{"source 0",      "segment 0", "prepare 0", "propagate 0 0",
@@ -34,7 +34,7 @@ TEST(Pipeline, InlineCallsTheBoxesInTheOrderOfThePaper) {
 }
 
 TEST_P(PipelineInBothModes, EveryFrameGoesThroughEveryBox) {
-  Fixture f(40);
+  PipelineFixture f(40);
   Pipeline(f.stages(), runtime(GetParam()), {}).run();
   for (const char* call :
        {"source", "segment", "prepare", "propagate", "decide", "track", "output"})
@@ -53,7 +53,7 @@ TEST_P(PipelineInBothModes, EveryFrameGoesThroughEveryBox) {
 }
 
 TEST(Pipeline, ThreadedTheMovingCheckRunsBesideTheExtractionOfFeatures) {
-  Fixture f(3);
+  PipelineFixture f(3);
   f.journal.hook = [&](const std::string& entry) {
     if (entry == "prepare 1") f.journal.wait_for("propagate 1 1");
     if (entry == "check 1 2") f.journal.wait_for("prepare 2");
@@ -63,7 +63,7 @@ TEST(Pipeline, ThreadedTheMovingCheckRunsBesideTheExtractionOfFeatures) {
 }
 
 TEST_P(PipelineInBothModes, CorrectionsReachTheMapsAlsoAtTheEnd) {
-  Fixture f(60);
+  PipelineFixture f(60);
   Pipeline(f.stages(), runtime(GetParam()), {}).run();
   // Every key frame closes a loop that lifts the map by one metre. Threaded, a correction may be
   // computed before the last one is applied, and then replaces it. Key frames come in at y = 0.
@@ -79,7 +79,7 @@ TEST_P(PipelineInBothModes, CorrectionsReachTheMapsAlsoAtTheEnd) {
 }
 
 TEST_P(PipelineInBothModes, AllTimesAreReportedOnceAndNameTheirFrame) {
-  Fixture f(4);
+  PipelineFixture f(4);
   Pipeline(f.stages(), runtime(GetParam()), {}).run();
   std::set<std::pair<std::string, std::uint32_t>> seen;
   for (const StageTime& time : f.output->times) {
@@ -94,7 +94,7 @@ TEST_P(PipelineInBothModes, AllTimesAreReportedOnceAndNameTheirFrame) {
 }
 
 TEST_P(PipelineInBothModes, NullStagesRunThrough) {
-  Fixture f(5);
+  PipelineFixture f(5);
   Stages stages;
   stages.source = {f.source, "list"};
   stages.outputs = {{f.output, "first"}};
@@ -104,7 +104,7 @@ TEST_P(PipelineInBothModes, NullStagesRunThrough) {
 }
 
 TEST_P(PipelineInBothModes, NullMapperKeepsTheKeyFrames) {
-  Fixture f(5);
+  PipelineFixture f(5);
   Stages stages = f.stages();
   stages.local_mapper = {};
   Pipeline(std::move(stages), runtime(GetParam()), {}).run();
@@ -112,7 +112,7 @@ TEST_P(PipelineInBothModes, NullMapperKeepsTheKeyFrames) {
 }
 
 TEST_P(PipelineInBothModes, EmptyRecordingFinishes) {
-  Fixture f(0);
+  PipelineFixture f(0);
   Pipeline(f.stages(), runtime(GetParam()), {}).run();
   EXPECT_EQ(f.output->finished, 1);
   EXPECT_TRUE(f.output->complete);
@@ -163,7 +163,7 @@ INSTANTIATE_TEST_SUITE_P(
 
 TEST_P(PipelineFailure, IsNamedAndWhatWasComputedIsSaved) {
   const auto& [mode, failure] = GetParam();
-  Fixture f(200);
+  PipelineFixture f(200);
   f.journal.failing = failure.entry;
   Pipeline pipeline(f.stages(), runtime(mode), {});
   try {
@@ -187,7 +187,7 @@ class UnusableSource final : public Source {
 };
 
 TEST_P(PipelineInBothModes, DataFaultsOfTheSourceStayDataFaults) {
-  Fixture f;
+  PipelineFixture f;
   f.source = std::make_shared<UnusableSource>();
   try {
     Pipeline(f.stages(), runtime(GetParam()), {}).run();
@@ -210,7 +210,7 @@ class SourceWithoutDepth final : public Source {
 };
 
 TEST_P(PipelineInBothModes, FramesWithoutDepthAreTheSourcesFault) {
-  Fixture f;
+  PipelineFixture f;
   f.source = std::make_shared<SourceWithoutDepth>();
   try {
     Pipeline(f.stages(), runtime(GetParam()), {}).run();
@@ -249,7 +249,7 @@ class DecisionOnAnotherImage final : public Decision {
 };
 
 TEST_P(PipelineInBothModes, WrongResultsEndTheRunWithTheStageThatGaveThem) {
-  const auto message = [](Fixture& f, Stages stages) -> std::string {
+  const auto message = [](PipelineFixture& f, Stages stages) -> std::string {
     try {
       Pipeline(std::move(stages), runtime(GetParam()), {}).run();
     } catch (const StageError& error) {
@@ -259,7 +259,7 @@ TEST_P(PipelineInBothModes, WrongResultsEndTheRunWithTheStageThatGaveThem) {
     }
     return "no exception";
   };
-  Fixture diverging;
+  PipelineFixture diverging;
   Stages stages = diverging.stages();
   stages.tracker = {std::make_shared<TrackerThatDiverges>(diverging.journal), "mine"};
   EXPECT_EQ(
@@ -267,7 +267,7 @@ TEST_P(PipelineInBothModes, WrongResultsEndTheRunWithTheStageThatGaveThem) {
       "tracking (mine) failed on frame 3: the pose is no rigid motion; it must be finite, with "
       "an orthonormal rotation; say kLost where there is none");
   EXPECT_EQ(diverging.output->poses.size(), 3u);
-  Fixture misjudging;
+  PipelineFixture misjudging;
   stages = misjudging.stages();
   stages.decision = {std::make_shared<DecisionOnAnotherImage>(), "mine"};
   EXPECT_EQ(message(misjudging, std::move(stages)),
@@ -276,7 +276,7 @@ TEST_P(PipelineInBothModes, WrongResultsEndTheRunWithTheStageThatGaveThem) {
 }
 
 TEST_P(PipelineInBothModes, AStopFromAnotherThreadEndsTheRun) {
-  Fixture f(1'000'000'000);
+  PipelineFixture f(1'000'000'000);
   std::stop_source stop;
   std::jthread stopper([&] {
     f.journal.wait_for("output 5");
@@ -290,7 +290,7 @@ TEST_P(PipelineInBothModes, AStopFromAnotherThreadEndsTheRun) {
 }
 
 TEST_P(PipelineInBothModes, AStopBeforeTheRunProcessesNothing) {
-  Fixture f;
+  PipelineFixture f;
   std::stop_source stop;
   stop.request_stop();
   Pipeline(f.stages(), runtime(GetParam()), {}).run(stop.get_token());
@@ -299,7 +299,7 @@ TEST_P(PipelineInBothModes, AStopBeforeTheRunProcessesNothing) {
 }
 
 TEST(Pipeline, ARefinementIsHurriedWhenAnotherKeyFrameWaits) {
-  Fixture f(5);
+  PipelineFixture f(5);
   f.mapper->while_refining = [&](KeyFrameId id, std::stop_token hurry) {
     if (id > 0) return;
     f.journal.wait_for("track 2");  // a key frame, pushed while this one is being refined
@@ -314,7 +314,7 @@ TEST(Pipeline, ARefinementIsHurriedWhenAnotherKeyFrameWaits) {
 }
 
 TEST(Pipeline, AStopHurriesTheRefinementUnderWay) {
-  Fixture f(1);
+  PipelineFixture f(1);
   std::stop_source stop;
   f.mapper->while_refining = [&](KeyFrameId, std::stop_token hurry) {
     stop.request_stop();
@@ -325,7 +325,7 @@ TEST(Pipeline, AStopHurriesTheRefinementUnderWay) {
 }
 
 TEST(Pipeline, InlineNeverHurries) {
-  Fixture f(9);
+  PipelineFixture f(9);
   f.mapper->while_refining = [](KeyFrameId, std::stop_token hurry) {
     EXPECT_FALSE(hurry.stop_requested());
   };

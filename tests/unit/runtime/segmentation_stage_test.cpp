@@ -15,7 +15,7 @@ using testing::Journal;
 using Schedule = SegmentationOptions::Schedule;
 using Strings = std::vector<std::string>;
 
-struct Fixture {
+struct SegmentationFixture {
   Journal journal;
   StopSignal stop;
   TimeLog times;
@@ -42,7 +42,7 @@ SegmentationPtr process(SegmentationStage& stage, std::uint32_t index) {
 
 TEST(SegmentationStage, WaitGivesEveryFrameItsOwnLabels) {
   for (const Mode mode : {Mode::kInline, Mode::kThreaded}) {
-    Fixture f;
+    SegmentationFixture f;
     const auto stage = f.make(Schedule::kWait, mode);
     for (std::uint32_t i = 0; i < 5; ++i) {
       const auto labels = process(*stage, i);
@@ -54,7 +54,7 @@ TEST(SegmentationStage, WaitGivesEveryFrameItsOwnLabels) {
 }
 
 TEST(SegmentationStage, LatestInlineImitatesABusyNetwork) {
-  Fixture f;
+  SegmentationFixture f;
   const auto stage = f.make(Schedule::kLatest, Mode::kInline, 3);
   for (std::uint32_t i = 0; i <= 8; ++i) EXPECT_TRUE(process(*stage, i)->known());
   // The first labels are waited for. Frame 1 takes until 4; of those that came meanwhile, the
@@ -67,7 +67,7 @@ TEST(SegmentationStage, LatestInlineImitatesABusyNetwork) {
 }
 
 TEST(SegmentationStage, LatestInlineWithoutLatencyIsWait) {
-  Fixture f;
+  SegmentationFixture f;
   const auto stage = f.make(Schedule::kLatest, Mode::kInline, 0);
   for (std::uint32_t i = 0; i < 4; ++i) process(*stage, i);
   EXPECT_EQ(f.journal.entries("propagate"),
@@ -75,7 +75,7 @@ TEST(SegmentationStage, LatestInlineWithoutLatencyIsWait) {
 }
 
 TEST(SegmentationStage, LatestInlineTakesAFrameEveryInterval) {
-  Fixture f;
+  SegmentationFixture f;
   const auto stage =
       f.make({.schedule = Schedule::kLatest, .interval = 3, .latency = 1}, Mode::kInline);
   for (std::uint32_t i = 0; i <= 7; ++i) process(*stage, i);
@@ -85,7 +85,7 @@ TEST(SegmentationStage, LatestInlineTakesAFrameEveryInterval) {
 }
 
 TEST(SegmentationStage, AnIntervalShorterThanTheNetworkTakesChangesNothing) {
-  Fixture f;
+  SegmentationFixture f;
   const auto stage =
       f.make({.schedule = Schedule::kLatest, .interval = 2, .latency = 3}, Mode::kInline);
   for (std::uint32_t i = 0; i <= 8; ++i) process(*stage, i);
@@ -93,7 +93,7 @@ TEST(SegmentationStage, AnIntervalShorterThanTheNetworkTakesChangesNothing) {
 }
 
 TEST(SegmentationStage, LatestThreadedTakesAFrameEveryInterval) {
-  Fixture f;
+  SegmentationFixture f;
   const auto stage = f.make({.schedule = Schedule::kLatest, .interval = 3}, Mode::kThreaded);
   for (std::uint32_t i = 0; i <= 8; ++i) {
     process(*stage, i);
@@ -104,7 +104,7 @@ TEST(SegmentationStage, LatestThreadedTakesAFrameEveryInterval) {
 }
 
 TEST(SegmentationStage, LatestThreadedABusyNetworkGoesOnWithTheNewest) {
-  Fixture f;
+  SegmentationFixture f;
   std::latch release(1);
   f.journal.hook = [&](const std::string& entry) {
     if (entry == "segment 2") release.wait();
@@ -119,13 +119,13 @@ TEST(SegmentationStage, LatestThreadedABusyNetworkGoesOnWithTheNewest) {
 }
 
 TEST(SegmentationStage, WaitGivesEveryFrameItsLabelsWhateverTheInterval) {
-  Fixture f;
+  SegmentationFixture f;
   const auto stage = f.make({.schedule = Schedule::kWait, .interval = 3}, Mode::kThreaded);
   for (std::uint32_t i = 0; i < 4; ++i) EXPECT_EQ(process(*stage, i)->frame, i);
 }
 
 TEST(SegmentationStage, LatestThreadedNeverWaitsForABusyNetwork) {
-  Fixture f;
+  SegmentationFixture f;
   std::latch release(1);
   f.journal.hook = [&](const std::string& entry) {
     if (entry == "segment 1") release.wait();
@@ -154,7 +154,7 @@ TEST(SegmentationStage, WithoutSegmenterNothingIsKnown) {
 }
 
 TEST(SegmentationStage, AFailureEndsTheWait) {
-  Fixture f;
+  SegmentationFixture f;
   f.journal.failing = "segment 0";
   const auto stage = f.make(Schedule::kWait, Mode::kThreaded);
   EXPECT_EQ(process(*stage, 0), nullptr);
@@ -167,7 +167,7 @@ TEST(SegmentationStage, AFailureEndsTheWait) {
 
 TEST(SegmentationStage, OnFailureContinueGoesOnWithoutLabelsAndCounts) {
   for (const Mode mode : {Mode::kInline, Mode::kThreaded}) {
-    Fixture f;
+    SegmentationFixture f;
     f.journal.failing = "segment 1";
     const auto stage = f.make(Schedule::kWait, mode, 3, SegmentationOptions::OnFailure::kContinue);
     EXPECT_TRUE(process(*stage, 0)->known());
@@ -193,7 +193,7 @@ class Careless final : public Segmenter {
 
 TEST(SegmentationStage, OneClassOnNearlyTheWholeImageIsNotUsed) {
   const auto used = [](int rows_of_people) {
-    Fixture f;
+    SegmentationFixture f;
     cv::Mat labels = cv::Mat::zeros(10, 1, CV_8UC1);
     labels.rowRange(0, rows_of_people) = 15;
     SegmentationStage stage({std::make_shared<Careless>(Segmentation{.labels = labels}), "fake"},
@@ -210,7 +210,7 @@ TEST(SegmentationStage, OneClassOnNearlyTheWholeImageIsNotUsed) {
 
 TEST(SegmentationStage, LabelsThatDoNotFitTheFrameAreTheSegmentersFault) {
   const auto message = [](Segmentation given) -> std::string {
-    Fixture f;
+    SegmentationFixture f;
     SegmentationStage stage({std::make_shared<Careless>(std::move(given)), "careless"}, {}, {},
                             Mode::kInline, f.stop, f.times);
     try {
@@ -234,7 +234,7 @@ TEST(SegmentationStage, LabelsThatDoNotFitTheFrameAreTheSegmentersFault) {
 }
 
 TEST(SegmentationStage, TimesNameTheirFrame) {
-  Fixture f;
+  SegmentationFixture f;
   const auto stage = f.make(Schedule::kWait, Mode::kThreaded);
   process(*stage, 7);
   stage->end();

@@ -9,7 +9,7 @@
 namespace stillpoint {
 namespace {
 
-using testing::Fixture;
+using testing::PipelineFixture;
 using testing::runtime;
 using Pace = RuntimeOptions::Pace;
 using Strings = std::vector<std::string>;
@@ -50,7 +50,7 @@ class ManualClock final : public PaceClock {
 };
 
 TEST_P(SensorPace, TwoFramesWaitAndTheOldestMakesRoom) {
-  Fixture f(8);  // 0.1 s apart
+  PipelineFixture f(8);  // 0.1 s apart
   auto clock = std::make_unique<ManualClock>();
   ManualClock* time = clock.get();
   f.journal.hook = [&](const std::string& entry) {
@@ -65,7 +65,7 @@ TEST_P(SensorPace, TwoFramesWaitAndTheOldestMakesRoom) {
 }
 
 TEST_P(SensorPace, AStopEndsTheWait) {
-  Fixture f(8);
+  PipelineFixture f(8);
   std::stop_source stop;
   f.journal.hook = [&](const std::string& entry) {
     if (entry == "output 0") stop.request_stop();
