@@ -7,6 +7,8 @@
 namespace stillpoint {
 namespace {
 
+constexpr float kAlmost = 0.01F;  // log-odds below being occupied
+
 float log_odds(double probability) {
   return static_cast<float>(std::log(probability / (1 - probability)));
 }
@@ -16,7 +18,8 @@ OccupancyModel model_of(const OctomapBackend::Options& options) {
   return {.hit = log_odds(options.hit),
           .miss = carves ? log_odds(options.miss) : 0.0F,
           .min = log_odds(options.least),
-          .max = log_odds(options.most)};
+          .max = log_odds(options.most),
+          .doubt = log_odds(options.occupied_above) - log_odds(options.hit) - kAlmost};
 }
 
 ScanOptions scan_options_of(const OctomapBackend::Options& options) {
@@ -24,7 +27,8 @@ ScanOptions scan_options_of(const OctomapBackend::Options& options) {
           .range = options.range,
           .carve = options.model == OctomapBackend::Options::Model::kRays,
           .noise = options.noise,
-          .min_weight = static_cast<std::uint8_t>(options.min_weight)};
+          .min_weight = static_cast<std::uint8_t>(options.min_weight),
+          .margin = static_cast<int>(std::lround(options.margin / options.resolution))};
 }
 
 bool share_any(const std::vector<BrickKey>& some, const std::vector<BrickKey>& others) {
@@ -72,6 +76,11 @@ void OctomapBackend::Options::visit(OptionVisitor& v) {
      .help = "between pixels that are used; 0: by the resolution"});
   v("min_weight", min_weight,
     {.min = 0, .max = 255, .help = "of a pixel in the map: less is not mapped; 0: all is"});
+  v("margin", margin,
+    {.min = 0,
+     .max = 0.1,
+     .unit = "m",
+     .help = "around what moves in which one look does not make a voxel occupied"});
   v("cost_map", cost_map, {.help = "the map as a robot on the floor needs it, saved beside it"});
   v.require(range / resolution <= 500, "range is more than 500 voxels");
   v.require(least < occupied_above && occupied_above < most,

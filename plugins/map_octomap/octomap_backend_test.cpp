@@ -139,6 +139,28 @@ TEST_F(OctomapBackendTest, WhatMustNotBeMappedIsNotThere) {
   EXPECT_FALSE(without.tree().isNodeOccupied(without.tree().search(0.52, 0.3, 1.3)));
 }
 
+TEST_F(OctomapBackendTest, BesideWhatMovesOneLookIsNotEnough) {
+  OctomapBackend map({}, context()), without_margin({.margin = 0}, context());
+  DenseKeyFrame keyframe = TestRoom().see(looking({0.5, -1.0, 1.3}, 0.0));
+  auto weights = std::make_shared<StaticWeights>();  // of the pillar only the left half is found
+  weights->map = cv::Mat(keyframe.frame->depth.size(), CV_8UC1, cv::Scalar(255));
+  weights->map.colRange(0, 160).setTo(0, keyframe.segmentation->labels.colRange(0, 160) != 0);
+  keyframe.weights = weights;
+  map.integrate(keyframe);
+  without_margin.integrate(keyframe);
+  const Eigen::Vector3d beside(0.525, 0.735, 1.325), far(0.675, 0.775, 1.325),
+      wall(-0.5, 2.425, 1.3);
+  const auto occupied = [](const OctomapBackend& map, const Eigen::Vector3d& at) {
+    return map.tree().is_occupied(map.tree().coordToKey(at.x(), at.y(), at.z()));
+  };
+  EXPECT_TRUE(occupied(without_margin, beside));
+  EXPECT_FALSE(occupied(map, beside));
+  EXPECT_TRUE(occupied(map, far));
+  EXPECT_TRUE(occupied(map, wall));
+  map.integrate(keyframe);
+  EXPECT_TRUE(occupied(map, beside));
+}
+
 TEST_F(OctomapBackendTest, ThePapersModelKnowsNoFreeSpace) {
   OctomapBackend map = map_at(pose_of, {.model = Options::Model::kHits});
   for (auto leaf = map.tree().begin_leafs(); leaf != map.tree().end_leafs(); ++leaf)

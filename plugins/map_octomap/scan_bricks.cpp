@@ -43,7 +43,7 @@ int cube_edge(int half) { return (2 * half + 2 * kEdge + 63) / 64 * 64; }
 
 ScanBricks::ScanBricks(const ScanOptions& options)
     : options_(options),
-      half_(static_cast<int>(options.range / options.resolution) + kMargin),
+      half_(static_cast<int>(options.range / options.resolution) + kMargin + options.margin),
       ended_(cube_edge(half_)),
       passed_(cube_edge(half_)) {
   const auto bricks = static_cast<std::size_t>(ended_.edge() / kEdge);
@@ -53,6 +53,7 @@ ScanBricks::ScanBricks(const ScanOptions& options)
 void ScanBricks::scan(const DenseKeyFrame& keyframe) {
   begin(keyframe);
   find_ends(keyframe);
+  mark_beside_moving();
   if (options_.carve) {
     passed_.set_rays(origin_, ends_);
     add_passed();
@@ -75,6 +76,7 @@ void ScanBricks::begin(const DenseKeyFrame& keyframe) {
   passed_.clear();
   std::fill(directory_.begin(), directory_.end(), -1);
   ends_.clear();
+  moving_.clear();
   bricks_.clear();
   sums_.clear();
   sorted_.clear();
@@ -114,7 +116,11 @@ void ScanBricks::find_ends(const DenseKeyFrame& keyframe) {
         last_front = front;
         if (!ended_.set(front)) ends_.push_back(front);
       }
-      if (depth[u] > row_.reach[u] || (weight && weight[u] < options_.min_weight)) continue;
+      if (depth[u] > row_.reach[u]) continue;
+      if (weight && weight[u] < options_.min_weight) {
+        if (moving_.empty() || moving_.back() != voxel) moving_.push_back(voxel);
+        continue;
+      }
       if (!sum) sum = &sum_of(voxel);
       sum->add(bgr + 3 * u, label ? label[u] : std::uint8_t{0});
     }
@@ -175,7 +181,7 @@ void ScanBricks::Sum::add(const std::uint8_t* bgr, std::uint8_t seen) {
 }
 
 VoxelLook ScanBricks::Sum::look(bool labelled) const {
-  VoxelLook look{.label = label.winner, .labelled = labelled};
+  VoxelLook look{.label = label.winner, .labelled = labelled, .beside_moving = beside_moving};
   for (int i = 0; i < 3; ++i) look.rgb[i] = static_cast<std::uint8_t>(rgb[i] / pixels);
   return look;
 }
@@ -191,6 +197,21 @@ ScanBrick& ScanBricks::brick_at(int x, int y, int z) {
       brick.key[axis] = static_cast<std::uint16_t>(corner_[axis] / kEdge + place[axis]);
   }
   return bricks_[index];
+}
+
+void ScanBricks::mark_beside_moving() {
+  const int margin = options_.margin, bricks = ended_.edge() / kEdge;
+  for (const VoxelBits::Index voxel : moving_) {
+    const auto [x, y, z] = ended_.place(voxel);
+    for (int near_x = x - margin; near_x <= x + margin; ++near_x)
+      for (int near_y = y - margin; near_y <= y + margin; ++near_y)
+        for (int near_z = z - margin; near_z <= z + margin; ++near_z) {
+          const std::int32_t brick =
+              directory_[(near_x / kEdge * bricks + near_y / kEdge) * bricks + near_z / kEdge];
+          if (brick >= 0 && bricks_[brick].sums >= 0)
+            sums_[bricks_[brick].sums][code_in_brick(near_x, near_y, near_z)].beside_moving = true;
+        }
+  }
 }
 
 // From rows of bits to the Morton codes of bricks.

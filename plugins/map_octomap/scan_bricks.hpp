@@ -18,6 +18,7 @@ struct VoxelLook {
   std::array<std::uint8_t, 3> rgb{};
   std::uint8_t label = 0;  ///< class id of most of its pixels
   bool labelled = true;    ///< whether the class is known
+  bool beside_moving = false;
 };
 
 /// OctoMap's keys of the voxels in a brick, shifted right by 3.
@@ -47,6 +48,9 @@ struct ScanOptions {
   double noise = 0.0;
   /// Pixels of a lower map weight hit nothing; what is before them is free all the same.
   std::uint8_t min_weight = 128;
+  /// Voxels to each side of such a pixel's that are beside something moving: what is found of a
+  /// person may end a little inside the person.
+  int margin = 0;
 };
 
 /// The scan of one key frame after the other; keeps its memory.
@@ -75,6 +79,7 @@ class ScanBricks {
     std::uint16_t pixels = 0;
     std::array<std::uint16_t, 3> rgb{};
     MajorityVote label;
+    bool beside_moving = false;
 
     void add(const std::uint8_t* bgr, std::uint8_t seen);
     VoxelLook look(bool labelled) const;
@@ -86,6 +91,7 @@ class ScanBricks {
   void find_voxels(const Pose& world_from_camera, const Frame& frame, int v);
   Sum& sum_of(VoxelBits::Index voxel);
   ScanBrick& brick_at(int x, int y, int z);
+  void mark_beside_moving();
   void add_passed();
   void finish();
 
@@ -96,7 +102,8 @@ class ScanBricks {
   std::array<int, 3> corner_{};  // OctoMap's key of the box's first voxel
   Eigen::Vector3f origin_;       // camera, in voxels from the corner
   std::vector<VoxelBits::Index> ends_;
-  std::vector<std::int32_t> directory_;  // of the bricks of the box: index into bricks_, or -1
+  std::vector<VoxelBits::Index> moving_;  // voxels in which pixels of a low map weight lie
+  std::vector<std::int32_t> directory_;   // of the bricks of the box: index into bricks_, or -1
   std::vector<ScanBrick> bricks_;
   std::vector<Sums> sums_;
   bool labelled_ = false;  // whether the key frame is

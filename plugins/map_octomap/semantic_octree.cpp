@@ -37,7 +37,8 @@ unsigned octant_of(const BrickKey& key, unsigned depth) {
 
 }  // namespace
 
-void SemanticVoxel::hit(const VoxelLook& look, const OccupancyModel& model) {
+void SemanticVoxel::hit(const VoxelLook& look, bool known, const OccupancyModel& model) {
+  if (!known && look.beside_moving) value = model.doubt;
   value = std::min(value + model.hit, model.max);
   colors_ = static_cast<std::uint8_t>(std::min(colors_ + 1, int{kMostColors}));
   const auto mean = [&](int old, int seen) {
@@ -114,7 +115,7 @@ class SemanticOctree::Addition {
     const bool uniform = !tree_.nodeHasChildren(&node);
     if constexpr (kCount == 1) {
       if (any<1>(brick.hit, first))
-        node.hit(*look_++, model_);
+        node.hit(*look_++, known, model_);
       else
         node.pass(model_);
     } else if (uniform && all<kCount>(brick.passed, first)) {

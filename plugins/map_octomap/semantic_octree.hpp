@@ -18,6 +18,8 @@ struct OccupancyModel {
   float miss = -0.4F;  ///< 0: free space is not carved (the paper)
   float min = -2.0F;   ///< clamped, so that things may appear …
   float max = 3.5F;    ///< … and disappear again
+  /// With what a voxel begins that is first hit beside something moving.
+  float doubt = 0.0F;
 };
 
 /// Occupancy in log-odds, mean colour and class of a leaf; an inner node has the occupancy of its
@@ -36,7 +38,8 @@ class SemanticVoxel : public octomap::ColorOcTreeNode {
   const ClassBelief& classes() const { return classes_; }
   void set_classes(const ClassBelief& classes) { classes_ = classes; }
 
-  void hit(const VoxelLook& look, const OccupancyModel& model);
+  /// `known`: whether anything was before.
+  void hit(const VoxelLook& look, bool known, const OccupancyModel& model);
   void pass(const OccupancyModel& model);
   /// Of an inner node, after its children have changed.
   void summarise_children();

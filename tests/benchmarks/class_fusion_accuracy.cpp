@@ -61,7 +61,7 @@ Voxels fused(const std::filesystem::path& recording, double edge, double miss_ra
   LabelImageSegmenter segmenter(options, StageContext{});
   ScanBricks scan({.resolution = edge, .range = kRange, .carve = false});
   Voxels voxels;
-  for (const auto& [seen, labels] : read_labelled_frames(recording, kEvery)) {
+  for (const auto& [seen, labels, instances] : read_labelled_frames(recording, kEvery)) {
     auto frame = std::make_shared<Frame>(*seen.frame);
     cv::cvtColor(frame->gray, frame->bgr, cv::COLOR_GRAY2BGR);
     auto weights = std::make_shared<StaticWeights>();

@@ -3,9 +3,9 @@
 // TRUTH: the recording's twin without noise, `stillpoint simulate SCENE --set
 // source.sensor.ideal=true` with the same seeds, and with labels. Where there is no such twin with
 // people, PEOPLE is the recording itself and TRUTH the same without people (tools/real_people):
-// what people were in is then PEOPLE's, the rest TRUTH's. RUN: folders of `stillpoint run` with
-// map_backend octomap; their maps are laid onto the truth by the best alignment of their
-// trajectories. One line of JSON each.
+// what people were in, and what they have put down, is then PEOPLE's, the rest TRUTH's. RUN:
+// folders of `stillpoint run` with map_backend octomap; their maps are laid onto the truth by the
+// best alignment of their trajectories. One line of JSON each.
 #include <algorithm>
 #include <array>
 #include <iostream>
@@ -75,7 +75,7 @@ std::unique_ptr<OctomapBackend> exact_map(const std::vector<LabelledFrame>& fram
   auto map = std::make_unique<OctomapBackend>(
       OctomapBackend::Options{.resolution = edge, .range = kRange}, StageContext{});
   KeyFrameId id = 0;
-  for (const auto& [seen, labels] : frames) {
+  for (const auto& [seen, labels, instances] : frames) {
     auto frame = std::make_shared<Frame>(*seen.frame);
     cv::cvtColor(frame->gray, frame->bgr, cv::COLOR_GRAY2BGR);
     auto weights = std::make_shared<StaticWeights>();
@@ -157,6 +157,7 @@ void run(const std::vector<std::filesystem::path>& folders) {
     const double edge = saved.tree->getResolution();
     Truth truth = truth_in(frames, map_from_truth, edge);
     truth.people = truth_in(with_people, map_from_truth, edge).people;
+    if (crowd != room) add_things(with_people, map_from_truth, edge, truth);
     nlohmann::json result = {{"run", folders[i].string()}};
     result.update(judge(*saved.tree, truth));
     result["cost_map"] =

@@ -40,7 +40,7 @@ struct Truth {
 
 struct LabelledFrame {
   TrueFrame seen;
-  cv::Mat labels;
+  cv::Mat labels, instances;  // of the second, 0 is the room
 };
 
 inline Key key_of(const Eigen::Vector3d& point, double edge) {
@@ -66,8 +66,10 @@ inline std::vector<LabelledFrame> read_labelled_frames(const std::filesystem::pa
   std::vector<LabelledFrame> frames;
   for (TrueFrame& seen : read_true_frames(folder, every)) {
     cv::Mat labels = cv::imread(folder / "labels" / seen.name, cv::IMREAD_UNCHANGED);
-    if (labels.empty()) throw std::runtime_error(folder.string() + " has no labels");
-    frames.push_back({std::move(seen), std::move(labels)});
+    cv::Mat instances = cv::imread(folder / "instances" / seen.name, cv::IMREAD_UNCHANGED);
+    if (labels.empty() || instances.empty())
+      throw std::runtime_error(folder.string() + " has no labels or instances");
+    frames.push_back({std::move(seen), std::move(labels), std::move(instances)});
   }
   if (frames.empty()) throw std::runtime_error(folder.string() + " has no frames");
   return frames;
@@ -77,7 +79,7 @@ inline Truth truth_in(const std::vector<LabelledFrame>& frames, const Pose& map_
                       double edge) {
   Truth truth;
   truth.seconds = frames.back().seen.frame->time - frames.front().seen.frame->time;
-  for (const auto& [seen, labels] : frames) {
+  for (const auto& [seen, labels, instances] : frames) {
     const Pose map_from_camera = map_from_truth * seen.world_from_camera;
     const cv::Mat& depth = seen.frame->depth;
     for (int v = 0; v < depth.rows; ++v)
@@ -93,6 +95,21 @@ inline Truth truth_in(const std::vector<LabelledFrame>& frames, const Pose& map_
       }
   }
   return truth;
+}
+
+/// Things that the last quarter of the frames shows, as a box that was put down, stand there.
+inline void add_things(const std::vector<LabelledFrame>& frames, const Pose& map_from_truth,
+                       double edge, Truth& truth) {
+  std::vector<LabelledFrame> last(frames.end() - static_cast<std::ptrdiff_t>(frames.size() / 4),
+                                  frames.end());
+  for (LabelledFrame& frame : last) {
+    frame.seen.frame = std::make_shared<Frame>(*frame.seen.frame);
+    cv::Mat& depth = frame.seen.frame->depth;
+    depth = depth.clone();
+    depth.setTo(0, frame.instances == 0);
+  }
+  for (const auto& [key, counts] : truth_in(last, map_from_truth, edge).still)
+    for (const auto& [label, pixels] : counts) truth.still[key][label] += pixels;
 }
 
 inline std::uint8_t most_seen(const std::map<std::uint8_t, int>& counts) {
