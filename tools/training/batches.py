@@ -21,14 +21,17 @@ KINDS = {
     'close': 0.05,  # a small part of a room fills the image
 }
 # The same for the SegNet, which learns the things in rooms, too.
-CLASS_KINDS = {'people': 0.28, 'pasted': 0.16, 'people_clutter': 0.1, 'clutter': 0.1, 'room': 0.31,
+CLASS_KINDS = {'people': 0.32, 'pasted': 0.18, 'people_clutter': 0.1, 'clutter': 0.06, 'room': 0.29,
                'close': 0.05}
 # How often photographs of a source are taken, for those with people in them.
-WEIGHTS = {'clothing': 1.0, 'pennfudan': 1.5, 'rooms': 3.0, 'sport': 2.0}
+WEIGHTS = {'clothing': 1.0, 'pennfudan': 1.5, 'rooms': 3.0, 'sport': 2.0,
+           'rendered': 8.0}
 # The same for people to cut out: few photographs of sport have good outlines.
 CUT_OUT_WEIGHTS = {'clothing': 1.0, 'pennfudan': 1.0, 'sport': 1.5}
 # Of those without people the few by an RGB-D camera are most like what the network will see.
-EMPTY_WEIGHTS = {'desks': 1.5, 'kitchen': 3.0, 'rooms': 1.0}
+EMPTY_WEIGHTS = {'desks': 1.5, 'kitchen': 3.0, 'rendered': 2.0, 'rooms': 1.0}
+# For a cache of the SegNet, from a few hundred desks.
+CLASS_EMPTY_WEIGHTS = dict(EMPTY_WEIGHTS, desks=5.0)
 
 
 def shares(entries, weights):
@@ -50,11 +53,11 @@ def piece_of(sample):
 class Maker:
     """Makes single images, each from a random generator that is its own."""
 
-    def __init__(self, collection, load=samples.load, kinds=None):
+    def __init__(self, collection, load=samples.load, kinds=None, empty_weights=None):
         self.collection, self.camera, self.load = collection, Camera(), load
         self.kinds = kinds or KINDS
         self.people_shares = shares(collection.people, WEIGHTS)
-        self.empty_shares = shares(collection.empty, EMPTY_WEIGHTS)
+        self.empty_shares = shares(collection.empty, empty_weights or EMPTY_WEIGHTS)
         self.cut_out_shares = shares(collection.cut_outs, CUT_OUT_WEIGHTS)
 
     def make(self, rng):

@@ -2,7 +2,8 @@
 
     WORK/cache/NUMBER.images    RECORDS of the type RECORD
 
-Each use sees another part of an image, or its mirror image, a little brighter or darker."""
+Each use sees another part of an image, or its mirror image, a little brighter or darker. Images
+with things in them, and of these the rarer classes, are used more often than others."""
 
 import cv2
 import numpy as np
@@ -22,6 +23,10 @@ RECORD = np.dtype([('image', 'u1', (HEIGHT, WIDTH, 3)),
                   [(name, 'i1', shape) for name, shape in hints.SHAPES.items()])
 SMALLEST_PART = 0.75  # of an image's sides that is used
 COARSE = 4  # pixels, in which the teacher's probabilities are brought to an image's size
+SHARPNESS = 2  # power of the teacher's probabilities
+TAUGHT_BACKGROUND = 0.5  # factor of its background: it overlooks more than it makes up
+# An image is used as often as it has things, compared with all others, plus one.
+MOST_THINGS = 3
 
 
 class Part:
@@ -55,10 +60,11 @@ def cells_of(planes, maps, size, on_edges):
 
 
 def soft_target(person, things, probabilities):
-    """Probability of each class: people as labelled, the rest by true labels or by the teacher."""
-    others = probabilities
+    """Probability of each class: people as labelled, the rest by true labels or by the teacher;
+    who is a person to the teacher only is background."""
+    others = probabilities ** SHARPNESS
+    others[:, 0] = TAUGHT_BACKGROUND * (others[:, 0] + others[:, PERSON]) + 1e-3
     others[:, PERSON] = 0
-    others[:, 0] += 1e-3
     others /= others.sum(dim=1, keepdim=True)
     known = things != UNKNOWN
     truth = F.one_hot(torch.where(known, things, 0).long(), len(CLASSES)).permute(0, 3, 1, 2)
@@ -67,22 +73,44 @@ def soft_target(person, things, probabilities):
     return target
 
 
+def shares_of_things(records):
+    """Of the classes of things, background and people left out, for each record: n x classes."""
+    known = records['things'][:, ::COARSE, ::COARSE]
+    taught = records['probabilities'].mean(axis=(2, 3), dtype=np.float32) / 255
+    unknown = (known == UNKNOWN).mean(axis=(1, 2), dtype=np.float32)
+    true = np.stack([(known == number).mean(axis=(1, 2), dtype=np.float32)
+                     for number in range(len(CLASSES))], axis=1)
+    return np.delete(true + taught * unknown[:, None], (0, PERSON), axis=1)
+
+
+def chances(shares):
+    """How often each record is taken; `shares`: of things, see above."""
+    things = (shares / np.maximum(shares.mean(axis=0), 1e-6)).mean(axis=1)
+    weights = 1 + np.minimum(things, MOST_THINGS)
+    return weights / weights.sum()
+
+
 class Cache:
     def __init__(self, folder):
-        self.folder, self.files = folder, []
+        self.folder, self.files, self.shares = folder, [], []
         self.look_again()
 
     def look_again(self):
         """Another process may have made more."""
-        paths = sorted(self.folder.glob('*.images'))
-        self.files += [np.memmap(path, RECORD, 'r') for path in paths[len(self.files):]]
+        paths = sorted(self.folder.glob('*.images'))[len(self.files):]
+        if not paths:
+            return
+        more = [np.memmap(path, RECORD, 'r') for path in paths]
+        self.files += more
+        self.shares += [shares_of_things(records) for records in more]
+        self.chances = chances(np.concatenate(self.shares))
 
     def __len__(self):
         return RECORDS * len(self.files)
 
-    def batch(self, rng, count, size):
+    def batch(self, rng, count, size, with_hints=True):
         """Images (0 to 255), target, weight; then hints in the order of hints.SHAPES."""
-        chosen = rng.integers(len(self), size=count)
+        chosen = rng.choice(len(self), count, p=self.chances)
         records = [self.files[number // RECORDS][number % RECORDS] for number in chosen]
         parts = [Part(rng) for _ in records]
         maps = torch.from_numpy(np.stack([part.map() for part in parts]))
@@ -102,5 +130,6 @@ class Cache:
         probabilities = F.interpolate(cells('probabilities', COARSE) / 255, scale_factor=COARSE,
                                       mode='bilinear', align_corners=False)
         target = soft_target(labels[:, :1], pixels('things', cv2.INTER_NEAREST), probabilities)
-        features = [hints.STEP * cells(name, 2 ** hints.LEVELS[name]) for name in hints.SHAPES]
+        features = [hints.STEP * cells(name, 2 ** hints.LEVELS[name])
+                    for name in hints.SHAPES if with_hints]
         return images.clamp(0, 255).permute(0, 3, 1, 2), target, labels[:, 1:], *features

@@ -27,7 +27,7 @@ class Distillation(nn.Module):
             if iteration % LOOK_AGAIN == 0:
                 self.cache.look_again()
             rng = np.random.default_rng([args.seed, iteration])
-            yield self.cache.batch(rng, args.batch, args.size)
+            yield self.cache.batch(rng, args.batch, args.size, bool(args.hints))
 
     def loss(self, network, iteration, images, target, weight, *found):
         encoded = network.encode(images)

@@ -18,7 +18,7 @@ import torch  # noqa: E402
 import cache  # noqa: E402
 import class_labels  # noqa: E402
 import hints  # noqa: E402
-from batches import CLASS_KINDS, Maker  # noqa: E402
+from batches import CLASS_EMPTY_WEIGHTS, CLASS_KINDS, Maker  # noqa: E402
 from samples import Collection  # noqa: E402
 from sources import photographs  # noqa: E402
 
@@ -69,7 +69,7 @@ def main():
     folder.mkdir(exist_ok=True)
     collection = Collection(photo for photo in photographs(args.work) if not photo.held_out)
     print(collection, flush=True)
-    maker = Maker(collection, class_labels.load_true, CLASS_KINDS)
+    maker = Maker(collection, class_labels.load_true, CLASS_KINDS, CLASS_EMPTY_WEIGHTS)
     teachers = hints.Teachers(args.person, args.deeplab)
     start = time.monotonic()
     for number in range(args.count // cache.RECORDS):

@@ -11,12 +11,12 @@ A working folder holds
 from pathlib import Path
 
 ARCHIVES = ('clothing', 'kitchen', 'pennfudan', 'rooms', 'sport')
-SOURCES = tuple(sorted(ARCHIVES + ('desks',)))
+SOURCES = tuple(sorted(ARCHIVES + ('desks', 'rendered')))
 # Rendered desks (render_desks.py), and a recording that nobody is in.
 EMPTY_SOURCES = ('desks', 'kitchen')
 # Passers-by and people far away are missing in the true masks of these.
 INCOMPLETE_MASKS = ('clothing', 'pennfudan')
-TRUE_CLASSES = ('desks',)  # of things, in WORK/classes: no teacher's opinion
+TRUE_CLASSES = ('desks', 'rendered')  # of things, in WORK/classes: no teacher's opinion
 
 HELD_OUT_SOURCES = ('clothing', 'pennfudan', 'rooms')
 HELD_OUT_EVERY = 10

@@ -373,14 +373,31 @@ class Parts(unittest.TestCase):
             self.assertLess(np.abs(cells - pixels)[:, 1:-1].max(), 2)
 
     def test_people_are_as_labelled_and_other_classes_as_known_or_taught(self):
-        opinion = torch.zeros(1, len(CLASSES), 1, 3)
-        opinion[0, CLASSES.index('chair')], opinion[0, CLASSES.index('person')] = 0.5, 0.5
-        things = torch.tensor([[[UNKNOWN, CLASSES.index('sofa'), UNKNOWN]]])
-        person = torch.tensor([[[[0, 0.25, 1]]]])
-        target = cache.soft_target(person, things.reshape(1, 1, 3), opinion)[0, :, 0]
-        self.assertGreater(target[CLASSES.index('chair'), 0], 0.99)
-        self.assertEqual(target[CLASSES.index('sofa'), 1], 0.75)
-        self.assertEqual(target[CLASSES.index('person')].tolist(), [0, 0.25, 1])
+        chair, sofa, somebody = (CLASSES.index(name) for name in ('chair', 'sofa', 'person'))
+        opinion = torch.zeros(1, len(CLASSES), 1, 4)
+        opinion[0, chair], opinion[0, 0] = 0.5, 0.4
+        opinion[0, :, 0, 3] = torch.eye(len(CLASSES))[somebody]
+        things = torch.tensor([[[UNKNOWN, sofa, UNKNOWN, UNKNOWN]]])
+        person = torch.tensor([[[[0, 0.25, 1, 0]]]])
+        target = cache.soft_target(person, things, opinion)[0, :, 0]
+        self.assertGreater(target[chair, 0], 0.7)
+        self.assertEqual(target[sofa, 1], 0.75)
+        self.assertEqual(target[somebody].tolist(), [0, 0.25, 1, 0])
+        self.assertEqual(target[0, 3], 1)
+
+    def test_images_with_rare_things_are_used_more_often(self):
+        shares = np.zeros((4, len(CLASSES) - 2))
+        shares[1, 0], shares[2, 1], shares[3, 1] = 0.1, 0.1, 0.2
+        chances = cache.chances(shares)
+        self.assertAlmostEqual(chances.sum(), 1)
+        self.assertTrue(chances[1] > chances[3] > chances[2] > chances[0])
+
+    def test_true_things_count_before_the_teachers(self):
+        records = np.zeros(2, cache.RECORD)
+        records['things'] = [[[CLASSES.index('sofa')]], [[UNKNOWN]]]
+        records['probabilities'][:, CLASSES.index('bottle')] = 255
+        shares = cache.shares_of_things(records)
+        self.assertEqual(shares.tolist(), [[0, 0, 0, 0, 1, 0], [1, 0, 0, 0, 0, 0]])
 
     def test_a_segnets_person_is_who_scores_above_all_other_classes(self):
         scores = torch.zeros(1, len(CLASSES), 1, 2)
