@@ -7,7 +7,8 @@
 namespace stillpoint {
 namespace {
 
-constexpr float kAlmost = 0.01F;  // log-odds below being occupied
+constexpr float kAlmost = 0.01F;   // log-odds below being occupied
+constexpr long kWidestMargin = 3;  // voxels: their number grows with its third power
 
 float log_odds(double probability) {
   return static_cast<float>(std::log(probability / (1 - probability)));
@@ -28,7 +29,8 @@ ScanOptions scan_options_of(const OctomapBackend::Options& options) {
           .carve = options.model == OctomapBackend::Options::Model::kRays,
           .noise = options.noise,
           .min_weight = static_cast<std::uint8_t>(options.min_weight),
-          .margin = static_cast<int>(std::lround(options.margin / options.resolution))};
+          .margin = static_cast<int>(
+              std::min(std::lround(options.margin / options.resolution), kWidestMargin))};
 }
 
 bool share_any(const std::vector<BrickKey>& some, const std::vector<BrickKey>& others) {
@@ -80,7 +82,8 @@ void OctomapBackend::Options::visit(OptionVisitor& v) {
     {.min = 0,
      .max = 0.1,
      .unit = "m",
-     .help = "around what moves in which one look does not make a voxel occupied"});
+     .help = "around what moves in which one look does not make a voxel occupied; at most three "
+             "voxels"});
   v("cost_map", cost_map, {.help = "the map as a robot on the floor needs it, saved beside it"});
   v.require(range / resolution <= 500, "range is more than 500 voxels");
   v.require(least < occupied_above && occupied_above < most,

@@ -37,7 +37,8 @@ class OctomapBackend final : public MapBackend {
     double noise = 0.002;         ///< metres at 1 m; of depth
     int stride = 0;               ///< px; 0 = by resolution and range
     int min_weight = 128;         ///< of StaticWeights::map
-    /// Metres around such pixels, in whole voxels, in which one look does not make one occupied.
+    /// Metres around such pixels in which one look does not make a voxel occupied; in whole voxels,
+    /// at most three.
     double margin = 0.05;
     CostMapOptions cost_map;
 

@@ -201,6 +201,7 @@ ScanBrick& ScanBricks::brick_at(int x, int y, int z) {
 
 void ScanBricks::mark_beside_moving() {
   const int margin = options_.margin, bricks = ended_.edge() / kEdge;
+  if (margin == 0) return;
   for (const VoxelBits::Index voxel : moving_) {
     const auto [x, y, z] = ended_.place(voxel);
     for (int near_x = x - margin; near_x <= x + margin; ++near_x)

@@ -16,9 +16,9 @@ namespace stillpoint {
 /// What a scan saw of a voxel.
 struct VoxelLook {
   std::array<std::uint8_t, 3> rgb{};
-  std::uint8_t label = 0;  ///< class id of most of its pixels
-  bool labelled = true;    ///< whether the class is known
-  bool beside_moving = false;
+  std::uint8_t label = 0;      ///< class id of most of its pixels
+  bool labelled = true;        ///< whether the class is known
+  bool beside_moving = false;  ///< within ScanOptions::margin of it
 };
 
 /// OctoMap's keys of the voxels in a brick, shifted right by 3.
@@ -49,7 +49,7 @@ struct ScanOptions {
   /// Pixels of a lower map weight hit nothing; what is before them is free all the same.
   std::uint8_t min_weight = 128;
   /// Voxels to each side of such a pixel's that are beside something moving: what is found of a
-  /// person may end a little inside the person.
+  /// person may end a little inside the person. 0: none is.
   int margin = 0;
 };
 

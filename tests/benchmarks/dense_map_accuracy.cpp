@@ -73,7 +73,7 @@ nlohmann::json judge(const SemanticOctree& tree, const Truth& truth) {
 std::unique_ptr<OctomapBackend> exact_map(const std::vector<LabelledFrame>& frames,
                                           const Pose& map_from_truth, double edge) {
   auto map = std::make_unique<OctomapBackend>(
-      OctomapBackend::Options{.resolution = edge, .range = kRange}, StageContext{});
+      OctomapBackend::Options{.resolution = edge, .range = kRange, .margin = 0}, StageContext{});
   KeyFrameId id = 0;
   for (const auto& [seen, labels, instances] : frames) {
     auto frame = std::make_shared<Frame>(*seen.frame);
