@@ -220,5 +220,18 @@ TEST_F(PipelineConfigTest, DamagedFilesAreFaultsNotCrashes) {
   EXPECT_THROW(load({.pipeline = "p.yaml"}), ConfigError);
 }
 
+TEST_F(PipelineConfigTest, WhatIsTooLargeIsSaidOnce) {
+  std::string text = std::string(kSource) + kCamera + "tracker:\n";
+  for (int i = 0; i < 50'000; ++i) text += "  key_" + std::to_string(i) + ": 1\n";
+  write("p.yaml", text);
+  try {
+    load({.pipeline = "p.yaml"});
+    FAIL() << "loaded";
+  } catch (const ConfigError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("too large for a configuration"));
+    EXPECT_THAT(error.what(), Not(HasSubstr("unknown key")));
+  }
+}
+
 }  // namespace
 }  // namespace stillpoint::test

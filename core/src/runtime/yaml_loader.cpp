@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
 
 // Aliases can nest a node in itself, or double a document at every level.
 constexpr int kMaxDepth = 32;
-constexpr int kMaxNodes = 100000;
+constexpr int kMaxNodes = 10000;  // keys are compared with each other
 
 /// Turns the nodes of one document into ours.
 class Converter {
@@ -53,9 +53,12 @@ class Converter {
     return node;
   }
 
+  bool too_large() const { return too_large_; }
+
  private:
   void add_pair(ConfigNode& map, const YAML::Node& yaml_key, const YAML::Node& yaml_value,
                 const std::string& path, int depth) {
+    if (too_large_) return;
     const Location where = at(yaml_key.Mark());
     const std::string prefix = path.empty() ? "" : path + ": ";
     if (!yaml_key.IsScalar()) {
@@ -123,15 +126,19 @@ Documents documents_in(const std::string& text) {
   return Documents::kSeveral;
 }
 
-/// One document; nothing after a syntax error, which is added as a fault.
+/// One document; nothing when it is no YAML or too large, which is added as a fault.
 std::optional<ConfigNode> parse(const std::string& text, Location origin, const fs::path& folder,
                                 FaultList& faults) {
   try {
     switch (documents_in(text)) {
       case Documents::kNone:
         return ConfigNode();
-      case Documents::kOne:
-        return Converter(origin, folder, faults).convert(YAML::Load(text));
+      case Documents::kOne: {
+        Converter converter(origin, folder, faults);
+        ConfigNode node = converter.convert(YAML::Load(text));
+        if (converter.too_large()) return std::nullopt;
+        return node;
+      }
       case Documents::kSeveral:
         break;
     }
