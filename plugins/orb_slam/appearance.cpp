@@ -7,13 +7,13 @@
 namespace stillpoint::orb {
 namespace {
 
-constexpr int kMinMatches = 15;      // to try a pose
-constexpr double kRatio = 0.8;       // of the best to the second best descriptor distance
-constexpr int kMaxDistance = 70;     // Hamming
-constexpr double kRansacPixels = 5;  // reprojection error of an inlier
+constexpr int kMinAppearanceMatches = 15;  // to try a pose
+constexpr double kRatio = 0.8;             // of the best to the second best descriptor distance
+constexpr int kMaxDistance = 70;           // Hamming
+constexpr double kRansacPixels = 5;        // reprojection error of an inlier
 constexpr int kRansacIterations = 200;
-constexpr double kWindow = 10;  // px, of the guided search
-constexpr int kLevels = 2;      // of the pyramid, up and down, of the guided search
+constexpr double kGuidedWindow = 10;  // px, of the guided search
+constexpr int kLevels = 2;            // of the pyramid, up and down, of the guided search
 
 // Perspective-n-point with RANSAC; OpenCV seeds it with a constant, so it repeats exactly.
 std::optional<Pose> camera_from_world(const ObservedFrame& frame, std::span<const Target> targets,
@@ -31,7 +31,7 @@ std::optional<Pose> camera_from_world(const ObservedFrame& frame, std::span<cons
   if (!cv::solvePnPRansac(points, pixels, intrinsics, cv::noArray(), rotation_vector, translation,
                           false, kRansacIterations, kRansacPixels, 0.99, inliers,
                           cv::SOLVEPNP_EPNP) ||
-      inliers.rows < kMinMatches)
+      inliers.rows < kMinAppearanceMatches)
     return std::nullopt;
   Eigen::Vector3d rotation;
   Pose pose = Pose::Identity();
@@ -56,12 +56,12 @@ int locate_by_appearance(ObservedFrame& frame, std::span<const Target> targets,
   const std::vector<Match> matches = match_anywhere(
       anywhere(targets), *frame.features, [&](std::uint32_t i) { return frame.usable(i); },
       {.max_distance = kMaxDistance, .ratio = kRatio, .consistent_angles = true});
-  if (static_cast<int>(matches.size()) < kMinMatches) return 0;
+  if (static_cast<int>(matches.size()) < kMinAppearanceMatches) return 0;
   const std::optional<Pose> pose = camera_from_world(frame, targets, matches);
   if (!pose) return 0;
 
   frame.world_from_camera = pose->inverse();
-  match_projected(frame, targets, *pose, kWindow, kLevels);
+  match_projected(frame, targets, *pose, kGuidedWindow, kLevels);
   const int inliers = solve_pose(frame, map);
   frame.drop_outliers();
   return inliers;

@@ -6,11 +6,11 @@
 namespace stillpoint::orb {
 namespace {
 
-constexpr std::size_t kMostViews = 40;  // kept; 130 kB each
-constexpr std::size_t kNeighbours = 2;  // compared with
-constexpr int kSparse = 6;              // every sixth patch of every sixth row tells of overlap
-constexpr double kMinOverlap = 0.15;    // of the patches
-constexpr double kMinGain = 0.05;       // of the patches; less and the older view is as good
+constexpr std::size_t kMostViews = 40;     // kept; 130 kB each
+constexpr std::size_t kComparedViews = 2;  // compared with
+constexpr int kSparse = 6;                 // every sixth patch of every sixth row tells of overlap
+constexpr double kMinOverlap = 0.15;       // of the patches
+constexpr double kMinGain = 0.05;          // of the patches; less and the older view is as good
 
 // Share of the current view's patches that another one has a patch for.
 double overlap(const DepthView& current, const DepthView& other, const Pose& other_from_current) {
@@ -46,7 +46,7 @@ DepthAnchor::Neighbours DepthAnchor::around(const DepthView& current, const Pose
   }
   // The oldest of those that are nearly as good as the best: errors add up from view to view.
   Neighbours neighbours;
-  while (!candidates.empty() && neighbours.views.size() < kNeighbours) {
+  while (!candidates.empty() && neighbours.views.size() < kComparedViews) {
     const auto best = std::ranges::max_element(candidates, {}, &Candidate::overlap);
     const double enough = best->overlap - kMinGain;
     const auto chosen =

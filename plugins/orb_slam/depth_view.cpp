@@ -11,7 +11,7 @@ namespace {
 constexpr int kCell = DepthView::kCell;
 constexpr int kStep = 2;   // px between the samples of a cell
 constexpr int kReach = 2;  // cells around a patch's own that its plane is fitted to
-constexpr int kSamples = (kCell / kStep) * (kCell / kStep);
+constexpr int kSamplesPerCell = (kCell / kStep) * (kCell / kStep);
 constexpr float kSumOfSquares = 50.0F;  // of column (or row) over 5 × 5 cells around the middle
 constexpr float kMaxMisfit = 0.003F;    // 1/m, of a cell's mean against the plane; more is an edge
 
@@ -38,7 +38,7 @@ Cell cell_at(const cv::Mat& depth, const cv::Mat& weights, int left, int top) {
       least_weight = std::min(least_weight, weight[x]);
   }
   if (least_depth <= 0 || least_weight < ObservedFrame::kMinWeight) return {};
-  return {sum / kSamples, static_cast<float>(least_weight) / 255.0F};
+  return {sum / kSamplesPerCell, static_cast<float>(least_weight) / 255.0F};
 }
 
 // The inverse depth of a plane is an affine function of the pixel, with the same noise everywhere.
@@ -127,7 +127,7 @@ float DepthView::distance_sigma(const PlanePatch& patch) const {
 }
 
 float DepthView::normal_sigma(const PlanePatch& patch) const {
-  const float cell_sigma = noise_ / std::sqrt(static_cast<float>(kSamples));
+  const float cell_sigma = noise_ / std::sqrt(static_cast<float>(kSamplesPerCell));
   return cell_sigma / std::sqrt(kSumOfSquares) * focal_.x() / kCell * patch.point.z();
 }
 

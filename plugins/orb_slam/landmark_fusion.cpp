@@ -8,7 +8,7 @@
 namespace stillpoint::orb {
 namespace {
 
-constexpr double kWindow = 3.0;  // px at the predicted level
+constexpr double kFusionWindow = 3.0;  // px at the predicted level
 
 void join(MapEdit& edit, LandmarkId a, LandmarkId b) {
   const bool a_known_better =
@@ -30,7 +30,8 @@ void fuse_into(MapEdit& edit, const std::vector<LandmarkId>& landmarks, KeyFrame
   for (const LandmarkId id : landmarks) {
     const Landmark* landmark = edit.map().landmark(id);
     if (!landmark || seen[id]) continue;
-    const auto query = predict(*landmark, camera_from_world, *keyframe->camera, pyramid, kWindow);
+    const auto query =
+        predict(*landmark, camera_from_world, *keyframe->camera, pyramid, kFusionWindow);
     if (query) queries.push_back(*query);
   }
   if (queries.empty()) return;

@@ -10,13 +10,13 @@
 namespace stillpoint::orb {
 namespace {
 
-constexpr int kNeighbours = 10;  // around either end, most covisible ones
-constexpr int kMinMatches = 20;  // to try a pose
-constexpr int kMinInliers = 40;  // landmarks that fit it
+constexpr int kMostNeighbours = 10;  // around either end, most covisible ones
+constexpr int kMinLoopMatches = 20;  // to try a pose
+constexpr int kMinInliers = 40;      // landmarks that fit it
 // Of the landmarks that should be seen. Of one place, 0.31 and more were; of two that look alike
 // 0.25 at most (place_index_benchmark).
 constexpr double kMinSupport = 0.3;
-constexpr int kSamples = 300;            // of RANSAC
+constexpr int kRansacSamples = 300;      // of RANSAC
 constexpr RigidNoise kNoise{2.0, 0.02};  // px, 1/m: wide enough for a map that has drifted
 constexpr double kWideWindow = 10;       // px
 constexpr double kNarrowWindow = 4;      // px
@@ -24,7 +24,7 @@ constexpr double kNarrowWindow = 4;      // px
 std::vector<KeyFrameId> neighbourhood(const SparseMap& map, KeyFrameId centre) {
   std::vector<KeyFrameId> ids{centre};
   for (const Covisibility& c : map.keyframe(centre)->covisible)
-    if (std::ssize(ids) <= kNeighbours) ids.push_back(c.keyframe);
+    if (std::ssize(ids) <= kMostNeighbours) ids.push_back(c.keyframe);
   return ids;
 }
 
@@ -55,7 +55,7 @@ std::optional<Pose> camera_from_world(const ObservedFrame& view, std::span<const
   const std::vector<Match> matches =
       match_anywhere(queries, features, measured,
                      {.max_distance = kNear, .ratio = 0.8, .consistent_angles = true});
-  if (std::ssize(matches) < kMinMatches) return std::nullopt;
+  if (std::ssize(matches) < kMinLoopMatches) return std::nullopt;
   const Camera& camera = *view.frame->camera;
   const Pose near_from_world = camera_near_place.inverse();
   std::vector<RigidMatch> points;
@@ -65,8 +65,8 @@ std::optional<Pose> camera_from_world(const ObservedFrame& view, std::span<const
                       camera.unproject(pixel.x, pixel.y, features.depth[m.feature]),
                       {pixel.x, pixel.y}});
   }
-  const auto motion = find_rigid_motion(points, camera, kNoise, {}, kSamples, 1);
-  if (!motion || motion->inliers < kMinMatches) return std::nullopt;
+  const auto motion = find_rigid_motion(points, camera, kNoise, {}, kRansacSamples, 1);
+  if (!motion || motion->inliers < kMinLoopMatches) return std::nullopt;
   return motion->target_from_source * near_from_world;
 }
 
@@ -119,7 +119,7 @@ std::optional<LoopMatch> match_loop(const SparseMap& map, KeyFrameId keyframe, K
   const auto guess = camera_from_world(view, targets, map.keyframe(place)->world_from_camera);
   if (!guess) return std::nullopt;
   view.world_from_camera = guess->inverse();
-  if (refine(view, targets, kWideWindow, map) < kMinMatches) return std::nullopt;
+  if (refine(view, targets, kWideWindow, map) < kMinLoopMatches) return std::nullopt;
   LoopMatch loop{.keyframe = keyframe, .place = place};
   loop.inliers = refine(view, targets, kNarrowWindow, map);
   loop.support =

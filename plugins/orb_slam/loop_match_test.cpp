@@ -9,8 +9,6 @@
 namespace stillpoint::orb {
 namespace {
 
-constexpr KeyFrameId kAhead = RoundTrip::kPerTurn;  // looks where key frame 0 looked
-
 class LoopMatchTest : public testing::Test {
  protected:
   RoundTrip trip_;
@@ -18,16 +16,19 @@ class LoopMatchTest : public testing::Test {
 };
 
 TEST_F(LoopMatchTest, FindsThePoseInTheOlderPart) {
-  const auto loop = match_loop(map_, kAhead, 0);
+  const auto loop = match_loop(map_, RoundTrip::kOneTurnOn, 0);
   ASSERT_TRUE(loop);
-  EXPECT_GT(metres_between(map_.world_from_keyframe(kAhead), RoundTrip::truth(kAhead)), 0.1);
-  EXPECT_LT(metres_between(loop->world_from_camera, RoundTrip::truth(kAhead)), 0.02);
-  EXPECT_LT(radians_between(loop->world_from_camera, RoundTrip::truth(kAhead)), 0.005);
+  EXPECT_GT(metres_between(map_.world_from_keyframe(RoundTrip::kOneTurnOn),
+                           RoundTrip::truth(RoundTrip::kOneTurnOn)),
+            0.1);
+  EXPECT_LT(metres_between(loop->world_from_camera, RoundTrip::truth(RoundTrip::kOneTurnOn)), 0.02);
+  EXPECT_LT(radians_between(loop->world_from_camera, RoundTrip::truth(RoundTrip::kOneTurnOn)),
+            0.005);
   EXPECT_GT(loop->support, 0.5);
 }
 
 TEST_F(LoopMatchTest, PairsLandmarksOfOnePoint) {
-  const auto loop = match_loop(map_, kAhead, 0);
+  const auto loop = match_loop(map_, RoundTrip::kOneTurnOn, 0);
   ASSERT_TRUE(loop);
   EXPECT_GT(loop->same.size(), 200U);
   int wrong = 0;
@@ -39,19 +40,21 @@ TEST_F(LoopMatchTest, PairsLandmarksOfOnePoint) {
 }
 
 TEST_F(LoopMatchTest, OtherPlacesAreNone) {
-  for (const KeyFrameId place : {9U, 18U, 27U}) EXPECT_FALSE(match_loop(map_, kAhead, place));
+  for (const KeyFrameId place : {9U, 18U, 27U})
+    EXPECT_FALSE(match_loop(map_, RoundTrip::kOneTurnOn, place));
 }
 
 // What moves is not mapped and takes no part.
 TEST_F(LoopMatchTest, WithoutWeightNothingMatches) {
   MapEdit edit(map_);
-  std::fill(edit.keyframe(kAhead).map_weights.begin(), edit.keyframe(kAhead).map_weights.end(),
-            std::uint8_t{0});
-  EXPECT_FALSE(match_loop(std::move(edit).finish(), kAhead, 0));
+  std::fill(edit.keyframe(RoundTrip::kOneTurnOn).map_weights.begin(),
+            edit.keyframe(RoundTrip::kOneTurnOn).map_weights.end(), std::uint8_t{0});
+  EXPECT_FALSE(match_loop(std::move(edit).finish(), RoundTrip::kOneTurnOn, 0));
 }
 
 TEST_F(LoopMatchTest, SameMapSameBits) {
-  const auto a = match_loop(map_, kAhead, 0), b = match_loop(map_, kAhead, 0);
+  const auto a = match_loop(map_, RoundTrip::kOneTurnOn, 0),
+             b = match_loop(map_, RoundTrip::kOneTurnOn, 0);
   ASSERT_TRUE(a && b);
   EXPECT_EQ(a->world_from_camera.matrix(), b->world_from_camera.matrix());
   EXPECT_EQ(a->same, b->same);

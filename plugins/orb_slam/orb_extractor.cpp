@@ -14,7 +14,7 @@ namespace stillpoint::orb {
 namespace {
 
 constexpr int kPatchSize = 31;         // px, diameter of a keypoint on its level
-constexpr int kCell = 32;              // px, where the lower threshold applies
+constexpr int kThresholdCell = 32;     // px, where the lower threshold applies
 constexpr double kDescriptorBlur = 2;  // px
 const cv::Size kBlurWindow(7, 7);
 
@@ -123,7 +123,7 @@ void OrbExtractor::detect(const cv::Mat& image, const cv::Mat& spare, int count,
 }
 
 void OrbExtractor::keep_best(std::vector<Corner>& corners, cv::Size image, int count) const {
-  drop_weak_beside_strong(corners, image, kCell, options_.fast_threshold);
+  drop_weak_beside_strong(corners, image, kThresholdCell, options_.fast_threshold);
   const auto candidates = static_cast<int>(std::lround(options_.oversampling * count));
   keep_evenly_spread(corners, image, candidates);
   corners.resize(std::min(corners.size(), static_cast<std::size_t>(count)));

@@ -7,7 +7,7 @@ namespace stillpoint::orb {
 namespace {
 
 constexpr std::size_t kDescriptors = 500;  // of a key frame
-constexpr int kMaxDistance = 40;           // Hamming
+constexpr int kMaxWordDistance = 40;       // Hamming
 // Words that more descriptors have tell little and would cost nearly all of the time.
 constexpr double kMostEntries = 24;
 constexpr double kMostEntriesPerKeyFrame = 0.01;
@@ -84,7 +84,7 @@ std::vector<PlaceVote> PlaceIndex::query(std::span<const Descriptor> view) const
       for (const std::uint32_t e : entries) {
         const KeyFrameId id = entries_[e].keyframe;
         if (!present_[id] || voted[id] == i + 1) continue;
-        if (hamming_distance(entries_[e].descriptor, view[i]) > kMaxDistance) continue;
+        if (hamming_distance(entries_[e].descriptor, view[i]) > kMaxWordDistance) continue;
         voted[id] = i + 1;
         shown_by.push_back(id);
       }

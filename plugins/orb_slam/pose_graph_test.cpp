@@ -7,8 +7,6 @@
 namespace stillpoint::orb {
 namespace {
 
-constexpr KeyFrameId kAhead = RoundTrip::kPerTurn;
-
 class PoseGraphTest : public testing::Test {
  protected:
   static double worst_metres(const std::vector<MovedKeyFrame>& moved) {
@@ -19,7 +17,8 @@ class PoseGraphTest : public testing::Test {
     return worst;
   }
   const SparseMap map_ = RoundTrip().map();
-  const PoseEdge loop_{0, kAhead, RoundTrip::truth(0).inverse() * RoundTrip::truth(kAhead)};
+  const PoseEdge loop_{0, RoundTrip::kOneTurnOn,
+                       RoundTrip::truth(0).inverse() * RoundTrip::truth(RoundTrip::kOneTurnOn)};
 };
 
 TEST_F(PoseGraphTest, SpreadsTheErrorOfALoop) {
@@ -27,7 +26,9 @@ TEST_F(PoseGraphTest, SpreadsTheErrorOfALoop) {
   ASSERT_EQ(moved.size(), map_.keyframe_count());
   EXPECT_EQ(moved.front().keyframe, 0U);
   EXPECT_EQ(moved.front().world_from_camera.matrix(), map_.world_from_keyframe(0).matrix());
-  EXPECT_LT(metres_between(moved[kAhead].world_from_camera, RoundTrip::truth(kAhead)), 0.02);
+  EXPECT_LT(metres_between(moved[RoundTrip::kOneTurnOn].world_from_camera,
+                           RoundTrip::truth(RoundTrip::kOneTurnOn)),
+            0.02);
   EXPECT_LT(worst_metres(moved), 0.75 * orb::worst_metres(map_));
 }
 
@@ -39,7 +40,7 @@ TEST_F(PoseGraphTest, WithoutLoopsEverythingStays) {
 TEST_F(PoseGraphTest, EdgesOfRemovedKeyFramesArePassedOver) {
   MapEdit edit(map_);
   edit.remove_keyframe(5);
-  const PoseEdge loops[] = {loop_, {5, kAhead, Pose::Identity()}};
+  const PoseEdge loops[] = {loop_, {5, RoundTrip::kOneTurnOn, Pose::Identity()}};
   const auto moved = optimise_pose_graph(std::move(edit).finish(), loops, {});
   EXPECT_EQ(moved.size(), map_.keyframe_count() - 1);
   EXPECT_LT(worst_metres(moved), 0.75 * orb::worst_metres(map_));

@@ -13,7 +13,7 @@ constexpr int kRobustRounds = 2;  // later ones trust the outlier decision alone
 constexpr int kIterationsPerRound = 6;
 constexpr double kConverged = 1e-6;  // metres and radians
 constexpr int kMinObservations = 6;
-constexpr double kMinDepth = 0.05;  // metres in front of the camera
+constexpr double kMinPointDepth = 0.05;  // metres in front of the camera
 
 struct NormalEquations {
   Matrix6d hessian = Matrix6d::Zero();
@@ -22,16 +22,16 @@ struct NormalEquations {
   double cost = 0.0;
 };
 
-// Adds the hessian of a point to that of the twist that moves it; the upper right block is left out.
-// d p / d (translation, rotation) = [I, -skew(p)] for a perturbation on the left, so that the blocks
-// are A, skew(p) A and skew(p) A skew(p)^T: cross products, a third of the work of a 3 x 6 Jacobian.
+// Adds the hessian of a point to that of the twist that moves it; the upper right block is left
+// out. d p / d (translation, rotation) = [I, -skew(p)] for a perturbation on the left, so that the
+// blocks are A, skew(p) A and skew(p) A skew(p)^T: cross products, a third of the work of a 3 x 6
+// Jacobian.
 void add_moved_point(const Eigen::Vector3d& p, const Eigen::Matrix3d& point, Matrix6d& twist) {
   Eigen::Matrix3d turned;
   for (int i = 0; i < 3; ++i) turned.col(i) = p.cross(point.col(i));
   twist.topLeftCorner<3, 3>() += point;
   twist.bottomLeftCorner<3, 3>() += turned;
-  for (int i = 0; i < 3; ++i)
-    twist.block<3, 1>(3, 3 + i) += p.cross(turned.row(i).transpose());
+  for (int i = 0; i < 3; ++i) twist.block<3, 1>(3, 3 + i) += p.cross(turned.row(i).transpose());
 }
 
 void complete(Matrix6d& symmetric) {
@@ -43,7 +43,7 @@ double bound(const PoseObservation& o) { return o.inverse_depth > 0 ? kChiSquare
 // Normalised residual (u, v, inverse depth); infinite error behind the camera.
 bool residual(const PoseObservation& o, const Camera& camera, const Eigen::Vector3d& p,
               Eigen::Vector3d& r) {
-  if (p.z() < kMinDepth) return false;
+  if (p.z() < kMinPointDepth) return false;
   const double inverse_z = 1.0 / p.z();
   r.x() = (camera.fx * p.x() * inverse_z + camera.cx - o.pixel.x()) / o.pixel_sigma;
   r.y() = (camera.fy * p.y() * inverse_z + camera.cy - o.pixel.y()) / o.pixel_sigma;

@@ -8,18 +8,19 @@ namespace {
 constexpr float kFound = 0.2F;       // log-odds of one frame, full weight
 constexpr float kLookedPast = 0.5F;  // log-odds of one frame
 constexpr double kBehind = 0.2;      // relative: what is seen is this much farther
-constexpr int kRadius = 2;           // px; nobody looks past a landmark beside an edge
+constexpr int kEdgeRadius = 2;       // px; nobody looks past a landmark beside an edge
 
 /// Whether everything around the landmark's place in the image is farther than the landmark.
 bool looked_past(const Frame& frame, const Eigen::Vector3d& in_camera) {
   const Eigen::Vector2d at = frame.camera->project(in_camera);
   const cv::Point pixel(cvRound(at.x()), cvRound(at.y()));
   const cv::Mat& depth = frame.depth;
-  const cv::Rect inside(kRadius, kRadius, depth.cols - 2 * kRadius, depth.rows - 2 * kRadius);
+  const cv::Rect inside(kEdgeRadius, kEdgeRadius, depth.cols - 2 * kEdgeRadius,
+                        depth.rows - 2 * kEdgeRadius);
   if (!inside.contains(pixel)) return false;
-  for (int y = pixel.y - kRadius; y <= pixel.y + kRadius; ++y) {
+  for (int y = pixel.y - kEdgeRadius; y <= pixel.y + kEdgeRadius; ++y) {
     const auto* row = depth.ptr<float>(y);
-    for (int x = pixel.x - kRadius; x <= pixel.x + kRadius; ++x)
+    for (int x = pixel.x - kEdgeRadius; x <= pixel.x + kEdgeRadius; ++x)
       if (row[x] <= (1 + kBehind) * in_camera.z()) return false;
   }
   return true;

@@ -14,6 +14,7 @@ class RoundTrip {
  public:
   static constexpr int kKeyFrames = 44;
   static constexpr int kPerTurn = 36;  // key frames until the camera looks ahead again
+  static constexpr KeyFrameId kOneTurnOn = kPerTurn;  // looks where key frame 0 looked
 
   explicit RoundTrip(double drift = 0.004) : drift_(drift) {
     for (int i = 0; i < kKeyFrames; ++i) views_.push_back(world_.see(truth(i)));

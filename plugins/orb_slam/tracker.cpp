@@ -1,13 +1,12 @@
 #include "orb_slam/tracker.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
-#include <opencv2/imgproc.hpp>
 #include <utility>
 
 #include "orb_slam/appearance.hpp"
 #include "orb_slam/landmark_geometry.hpp"
+#include "orb_slam/pose_uncertainty.hpp"
 
 namespace stillpoint::orb {
 namespace {
@@ -15,34 +14,10 @@ namespace {
 constexpr int kMinMotionMatches = 20;  // fewer: search again in a wider window
 constexpr int kMinMotionInliers = 20;  // fewer, or a smaller share: do not trust the prediction
 constexpr double kMinMotionShare = 0.5;
-constexpr double kCompany = 5.0;  // seconds: who has left the image may be back
-constexpr double kNobody = 0.02;  // of the image: less is noise of masks and of depth edges
-
-constexpr double kHeldMetres = 0.010;   // standard deviation of a pose that needs no depth
-constexpr double kHeldRadians = 0.010;  // the same
-constexpr int kMinPatches = 60;         // of 1,200, to hold a pose
-constexpr double kMinKnown = 0.25;      // share of the patches that key frames must know
-constexpr double kMinAgreement = 0.6;   // share of those that must fit; the same of landmarks
-constexpr double kNewView = 0.7;        // fewer known patches ask for a key frame
 // A picture with so many features, hardly any of them of the last frame's, is of another place;
 // unless texture only begins again.
 constexpr int kManyFeatures = 500;
 constexpr double kMinShown = 0.1;
-constexpr int kMinLandmarks = 12;       // beside surfaces; fewer may all be wrong
-constexpr double kFreshVelocity = 0.3;  // share of the newest velocity while surfaces hold
-constexpr double kMotionMetres = 0.5;   // per second: standard deviation of constant velocity
-constexpr double kMotionRadians = 0.5;  // per second, the same
-
-Matrix6d inverse(const Matrix6d& positive_definite) {
-  return positive_definite.ldlt().solve(Matrix6d::Identity());
-}
-
-PoseUncertainty uncertainty_of(const Matrix6d& information) {
-  return {.covariance = inverse(information + Matrix6d::Identity())};  // 1 m, 1 rad
-}
-
-// Metres within which a patch must lie on the plane it falls on: less with every round.
-double reach(int round) { return std::max(0.12 * std::pow(0.6, round), 0.02); }
 
 std::vector<TrackedFeature> describe(const ObservedFrame& frame) {
   std::vector<TrackedFeature> tracked(frame.features->size());
@@ -55,21 +30,6 @@ std::vector<TrackedFeature> describe(const ObservedFrame& frame) {
           frame.outlier[i] ? TrackedFeature::Use::kOutlier : TrackedFeature::Use::kInlier;
   }
   return tracked;
-}
-
-// Where no feature nearby could have a landmark, not 0: the next frame's are better spent
-// elsewhere.
-cv::Mat unmapped_area(const StaticWeights& weights) {
-  constexpr int kReach = 8;  // px that what moves may uncover until the next frame
-  cv::Mat used;
-  if (!weights.track.empty()) used = weights.track >= ObservedFrame::kMinWeight;
-  if (!weights.map.empty()) {
-    const cv::Mat mapped = weights.map >= kMinMapWeight;
-    used = used.empty() ? mapped : cv::Mat(used & mapped);
-  }
-  if (used.empty()) return {};
-  cv::dilate(used, used, cv::Mat::ones(2 * kReach + 1, 2 * kReach + 1, CV_8U));
-  return used == 0;
 }
 
 }  // namespace
@@ -109,36 +69,25 @@ void OrbTracker::Options::visit(OptionVisitor& v) {
 OrbTracker::OrbTracker(Options options) : options_(options), extractor_(options.orb) {}
 
 void OrbTracker::prepare(FramePtr frame) {
-  Features features = extractor_.extract(frame->gray, unmapped_, feature_share());
+  Features features = extractor_.extract(frame->gray, moving_area_.mask(),
+                                         moving_area_.feature_factor(options_.most_features));
   current_ = observe(std::move(frame), std::move(features));
 }
 
-// So many times as many features as usual: what is left of the image says less, since it is smaller
-// and since it is a narrower view.
-double OrbTracker::feature_share() const {
-  return std::min(1 / ((1 - hidden_) * (1 - hidden_)), options_.most_features);
-}
-
-// All that is worn by somebody whom nobody recognised can become landmarks at once. Where nobody
-// is, new landmarks are as good as others.
+// Near moving things, new landmarks may lie on one that was not detected.
 int OrbTracker::solve(const SparseMap& map, const PoseTerm& term) {
-  const bool company = current_.frame->time - last_company_ < kCompany;
-  return solve_pose(current_, map, company ? options_.proving_time : 0.0, *first_keyframe_, term);
+  const double proving_time =
+      moving_area_.recent(current_.frame->time) ? options_.proving_time : 0.0;
+  return solve_pose(current_, map, proving_time, *first_keyframe_, term);
 }
 
 TrackResult OrbTracker::track(FramePtr, const StaticWeights& weights, const SparseMap& map,
                               TrackHints hints) {
   current_.set_weights(weights);
-  unmapped_ = unmapped_area(weights);
-  hidden_ = unmapped_.empty()
-                ? 0.0
-                : cv::countNonZero(unmapped_) / static_cast<double>(unmapped_.total());
-  if (hidden_ > kNobody) last_company_ = current_.frame->time;
+  moving_area_.update(weights, current_.frame->time);
   if (!first_keyframe_) first_keyframe_ = map.keyframe_id_end();
   visible_.clear();
-  weights_ = weights;
-  depth_view_.reset();
-  held_.reset();
+  depth_hold_.begin(current_.frame, weights);
   prediction_.reset();
   if (map.empty())
     return !hints.localise_only && start() ? tracked(map, hints)
@@ -166,12 +115,7 @@ bool OrbTracker::start() {
 
 // Whether the surfaces in view alone would hold a camera.
 bool OrbTracker::surfaces_suffice() {
-  if (!options_.hold_by_depth) return false;
-  const PlacedView self{&depth_view()};
-  const PlaneRegistration registration =
-      register_planes(depth_view(), {&self, 1}, Pose::Identity(), reach(0));
-  current_.information = registration.cost.hessian;
-  return registration.patches >= kMinPatches && well_held();
+  return options_.hold_by_depth && is_well_constrained(depth_hold_.information_of_view());
 }
 
 // Mapping may have moved, fused or removed what the last frame refers to.
@@ -188,16 +132,14 @@ void OrbTracker::follow_map(const SparseMap& map) {
   for (LandmarkId& id : last_.landmarks) id = map.current_id(id);
 }
 
-// Constant velocity.
 void OrbTracker::predict_pose() {
   prediction_.reset();
-  current_.world_from_camera = last_.world_from_camera;
-  if (!velocity_) return;
-  const double seconds = current_.frame->time - last_.frame->time;
-  const Pose motion = exp_se3(log_se3(*velocity_) * (seconds / velocity_seconds_));
-  current_.world_from_camera = last_.world_from_camera * motion.inverse();
-  prediction_ = current_.world_from_camera;
+  if (velocity_.known())
+    prediction_ = velocity_.predict(last_.world_from_camera, seconds_since_last());
+  current_.world_from_camera = prediction_.value_or(last_.world_from_camera);
 }
+
+double OrbTracker::seconds_since_last() const { return current_.frame->time - last_.frame->time; }
 
 int OrbTracker::match_last_frame(const SparseMap& map) {
   const Pose prediction = current_.world_from_camera.inverse();
@@ -208,7 +150,7 @@ int OrbTracker::match_last_frame(const SparseMap& map) {
 }
 
 bool OrbTracker::track_with_motion(const SparseMap& map) {
-  if (!velocity_) return false;
+  if (!velocity_.known()) return false;
   predict_pose();
   const int matches = match_last_frame(map);
   const int inliers = solve(map);
@@ -235,7 +177,7 @@ bool OrbTracker::track_local_map(const SparseMap& map) {
   inliers_ = solve(map);
   bridged_ = inliers_ < options_.min_inliers;
   if (!bridged_) {
-    if (!well_held()) hold_by_depth(map);
+    if (!is_well_constrained(current_.information)) hold_by_depth(map);
     return true;
   }
   // A view that the map hardly knows: carried by what the last frame measured, it becomes a key
@@ -243,17 +185,6 @@ bool OrbTracker::track_local_map(const SparseMap& map) {
   current_.temporary = temporary;
   current_.world_from_camera = prior;
   return current_.reference != kNoId && solve(map) >= options_.min_bridge_points;
-}
-
-// Whether what was matched fixes the pose.
-bool OrbTracker::well_held() const {
-  const PoseUncertainty uncertainty = uncertainty_of(current_.information);
-  return uncertainty.metres() < kHeldMetres && uncertainty.radians() < kHeldRadians;
-}
-
-const DepthView& OrbTracker::depth_view() {
-  if (!depth_view_) depth_view_.emplace(*current_.frame, weights_);
-  return *depth_view_;
 }
 
 // Where neither the last frame nor the map has enough landmarks for a pose: from the prediction on,
@@ -268,7 +199,7 @@ bool OrbTracker::track_with_depth(const SparseMap& map) {
     return false;
   if (!hold_by_depth(map)) return false;
   current_.drop_outliers();
-  if (current_.matched() < kMinLandmarks) match_neighbour(map);
+  if (current_.matched() < kMinHeldLandmarks) match_neighbour(map);
   search_local_map(map);
   bridged_ = false;
   return hold_by_depth(map);
@@ -282,55 +213,14 @@ void OrbTracker::match_neighbour(const SparseMap& map) {
                   2 * options_.motion_window, 1);
 }
 
-// Leaves the frame as it is when depth does not agree with the key frames'.
 bool OrbTracker::hold_by_depth(const SparseMap& map) {
   if (!options_.hold_by_depth) return false;
-  const DepthView& view = depth_view();
-  const DepthAnchor::Neighbours around = anchor_.around(view, current_.world_from_camera, map);
-  if (around.views.empty()) return false;
-  const ObservedFrame before = current_;
-  if (current_.reference == kNoId) current_.reference = around.nearest;
-  if (current_.matched() < kMinLandmarks) current_.clear_matches();
-  const QuadraticCost motion = motion_prior();
-  PlaneRegistration registration;
-  const auto solve_with_surfaces = [&] {
-    solve(map, [&](const Pose& camera_from_world, int round) {
-      registration = register_planes(view, around.views, camera_from_world, reach(round));
-      return registration.cost + motion.moved_to(camera_from_world);
-    });
-  };
-  solve_with_surfaces();
-  // What fits by chance moves a camera along what no surface fixes, and looks as if it knew.
-  if (current_.matched() > 0 && !landmarks_agree()) {
-    current_.clear_matches();
-    current_.world_from_camera = before.world_from_camera;
-    solve_with_surfaces();
-  }
-  current_.information -= motion.hessian;
-  if (registration.patches < kMinPatches || registration.known() < kMinKnown ||
-      registration.agreement() < kMinAgreement) {
-    current_ = before;
+  const QuadraticCost motion =
+      prediction_ ? motion_prior(*prediction_, seconds_since_last()) : QuadraticCost();
+  if (!depth_hold_.hold(current_, map, motion, [&](const PoseTerm& term) { solve(map, term); }))
     return false;
-  }
   inliers_ = current_.fitting();
-  held_ = registration;
   return true;
-}
-
-bool OrbTracker::landmarks_agree() const {
-  const int fitting = current_.fitting();
-  return fitting >= kMinLandmarks && fitting >= kMinAgreement * current_.matched();
-}
-
-// Where neither surfaces nor landmarks hold the camera, it goes on as it went.
-QuadraticCost OrbTracker::motion_prior() const {
-  QuadraticCost prior;
-  if (!prediction_) return prior;
-  const double seconds = std::max(current_.frame->time - last_.frame->time, 1e-3);
-  prior.linearised_at = prediction_->inverse();
-  prior.hessian.diagonal().head<3>().setConstant(1 / std::pow(kMotionMetres * seconds, 2));
-  prior.hessian.diagonal().tail<3>().setConstant(1 / std::pow(kMotionRadians * seconds, 2));
-  return prior;
 }
 
 void OrbTracker::search_local_map(const SparseMap& map) {
@@ -368,16 +258,15 @@ TrackResult OrbTracker::tracked(const SparseMap& map, TrackHints hints) {
   result.matches = current_.matched();
   result.inliers = inliers_;
   result.uncertainty = last_uncertainty_ = uncertainty(map);
-  result.held_by_depth = held_.has_value();
+  result.held_by_depth = depth_hold_.held();
   result.tracked = describe(current_);
 
   TrackingQuality quality = tracking_quality(
       current_, map, inliers_, static_cast<int>(current_.frame->index - last_keyframe_index_),
       options_.keyframe);
-  quality.held_by_depth = held_.has_value();
-  const bool new_surfaces = held_ && held_->known() < kNewView;
-  const bool unknown_view =
-      (bridged_ || new_surfaces) && last_keyframe_ == kNoId;  // the last one is in the map
+  quality.held_by_depth = depth_hold_.held();
+  const bool unknown_view = (bridged_ || depth_hold_.shows_new_surfaces()) &&
+                            last_keyframe_ == kNoId;  // the last one is in the map
   const bool keep = !hints.localise_only && (map.empty() || unknown_view ||
                                              needs_keyframe(quality, hints, options_.keyframe));
   add_static_evidence(current_, map, visible_, evidence_);
@@ -397,7 +286,7 @@ TrackResult OrbTracker::tracked(const SparseMap& map, TrackHints hints) {
 
   update_velocity();
   state_ = TrackState::kTracking;
-  last_held_ = held_.has_value();
+  last_held_ = depth_hold_.held();
   last_ = std::move(current_);
   return result;
 }
@@ -412,15 +301,12 @@ PoseUncertainty OrbTracker::uncertainty(const SparseMap& map) const {
 }
 
 void OrbTracker::update_velocity() {
-  const auto before = std::exchange(velocity_, std::nullopt);
-  if (state_ != TrackState::kTracking || !last_.frame) return;
-  const double seconds = current_.frame->time - last_.frame->time;
-  velocity_ = current_.world_from_camera.inverse() * last_.world_from_camera;
-  // Where the camera is about to slide, single velocities are too noisy to go on with.
-  if (held_ && before && seconds > 0)
-    velocity_ = exp_se3(kFreshVelocity * log_se3(*velocity_) +
-                        (1 - kFreshVelocity) * (seconds / velocity_seconds_) * log_se3(*before));
-  velocity_seconds_ = seconds;
+  if (state_ != TrackState::kTracking || !last_.frame) {
+    velocity_.forget();
+    return;
+  }
+  velocity_.update(current_.world_from_camera.inverse() * last_.world_from_camera,
+                   seconds_since_last(), depth_hold_.held());
 }
 
 TrackResult OrbTracker::not_tracked(TrackState state) {
@@ -430,22 +316,22 @@ TrackResult OrbTracker::not_tracked(TrackState state) {
   result.tracked = describe(current_);
   if (state_ == TrackState::kTracking) relocaliser_.begin(last_.reference);
   state_ = state;
-  velocity_.reset();
+  velocity_.forget();
   return result;
 }
 
 KeyFrame OrbTracker::make_keyframe() {
-  KeyFrame keyframe{
-      .id = next_keyframe_++,
-      .frame = current_.frame->index,
-      .time = current_.frame->time,
-      .world_from_camera = current_.world_from_camera,
-      .covariance = held_ || bridged_ ? last_uncertainty_.covariance : Matrix6d(Matrix6d::Zero()),
-      .camera = current_.frame->camera,
-      .features = current_.features,
-      .track_weights = current_.track_weights,
-      .map_weights = current_.map_weights,
-      .landmarks = current_.landmarks};
+  KeyFrame keyframe{.id = next_keyframe_++,
+                    .frame = current_.frame->index,
+                    .time = current_.frame->time,
+                    .world_from_camera = current_.world_from_camera,
+                    .covariance = depth_hold_.held() || bridged_ ? last_uncertainty_.covariance
+                                                                 : Matrix6d(Matrix6d::Zero()),
+                    .camera = current_.frame->camera,
+                    .features = current_.features,
+                    .track_weights = current_.track_weights,
+                    .map_weights = current_.map_weights,
+                    .landmarks = current_.landmarks};
   for (auto& [id, evidence] : evidence_) {
     evidence.landmark = id;
     keyframe.evidence.push_back(evidence);
@@ -454,7 +340,7 @@ KeyFrame OrbTracker::make_keyframe() {
             [](const auto& a, const auto& b) { return a.landmark < b.landmark; });
   evidence_.clear();
   last_keyframe_index_ = current_.frame->index;
-  if (options_.hold_by_depth) anchor_.add(keyframe.id, depth_view());
+  if (options_.hold_by_depth) depth_hold_.add_keyframe(keyframe.id);
   return keyframe;
 }
 

@@ -14,7 +14,7 @@ namespace {
 namespace fs = std::filesystem;
 using ::testing::HasSubstr;
 
-constexpr double kAccuracy = 0.006;  // metres; what is asked of the whole sequence
+constexpr double kWholeAccuracy = 0.006;  // metres; what is asked of the whole sequence
 
 class Run : public ::testing::Test {
  protected:
@@ -39,7 +39,7 @@ class Run : public ::testing::Test {
     EXPECT_EQ(summary["skipped_images"], 0);
     const fs::path trajectory = out() / name / "trajectory.txt";
     EXPECT_EQ(count_poses(trajectory), kSimulatedFrames);
-    EXPECT_LT(absolute_error(simulated_recording(), trajectory), kAccuracy);
+    EXPECT_LT(absolute_error(simulated_recording(), trajectory), kWholeAccuracy);
   }
 
  private:
@@ -94,7 +94,7 @@ TEST_F(Run, SceneIsRenderedWithoutFiles) {
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   const fs::path trajectory = out() / "scene/trajectory.txt";
   EXPECT_EQ(count_poses(trajectory), 20u);
-  EXPECT_LT(absolute_error(simulated_recording(), trajectory), kAccuracy);
+  EXPECT_LT(absolute_error(simulated_recording(), trajectory), kWholeAccuracy);
 }
 
 // A relative recording is relative to where the program is called; the camera lies beside it.

@@ -78,8 +78,7 @@ TEST_F(RigidMotionTest, LargeMotionsAreFoundToo) {
 TEST_F(RigidMotionTest, SameSeedSameMotion) {
   add(90, motion_);
   add(60, other_);
-  EXPECT_EQ(find({}, 5)->target_from_source.matrix(),
-            find({}, 5)->target_from_source.matrix());
+  EXPECT_EQ(find({}, 5)->target_from_source.matrix(), find({}, 5)->target_from_source.matrix());
 }
 
 TEST_F(RigidMotionTest, NothingIsDeterminedByTooFewOrCrowdedMatches) {

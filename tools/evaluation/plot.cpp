@@ -14,8 +14,7 @@ namespace {
 // Drawn at twice the size and scaled down: smoother than OpenCV's own lines and letters.
 constexpr int kWidth = 2800, kHeight = 1600, kOversampling = 2;
 const cv::Rect kFromAbove(150, 210, 1180, 820);
-const cv::Rect kAxis[3] = {
-    {1510, 210, 1190, 230}, {1510, 505, 1190, 230}, {1510, 800, 1190, 230}};
+const cv::Rect kAxis[3] = {{1510, 210, 1190, 230}, {1510, 505, 1190, 230}, {1510, 800, 1190, 230}};
 const cv::Rect kError(150, 1190, 2550, 290);
 constexpr double kMargin = 0.06;  // of the range, free on either side
 constexpr const char* kAxisName[3] = {"x", "y", "z"};

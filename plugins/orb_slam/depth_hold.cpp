@@ -1,0 +1,82 @@
+#include "orb_slam/depth_hold.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace stillpoint::orb {
+namespace {
+
+constexpr int kMinPatches = 60;        // of 1,200, to hold a pose
+constexpr double kMinKnown = 0.25;     // share of the patches that key frames must know
+constexpr double kMinAgreement = 0.6;  // share of those that must fit; the same of landmarks
+constexpr double kNewView = 0.7;       // fewer known patches ask for a key frame
+
+// Metres within which a patch must lie on the plane it falls on: less with every round.
+double reach(int round) { return std::max(0.12 * std::pow(0.6, round), 0.02); }
+
+bool landmarks_agree(const ObservedFrame& frame) {
+  const int fitting = frame.fitting();
+  return fitting >= kMinHeldLandmarks && fitting >= kMinAgreement * frame.matched();
+}
+
+bool is_sound(const PlaneRegistration& registration) {
+  return registration.patches >= kMinPatches && registration.known() >= kMinKnown &&
+         registration.agreement() >= kMinAgreement;
+}
+
+}  // namespace
+
+void DepthHold::begin(FramePtr frame, const StaticWeights& weights) {
+  frame_ = std::move(frame);
+  weights_ = weights;
+  view_.reset();
+  registration_.reset();
+}
+
+Matrix6d DepthHold::information_of_view() {
+  const PlacedView self{&view()};
+  const PlaneRegistration registration =
+      register_planes(view(), {&self, 1}, Pose::Identity(), reach(0));
+  return registration.patches >= kMinPatches ? registration.cost.hessian
+                                             : Matrix6d(Matrix6d::Zero());
+}
+
+bool DepthHold::hold(ObservedFrame& frame, const SparseMap& map, const QuadraticCost& motion,
+                     const Solve& solve) {
+  const DepthAnchor::Neighbours around = anchor_.around(view(), frame.world_from_camera, map);
+  if (around.views.empty()) return false;
+  const ObservedFrame before = frame;
+  if (frame.reference == kNoId) frame.reference = around.nearest;
+  if (frame.matched() < kMinHeldLandmarks) frame.clear_matches();
+  PlaneRegistration registration;
+  const PoseTerm surfaces_and_motion = [&](const Pose& camera_from_world, int round) {
+    registration = register_planes(view(), around.views, camera_from_world, reach(round));
+    return registration.cost + motion.moved_to(camera_from_world);
+  };
+  solve(surfaces_and_motion);
+  // What fits by chance moves a camera along what no surface fixes, and looks as if it knew.
+  if (frame.matched() > 0 && !landmarks_agree(frame)) {
+    frame.clear_matches();
+    frame.world_from_camera = before.world_from_camera;
+    solve(surfaces_and_motion);
+  }
+  frame.information -= motion.hessian;
+  if (!is_sound(registration)) {
+    frame = before;
+    return false;
+  }
+  registration_ = registration;
+  return true;
+}
+
+bool DepthHold::shows_new_surfaces() const {
+  return registration_ && registration_->known() < kNewView;
+}
+
+const DepthView& DepthHold::view() {
+  if (!view_) view_.emplace(*frame_, weights_);
+  return *view_;
+}
+
+}  // namespace stillpoint::orb

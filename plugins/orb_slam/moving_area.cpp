@@ -1,0 +1,42 @@
+#include "orb_slam/moving_area.hpp"
+
+#include <algorithm>
+#include <opencv2/imgproc.hpp>
+
+#include "orb_slam/landmark_geometry.hpp"
+#include "orb_slam/observed_frame.hpp"
+
+namespace stillpoint::orb {
+namespace {
+
+constexpr double kRecent = 5.0;     // seconds
+constexpr double kMinShare = 0.02;  // of the image: less is noise of masks and of depth edges
+constexpr int kUncovered = 8;       // px that what moves may uncover until the next frame
+
+cv::Mat unmapped(const StaticWeights& weights) {
+  cv::Mat used;
+  if (!weights.track.empty()) used = weights.track >= ObservedFrame::kMinWeight;
+  if (!weights.map.empty()) {
+    const cv::Mat mapped = weights.map >= kMinMapWeight;
+    used = used.empty() ? mapped : cv::Mat(used & mapped);
+  }
+  if (used.empty()) return {};
+  cv::dilate(used, used, cv::Mat::ones(2 * kUncovered + 1, 2 * kUncovered + 1, CV_8U));
+  return used == 0;
+}
+
+}  // namespace
+
+void MovingArea::update(const StaticWeights& weights, double time) {
+  mask_ = unmapped(weights);
+  share_ = mask_.empty() ? 0.0 : cv::countNonZero(mask_) / static_cast<double>(mask_.total());
+  if (share_ > kMinShare) last_time_ = time;
+}
+
+double MovingArea::feature_factor(double most) const {
+  return std::min(1 / ((1 - share_) * (1 - share_)), most);
+}
+
+bool MovingArea::recent(double time) const { return time - last_time_ < kRecent; }
+
+}  // namespace stillpoint::orb
