@@ -42,7 +42,7 @@ class Bayes final : public Decision {
     void visit(OptionVisitor& visitor);
   };
 
-  /// Throws Error(kUsage) for a class that nobody knows.
+  /// Throws Error(kUsage) for a class that no network knows.
   Bayes(const Options& options, const StageContext& context);
 
   StaticWeights decide(const Frame& frame, const Segmentation& segmentation,

@@ -19,7 +19,7 @@ struct VerdictOptions {
   double same_tracked = 0.3;    ///< log-odds, of each that only tracked it
   double same_untrusted = 0.3;  ///< log-odds, of each that did neither
   double range = 8.0;           ///< log-odds, most
-  double reach = 0.5;  ///< m, along a surface from where it has come in to where nobody knows
+  double reach = 0.5;           ///< m, along a surface from where it has come in to unknown space
 
   void visit(OptionVisitor& visitor);
 };

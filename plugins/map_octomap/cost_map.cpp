@@ -74,7 +74,7 @@ class Projection {
     int sure = 0;           // of them
     int free = 0;           // parts
     bool low = false;       // the floor was seen, or what is just above it looked through
-    bool doubtful = false;  // an obstacle, but nobody is sure
+    bool doubtful = false;  // an obstacle seen too little to be sure of
   };
 
   template <typename Function>
@@ -124,7 +124,7 @@ class Projection {
   }
 
   // Of obstacles that touch each other: what is too small is none, and of what was seen but once it
-  // is not known: somebody may have stood there whom nobody recognised.
+  // is not known: an undetected person may have stood there.
   void doubt_obstacles() {
     cv::Mat obstacles(map_.cells.size(), CV_8UC1), labels;
     for (std::size_t i = 0; i < columns_.size(); ++i) obstacles.data[i] = columns_[i].obstacle > 0;

@@ -30,7 +30,7 @@ class VoxelCloudBackend final : public MapBackend {
   void move(std::span<const MovedKeyFrame> moved) override;
   void save(const std::filesystem::path& directory) override;
 
-  /// All key frames at their current poses; nobody's points of too few.
+  /// All key frames at their current poses; without voxels of too few points.
   std::vector<VoxelPoint> points() const;
 
  private:

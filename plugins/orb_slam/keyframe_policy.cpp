@@ -84,7 +84,7 @@ bool needs_keyframe(const TrackingQuality& q, TrackHints hints, const KeyFrameOp
       q.close_tracked < options.min_close && q.close_untracked > options.max_close_untracked;
   if (q.held_by_depth) return needs_close && q.frames_since_last >= kHeldFramesBetween;
   if (q.inliers < options.min_inliers) return false;
-  // From a camera that has not moved, landmarks are missing because somebody hides them.
+  // From a camera that has not moved, landmarks are missing because a person hides them.
   const double least =
       q.motion < options.moved ? options.min_tracked_ratio : options.moved_tracked_ratio;
   const bool view_changed = q.inliers < least * q.reference_matches;

@@ -9,7 +9,7 @@ namespace {
 
 constexpr float kMaxDepthStep = 0.04f;  // of the depth; more around a keypoint is an edge
 constexpr int kDepthWindow = 3;         // px around a keypoint
-constexpr double kNewcomer = 0.02;      // least weight of a landmark that is not proven yet
+constexpr double kMinNewWeight = 0.02;  // of a landmark younger than proving_time
 
 // Depth of the surface a keypoint lies on; 0 beside a depth edge, where it may be that of the other
 // side. Such features made estimated motions 0.5 to 1 % too small, since errors of that kind go
@@ -49,7 +49,7 @@ double proven(const Landmark& landmark, const SparseMap& map, double time, doubl
   if (!creator || time < creator->time) return 1;
   const double age = time - creator->time;
   const double share = age / proving_time;
-  return age < proving_time ? std::max(share * share, kNewcomer) : 1;
+  return age < proving_time ? std::max(share * share, kMinNewWeight) : 1;
 }
 
 }  // namespace

@@ -8,7 +8,7 @@ namespace {
 constexpr float kFound = 0.2F;       // log-odds of one frame, full weight
 constexpr float kLookedPast = 0.5F;  // log-odds of one frame
 constexpr double kBehind = 0.2;      // relative: what is seen is this much farther
-constexpr int kEdgeRadius = 2;       // px; nobody looks past a landmark beside an edge
+constexpr int kEdgeRadius = 2;       // px; beside a depth edge free space proves nothing
 
 /// Whether everything around the landmark's place in the image is farther than the landmark.
 bool looked_past(const Frame& frame, const Eigen::Vector3d& in_camera) {

@@ -17,8 +17,8 @@ constexpr float kMovedLogOdds = -3.0F;
 using EvidenceByLandmark = std::unordered_map<LandmarkId, LandmarkEvidence>;
 
 /// For the landmarks that should be visible in a frame whose pose is known. One that fits the pose
-/// counts for static, by the weight of its feature; one that the depth image looks past counts
-/// against it. What is occluded tells nothing.
+/// counts for static, by the weight of its feature; one that lies in front of the measured depth,
+/// in free space, counts against it. What is occluded tells nothing.
 void add_static_evidence(const ObservedFrame& frame, const SparseMap& map,
                          std::span<const LandmarkId> visible, EvidenceByLandmark& evidence);
 

@@ -10,7 +10,7 @@ namespace stillpoint::segnet {
 /// Both of the size of the scores.
 struct PickedClasses {
   cv::Mat labels;       ///< CV_8UC1: class with the highest score; the first one of equals
-  cv::Mat probability;  ///< CV_32FC1: of that class by softmax; 1 for class 0, which nobody asks
+  cv::Mat probability;  ///< CV_32FC1: of that class by softmax; 1 for class 0, which is not used
 };
 
 /// `scores`: 1 x classes x height x width, CV_32F, at most 256 classes.
