@@ -7,7 +7,8 @@ function(stillpoint_compile_options target)
   if(STILLPOINT_WARNINGS_AS_ERRORS)
     set(strictness -Werror)
   else()
-    set(strictness -Wno-array-bounds -Wno-stringop-overflow -Wno-stringop-overread)
+    # A unity build includes source files, whose unnamed namespaces g++ then takes for a header's.
+    set(strictness -Wno-subobject-linkage -Wno-array-bounds -Wno-stringop-overflow -Wno-stringop-overread)
   endif()
   target_compile_options(${target} PRIVATE
     -Wall -Wextra -Wno-missing-field-initializers -Wno-restrict -Wshadow -Wnon-virtual-dtor

@@ -12,9 +12,13 @@ constexpr double kGapIntervals = 3;
 
 }  // namespace
 
+double longest_interval(const Trajectory& trajectory) {
+  return kGapIntervals * median_interval(trajectory);
+}
+
 SpanCoverage span_coverage(const Trajectory& reference, const Trajectory& estimate, double offset) {
   std::vector<double> times = times_of(estimate);
-  const double longest_interval = kGapIntervals * median_interval(estimate);
+  const double longest = longest_interval(estimate);
   for (double& time : times) time = std::clamp(time + offset, reference.start(), reference.end());
 
   SpanCoverage result;
@@ -22,7 +26,7 @@ SpanCoverage span_coverage(const Trajectory& reference, const Trajectory& estima
   double previous = reference.start();
   for (std::size_t i = 0; i < times.size(); ++i) {
     const double interval = times[i] - previous;
-    if (i > 0 && interval <= longest_interval)
+    if (i > 0 && interval <= longest)
       covered += interval;
     else
       result.longest_gap_s = std::max(result.longest_gap_s, interval);

@@ -10,9 +10,11 @@
 
 namespace stillpoint::evaluation {
 
+/// Seconds between two successive poses, more than which is a gap: three times the median interval.
+double longest_interval(const Trajectory& trajectory);
+
 /// Share of the reference's time span during which there are estimated poses. Two successive poses
-/// cover the time between them unless it is a gap: longer than three times the estimate's median
-/// interval.
+/// cover the time between them unless it is a gap.
 struct SpanCoverage {
   double share = 0;          ///< 0 … 1
   double longest_gap_s = 0;  ///< without estimate, before the first and after the last included

@@ -5,6 +5,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "evaluation/chart.hpp"
+#include "evaluation/coverage.hpp"
 #include "evaluation/format.hpp"
 #include "stillpoint/error.hpp"
 
@@ -27,13 +28,11 @@ struct Paths {
 };
 
 Paths paths_of(const Evaluation& e) {
-  constexpr double kGapIntervals = 3;
-  const double longest_interval = kGapIntervals * median_interval(e.estimate);
+  const double longest = longest_interval(e.estimate);
   Paths paths;
   for (const auto& [r, i] : e.pairs) {
     const double seconds = e.reference.poses[r].time - e.reference.start();
-    paths.breaks.push_back(!paths.seconds.empty() &&
-                           seconds - paths.seconds.back() > longest_interval);
+    paths.breaks.push_back(!paths.seconds.empty() && seconds - paths.seconds.back() > longest);
     paths.seconds.push_back(seconds);
     paths.reference.push_back(e.reference.poses[r].world_from_camera.translation());
     paths.estimate.push_back(aligned(e.rigid.reference_from_estimate, e.estimate.poses[i]));
