@@ -150,8 +150,8 @@ TEST_F(OctomapBackendTest, BesideWhatMovesOneLookIsNotEnough) {
   without_margin.integrate(keyframe);
   const Eigen::Vector3d beside(0.525, 0.735, 1.325), far(0.675, 0.775, 1.325),
       wall(-0.5, 2.425, 1.3);
-  const auto occupied = [](const OctomapBackend& map, const Eigen::Vector3d& at) {
-    return map.tree().is_occupied(map.tree().coordToKey(at.x(), at.y(), at.z()));
+  const auto occupied = [](const OctomapBackend& backend, const Eigen::Vector3d& at) {
+    return backend.tree().is_occupied(backend.tree().coordToKey(at.x(), at.y(), at.z()));
   };
   EXPECT_TRUE(occupied(without_margin, beside));
   EXPECT_FALSE(occupied(map, beside));
