@@ -8,7 +8,8 @@ function(stillpoint_compile_options target)
     set(strictness -Werror)
   else()
     # A unity build includes source files, whose unnamed namespaces g++ then takes for a header's.
-    set(strictness -Wno-subobject-linkage -Wno-array-bounds -Wno-stringop-overflow -Wno-stringop-overread)
+    set(strictness -Wno-subobject-linkage
+                   -Wno-array-bounds -Wno-stringop-overflow -Wno-stringop-overread)
   endif()
   target_compile_options(${target} PRIVATE
     -Wall -Wextra -Wno-missing-field-initializers -Wno-restrict -Wshadow -Wnon-virtual-dtor
