@@ -47,8 +47,7 @@ class CheckedLoopCloser final : public LoopCloser {
   int adjustments_ = 0;
 };
 
-// Three times as fast as in room_loop, every second frame, and small images: a sanitizer takes its
-// time.
+// Three times as fast as in room_loop, and small images: a sanitizer takes its time.
 fs::path once_around() {
   return recording_of("room_loop_empty", 460, with_small_images({"source.motion.speed=2.6"}));
 }
@@ -67,7 +66,7 @@ TEST_P(LoopClosing, ClosesTheLoopAndLeavesASoundMap) {
       {.pipeline = file.string(),
        .dataset = recording,
        .camera = (recording / "camera.yaml").string(),
-       .assignments = {std::string("runtime.mode=") + GetParam(), "source.stride=2"},
+       .assignments = {std::string("runtime.mode=") + GetParam()},
        .plugin_folders = {fs::path(STILLPOINT_BINARY_DIR) / "lib/stillpoint/plugins"}},
       registry);
   Stages stages = make_stages(config, folder.path(), [](LogLevel, std::string_view) {});
