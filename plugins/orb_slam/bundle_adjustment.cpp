@@ -142,8 +142,7 @@ std::optional<MapCorrection> adjust_all(const SparseMap& map, int max_iterations
     if (map.keyframe(id)) keyframes.push_back(id);
   BundleProblem problem(map, keyframes, seen_by(map, keyframes));
   if (!problem.solve(max_iterations, hurry)) return std::nullopt;
-  return MapCorrection{.base_version = map.version(),
-                       .keyframe_id_end = static_cast<KeyFrameId>(map.keyframe_id_end()),
+  return MapCorrection{.keyframe_id_end = static_cast<KeyFrameId>(map.keyframe_id_end()),
                        .moved = problem.keyframes(),
                        .landmarks = problem.landmarks()};
 }

@@ -63,8 +63,7 @@ std::optional<MapCorrection> OrbLoopCloser::correct(const SparseMap& map, const 
     return std::nullopt;
   }
   last_loop_ = loop.keyframe;
-  return MapCorrection{.base_version = map.version(),
-                       .keyframe_id_end = static_cast<KeyFrameId>(map.keyframe_id_end()),
+  return MapCorrection{.keyframe_id_end = static_cast<KeyFrameId>(map.keyframe_id_end()),
                        .moved = std::move(moved),
                        .fused = loop.same};
 }

@@ -32,6 +32,13 @@ std::vector<TrackedFeature> describe(const ObservedFrame& frame) {
   return tracked;
 }
 
+/// Its features, with their depths.
+struct PreparedOrbFrame final : PreparedFrame {
+  explicit PreparedOrbFrame(ObservedFrame features)
+      : PreparedFrame(features.frame), observed(std::move(features)) {}
+  ObservedFrame observed;
+};
+
 }  // namespace
 
 void OrbTracker::Options::visit(OptionVisitor& v) {
@@ -68,10 +75,10 @@ void OrbTracker::Options::visit(OptionVisitor& v) {
 
 OrbTracker::OrbTracker(Options options) : options_(options), extractor_(options.orb) {}
 
-void OrbTracker::prepare(FramePtr frame) {
+PreparedFramePtr OrbTracker::prepare(FramePtr frame) {
   Features features = extractor_.extract(frame->gray, moving_area_.mask(),
                                          moving_area_.feature_factor(options_.most_features));
-  current_ = observe(std::move(frame), std::move(features));
+  return std::make_unique<PreparedOrbFrame>(observe(std::move(frame), std::move(features)));
 }
 
 // Near moving things, new landmarks may lie on one that was not detected.
@@ -81,8 +88,9 @@ int OrbTracker::solve(const SparseMap& map, const PoseTerm& term) {
   return solve_pose(current_, map, proving_time, *first_keyframe_, term);
 }
 
-TrackResult OrbTracker::track(FramePtr, const StaticWeights& weights, const SparseMap& map,
-                              TrackHints hints) {
+TrackResult OrbTracker::track(PreparedFramePtr prepared, const StaticWeights& weights,
+                              const SparseMap& map, TrackHints hints) {
+  current_ = std::move(static_cast<PreparedOrbFrame&>(*prepared).observed);
   current_.set_weights(weights);
   moving_area_.update(weights, current_.frame->time);
   if (!first_keyframe_) first_keyframe_ = map.keyframe_id_end();
@@ -120,7 +128,6 @@ bool OrbTracker::surfaces_suffice() {
 
 // Mapping may have moved, fused or removed what the last frame refers to.
 void OrbTracker::follow_map(const SparseMap& map) {
-  next_keyframe_ = std::max(next_keyframe_, static_cast<KeyFrameId>(map.keyframe_id_end()));
   if (!last_.frame) return;
   if (last_.reference < map.keyframe_id_end())
     last_.world_from_camera =
@@ -274,7 +281,7 @@ TrackResult OrbTracker::tracked(const SparseMap& map, TrackHints hints) {
   current_.drop_temporary();
   last_keyframe_ = kNoId;
   if (keep) {
-    result.keyframe = make_keyframe();
+    result.keyframe = make_keyframe(hints.next_keyframe);
     current_.reference = last_keyframe_ = result.keyframe->id;
     current_.reference_from_camera = Pose::Identity();
   } else {
@@ -320,8 +327,8 @@ TrackResult OrbTracker::not_tracked(TrackState state) {
   return result;
 }
 
-KeyFrame OrbTracker::make_keyframe() {
-  KeyFrame keyframe{.id = next_keyframe_++,
+KeyFrame OrbTracker::make_keyframe(KeyFrameId id) {
+  KeyFrame keyframe{.id = id,
                     .frame = current_.frame->index,
                     .time = current_.frame->time,
                     .world_from_camera = current_.world_from_camera,
@@ -332,8 +339,8 @@ KeyFrame OrbTracker::make_keyframe() {
                     .track_weights = current_.track_weights,
                     .map_weights = current_.map_weights,
                     .landmarks = current_.landmarks};
-  for (auto& [id, evidence] : evidence_) {
-    evidence.landmark = id;
+  for (auto& [landmark, evidence] : evidence_) {
+    evidence.landmark = landmark;
     keyframe.evidence.push_back(evidence);
   }
   std::sort(keyframe.evidence.begin(), keyframe.evidence.end(),

@@ -37,8 +37,8 @@ class OrbTracker final : public Tracker {
 
   explicit OrbTracker(Options options);
 
-  void prepare(FramePtr frame) override;
-  TrackResult track(FramePtr frame, const StaticWeights& weights, const SparseMap& map,
+  PreparedFramePtr prepare(FramePtr frame) override;
+  TrackResult track(PreparedFramePtr prepared, const StaticWeights& weights, const SparseMap& map,
                     TrackHints hints) override;
 
  private:
@@ -61,7 +61,7 @@ class OrbTracker final : public Tracker {
   TrackResult not_tracked(TrackState state);
   PoseUncertainty uncertainty(const SparseMap& map) const;
   void update_velocity();
-  KeyFrame make_keyframe();
+  KeyFrame make_keyframe(KeyFrameId id);
 
   Options options_;
   OrbExtractor extractor_;
@@ -81,9 +81,8 @@ class OrbTracker final : public Tracker {
   PoseUncertainty last_uncertainty_;  // of this frame, once it is tracked; before, of `last_`
 
   std::optional<KeyFrameId> first_keyframe_;  // of this recording: others came with the map
-  KeyFrameId next_keyframe_ = 0;
-  std::uint32_t last_keyframe_index_ = 0;  // frame index of the newest key frame
-  std::vector<LandmarkId> visible_;        // landmarks that should be seen in this frame
+  std::uint32_t last_keyframe_index_ = 0;     // frame index of the newest key frame
+  std::vector<LandmarkId> visible_;           // landmarks that should be seen in this frame
   EvidenceByLandmark evidence_;
 };
 

@@ -17,11 +17,11 @@ using Use = TrackedFeature::Use;
 class TrackerTest : public testing::Test {
  protected:
   TrackResult step(FramePtr frame, const StaticWeights& weights = {}) {
-    tracker_.prepare(frame);
-    TrackResult result = tracker_.track(frame, weights, map_, {});
+    const auto id = static_cast<KeyFrameId>(map_.keyframe_id_end());
+    TrackResult result =
+        tracker_.track(tracker_.prepare(std::move(frame)), weights, map_, {.next_keyframe = id});
     if (result.keyframe) {
-      const KeyFrameId id = result.keyframe->id;
-      EXPECT_EQ(id, map_.keyframe_id_end()) << "ids count up without gaps";
+      EXPECT_EQ(result.keyframe->id, id);
       map_ = mapper_.insert(std::move(map_), *result.keyframe);
       EXPECT_EQ(map_.check(), std::nullopt);
       map_ = mapper_.refine(std::move(map_), id, {});
@@ -250,8 +250,7 @@ TEST_F(TrackerTest, WhatIsHiddenIsMadeUpFor) {
     int features = 0;
     for (std::uint32_t i = 0; i < 2; ++i) {  // the next frame's features make up for this one's
       const FramePtr frame = scene_.see(Pose::Identity(), i);
-      tracker.prepare(frame);
-      features = tracker.track(frame, weights, {}, {}).features;
+      features = tracker.track(tracker.prepare(frame), weights, {}, {}).features;
     }
     return features;
   };
@@ -312,7 +311,7 @@ TEST_F(TrackerTest, TwoFramesOfOneTimeAreNoCrash) {
   }
 }
 
-TEST_F(TrackerTest, CountsOnAnExistingMap) {
+TEST_F(TrackerTest, ContinuesAnExistingMap) {
   for (int i = 0; i < 12; ++i) step(pose_at({0.05 * i, 0, 0}));
   const auto end = map_.keyframe_id_end();
   OrbTracker fresh{OrbTracker::Options{}};

@@ -34,8 +34,8 @@ void tint(cv::Mat& picture, const cv::Mat& mask, const cv::Scalar& colour) {
 
 // Labelled things, red where they move; and what is neither labelled nor trusted.
 void draw_mask(cv::Mat& picture, const FrameReport& report) {
-  const cv::Mat& labels = report.segmentation.labels;
-  const cv::Mat& weights = report.weights.track;
+  const cv::Mat& labels = report.segmentation->labels;
+  const cv::Mat& weights = report.weights->track;
   cv::Mat labelled = cv::Mat::zeros(picture.size(), CV_8UC1);
   cv::Mat unused = cv::Mat::zeros(picture.size(), CV_8UC1);
   if (labels.size() == picture.size()) labelled = labels > 0;
@@ -90,7 +90,7 @@ void draw_text(cv::Mat& picture, const FrameReport& report) {
   if (lost) bar += kMoving * 0.5;
   std::array<char, 160> text{};
   std::snprintf(text.data(), text.size(), "%5u  %.3f s  %s  %d of %d matches fit%s",
-                report.frame.index, report.frame.time, name_of(report.result.state),
+                report.frame->index, report.frame->time, name_of(report.result.state),
                 report.result.inliers, report.result.matches,
                 report.result.keyframe ? "  key frame" : "");
   cv::putText(picture, text.data(), {6, picture.rows - height / 3}, cv::FONT_HERSHEY_SIMPLEX,
@@ -100,7 +100,7 @@ void draw_text(cv::Mat& picture, const FrameReport& report) {
 }  // namespace
 
 cv::Mat annotated(const FrameReport& report, const AnnotationParts& parts) {
-  cv::Mat picture = report.frame.bgr.clone();
+  cv::Mat picture = report.frame->bgr.clone();
   if (parts.mask) draw_mask(picture, report);
   if (parts.evidence) draw_evidence(picture, report.evidence.log_odds);
   if (parts.features) draw_features(picture, report.result.tracked);

@@ -40,12 +40,12 @@ ImageOutput::ImageOutput(const Options& options, const StageContext& context)
 
 void ImageOutput::frame(const FrameReport& report) {
   if (!std::exchange(begun_, true)) remove_pictures(folder_);
-  if (report.frame.index % static_cast<std::uint32_t>(options_.every) != 0) return;
+  if (report.frame->index % static_cast<std::uint32_t>(options_.every) != 0) return;
   const char* extension = options_.format == Options::Format::kPng ? ".png" : ".jpg";
   std::vector<unsigned char> bytes;
   cv::imencode(extension, annotated(report, options_.parts), bytes);
   std::array<char, 32> name{};
-  std::snprintf(name.data(), name.size(), "%06u%s", report.frame.index, extension);
+  std::snprintf(name.data(), name.size(), "%06u%s", report.frame->index, extension);
   AtomicFile file(folder_ / name.data());
   file.stream().write(reinterpret_cast<const char*>(bytes.data()),
                       static_cast<std::streamsize>(bytes.size()));

@@ -113,7 +113,13 @@ struct Report {
   TrackResult result;
   std::vector<StageTime> times{{"track", 10.0, 8.0, 60}, {"map_refine", 50.0, 49.0, 48}};
   FrameReport operator()() const {
-    return {frame, segmentation, moving, evidence, weights, result, times};
+    return {.frame = std::make_shared<const Frame>(frame),
+            .segmentation = std::make_shared<const Segmentation>(segmentation),
+            .moving = moving,
+            .evidence = evidence,
+            .weights = std::make_shared<const StaticWeights>(weights),
+            .result = result,
+            .times = times};
   }
 };
 

@@ -48,6 +48,7 @@ void SummaryOutput::finish(const RunSummary& summary) {
       {"processed_frames", tracking.processed},
       {"tracked_frames", tracking.tracked},
       {"dropped_frames", summary.dropped_frames},
+      {"dropped_reports", summary.dropped_reports},
       {"loops_closed", summary.loops_closed},
       {"skipped_images", summary.source.skipped},
       {"unlabelled_frames", summary.unlabelled_frames},

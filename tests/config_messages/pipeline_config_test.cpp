@@ -193,7 +193,7 @@ TEST_F(PipelineConfigTest, ConstructorFailuresNameTheStage) {
   write("p.yaml", std::string(kSource) + "outputs: [{type: trajectory}]\n");
   const PipelineConfig config = load({.pipeline = "p.yaml"});
   try {
-    config.outputs[0].create<Output>({});
+    config.outputs[0].stage.create<Output>({});
     FAIL();
   } catch (const Error& error) {
     EXPECT_EQ(error.fault(), Fault::kStage);

@@ -34,7 +34,7 @@ Progress::Progress(Console& console, std::optional<std::size_t> frames)
     : console_(console), frames_(frames && *frames > 0 ? frames : std::nullopt) {}
 
 void Progress::frame(const FrameReport& report) {
-  done_ = report.frame.index + 1;
+  done_ = report.frame->index + 1;
   ++processed_;
   if (report.result.keyframe) ++keyframes_;
   const Clock::time_point now = Clock::now();

@@ -43,7 +43,7 @@ void run_and_print(Stages stages, const PipelineConfig& config, const RunFolder&
                    std::stop_token stop) {
   const fs::path ground_truth = stages.source.object->ground_truth();
   const auto table = std::make_shared<RunTable>();
-  stages.outputs.push_back({table, "table"});
+  stages.outputs.push_back({{table, "table"}});
   const auto print = [&] {
     table->print(std::cout);
     print_files(folder, ground_truth);
@@ -96,10 +96,10 @@ void run(const RunArguments& arguments) {
                   [&folder](LogLevel level, std::string_view text) { folder.log(level, text); });
   folder.begin(config.effective_yaml);
   stages.outputs.push_back(
-      {std::make_shared<Progress>(console, stages.source.object->size()), "progress"});
+      {{std::make_shared<Progress>(console, stages.source.object->size()), "progress"}});
   stages.known_map = std::move(known_map);
   stages.localise_only = arguments.localise_only;
-  if (saver) stages.outputs.push_back({std::move(saver), "map saver"});
+  if (saver) stages.outputs.push_back({{std::move(saver), "map saver"}});
   int signal = 0;
   {
     const Interrupt interrupt;

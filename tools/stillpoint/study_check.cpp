@@ -149,8 +149,9 @@ class StudyChecker {
 
   void check_outputs(std::size_t i, const PipelineConfig& config) {
     for (const char* needed : {"trajectory", "summary"})
-      if (std::ranges::none_of(config.outputs,
-                               [&](const StageSpec& output) { return output.type() == needed; }))
+      if (std::ranges::none_of(config.outputs, [&](const OutputSpec& output) {
+            return output.stage.type() == needed;
+          }))
         faults_.add(place("variants", i, "pipeline"),
                     "variant '" + study_.variants[i].name + "': its pipeline has no output '" +
                         needed + "', from which the figures come");

@@ -10,6 +10,7 @@ Propagator::~Propagator() = default;
 MovingChecker::~MovingChecker() = default;
 MapChecker::~MapChecker() = default;
 Decision::~Decision() = default;
+PreparedFrame::~PreparedFrame() = default;
 Tracker::~Tracker() = default;
 LocalMapper::~LocalMapper() = default;
 LoopCloser::~LoopCloser() = default;

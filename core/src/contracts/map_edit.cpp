@@ -183,9 +183,6 @@ void MapEdit::update_covisibility(KeyFrameId id, int min_shared) {
   }
 }
 
-SparseMap MapEdit::finish() && {
-  ++map_.version_;
-  return std::move(map_);
-}
+SparseMap MapEdit::finish() && { return std::move(map_); }
 
 }  // namespace stillpoint

@@ -65,8 +65,8 @@ Stages make_stages(const PipelineConfig& config, const std::filesystem::path& ou
                 .loop_closer = maker.make<LoopCloser>(config.loop_closer),
                 .map_backend = maker.make<MapBackend>(config.map_backend),
                 .map_directory = output_directory / "map"};
-  for (const StageSpec& output : config.outputs)
-    stages.outputs.push_back(maker.make<Output>(output));
+  for (const OutputSpec& output : config.outputs)
+    stages.outputs.push_back({maker.make<Output>(output.stage), output.options.when_full});
   return stages;
 }
 

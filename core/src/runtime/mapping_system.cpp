@@ -31,6 +31,7 @@ MappingSystem::MappingSystem(Stage<LocalMapper> local_mapper, Stage<LoopCloser> 
       loop_closer_(std::move(loop_closer), "loop closing", times),
       map_backend_(std::move(map_backend), "dense mapping", times),
       map_(std::move(known_map)),
+      next_keyframe_(static_cast<KeyFrameId>(snapshot()->keyframe_id_end())),
       local_mapping_(
           mode, kKeyFramesWaiting, stop,
           [this](MappingItem item) {
@@ -60,6 +61,7 @@ MappingSystem::MappingSystem(Stage<LocalMapper> local_mapper, Stage<LoopCloser> 
 
 void MappingSystem::push(NewKeyFrame keyframe) {
   const bool first = snapshot()->empty();
+  ++next_keyframe_;
   local_mapping_.push(std::move(keyframe));
   if (waiting()) mapping_hurry_.request();
   if (first) map_.wait_published(stop_.token());

@@ -41,8 +41,10 @@ class NullDecision final : public Decision {
 
 class NullTracker final : public Tracker {
  public:
-  void prepare(FramePtr) override {}
-  TrackResult track(FramePtr, const StaticWeights&, const SparseMap&, TrackHints) override {
+  PreparedFramePtr prepare(FramePtr frame) override {
+    return std::make_unique<PreparedFrame>(std::move(frame));
+  }
+  TrackResult track(PreparedFramePtr, const StaticWeights&, const SparseMap&, TrackHints) override {
     return {};
   }
 };

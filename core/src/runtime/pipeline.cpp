@@ -1,5 +1,6 @@
 #include "stillpoint/runtime/pipeline.hpp"
 
+#include <numeric>
 #include <string>
 #include <utility>
 
@@ -24,10 +25,17 @@ StaticWeights decide(Decision& decision, const Frame& frame, const Segmentation&
   return weights;
 }
 
-TrackResult track(Tracker& tracker, const FramePtr& frame, const StaticWeights& weights,
-                  const SparseMap& map, TrackHints hints, KeyFrameId next_keyframe) {
-  TrackResult result = tracker.track(frame, weights, map, hints);
-  check_tracking(result, *frame, map, next_keyframe);
+PreparedFramePtr prepare(Tracker& tracker, const FramePtr& frame) {
+  PreparedFramePtr prepared = tracker.prepare(frame);
+  check_prepared(prepared.get(), *frame);
+  return prepared;
+}
+
+TrackResult track(Tracker& tracker, PreparedFramePtr prepared, const StaticWeights& weights,
+                  const SparseMap& map, TrackHints hints) {
+  const FramePtr frame = prepared->frame;
+  TrackResult result = tracker.track(std::move(prepared), weights, map, hints);
+  check_tracking(result, *frame, map, hints.next_keyframe);
   return result;
 }
 
@@ -50,14 +58,26 @@ Pipeline::Pipeline(Stages stages, const RuntimeOptions& runtime,
       feed_(std::move(stages.source), runtime, *clock_, stop_, times_),
       segmentation_(std::move(stages.segmenter), std::move(stages.propagator), segmentation,
                     runtime.mode, stop_, times_),
-      motion_(std::move(stages.moving_checker), std::move(stages.map_checker), segmentation_,
-              runtime.mode, stop_, times_),
+      moving_check_(std::move(stages.moving_checker), times_),
+      map_check_(std::move(stages.map_checker), times_),
+      beside_(moving_check_.present() || map_check_.present() ? runtime.mode : Mode::kInline, stop_,
+              times_),
       mapping_(std::move(stages.local_mapper), std::move(stages.loop_closer),
                std::move(stages.map_backend), std::move(stages.known_map), runtime.mode, stop_,
                times_) {
-  next_keyframe_ = static_cast<KeyFrameId>(mapping_.snapshot()->keyframe_id_end());
-  for (Stage<Output>& output : stages.outputs)
-    outputs_.emplace_back(std::move(output), "output", times_);
+  add_outputs(std::move(stages.outputs));
+}
+
+// Those that tracking waits for share a thread: one that holds up tracking holds up all.
+void Pipeline::add_outputs(std::vector<OutputSetup> setups) {
+  std::vector<Stage<Output>> waited_for;
+  for (OutputSetup& setup : setups)
+    if (setup.when_full == WhenFull::kWait) waited_for.push_back(std::move(setup.stage));
+  outputs_.emplace_back(std::move(waited_for), WhenFull::kWait, options_.mode, stop_, times_);
+  for (OutputSetup& setup : setups)
+    if (setup.when_full == WhenFull::kDrop)
+      outputs_.emplace_back(std::vector{std::move(setup.stage)}, WhenFull::kDrop, options_.mode,
+                            stop_, times_);
 }
 
 void Pipeline::run(std::stop_token stop) {
@@ -77,42 +97,45 @@ void Pipeline::run(std::stop_token stop) {
 void Pipeline::process(const FramePtr& frame) {
   const std::uint32_t index = frame->index;
   const ScopedTime time(times_, "track_thread", index);
-  segmentation_.offer(frame);                                 // thread 2
-  motion_.offer(frame, mapping_.snapshot());                  // moving points, labels of this frame
-  tracker_.call("prepare", index, &Tracker::prepare, frame);  // overlaps both
-  const auto [moving, evidence, labels] = motion_.at(frame);
-  if (!labels) return;  // stopped meanwhile
+  segmentation_.offer(frame);  // thread 2
+  const auto moving = beside_.start([=, this] { return moving_check_.at(frame); });
+  const auto evidence = beside_.start(
+      [=, this, map = mapping_.snapshot()] { return map_check_.at(*frame, *moving, *map); });
+  const auto labels = beside_.start([=, this] { return segmentation_.at(frame); });
+  auto prepared = tracker_.call("prepare", index, prepare, frame);  // meanwhile
+  if (!beside_.wait(index) || !*labels) return;                     // stopped
   const auto weights = std::make_shared<const StaticWeights>(
-      decision_.call("decision", index, decide, *frame, *labels, moving, evidence));
-  const auto result = tracker_.call("track", index, track, frame, *weights, *mapping_.snapshot(),
-                                    TrackHints{mapping_.waiting(), localise_only_}, next_keyframe_);
-  if (result.keyframe) ++next_keyframe_;
-  if (result.keyframe) mapping_.push(new_keyframe(*result.keyframe, frame, labels, weights));
-  motion_.tracked(frame, weights, result, mapping_.snapshot());
-  report({*frame, *labels, moving, evidence, *weights, result, times_.take()});
+      decision_.call("decision", index, decide, *frame, **labels, *moving, *evidence));
+  TrackResult result =
+      tracker_.call("track", index, track, std::move(prepared), *weights, *mapping_.snapshot(),
+                    TrackHints{.next_keyframe = mapping_.next_keyframe(),
+                               .mapping_waiting = mapping_.waiting(),
+                               .localise_only = localise_only_});
+  if (result.keyframe) mapping_.push(new_keyframe(*result.keyframe, frame, *labels, weights));
+  map_check_.tracked(frame, weights, result, *mapping_.snapshot());
+  report(std::make_shared<const FrameReport>(
+      FrameReport{frame, *labels, *moving, *evidence, weights, std::move(result), times_.take()}));
 }
 
-void Pipeline::report(const FrameReport& report) {
-  const std::uint32_t index = report.frame.index;
-  const TrackResult& result = report.result;
-  poses_.push_back({.frame = index,
-                    .time = report.frame.time,
+void Pipeline::report(FrameReportPtr report) {
+  const TrackResult& result = report->result;
+  poses_.push_back({.frame = report->frame->index,
+                    .time = report->frame->time,
                     .state = result.state,
                     .reference = result.reference,
                     .reference_from_camera = result.reference_from_camera,
                     .held_by_depth = result.held_by_depth,
                     .poorly_constrained = result.state == TrackState::kTracking &&
                                           result.uncertainty.poorly_constrained()});
-  const ScopedTime time(times_, "outputs", index);
-  for (StageCaller<Output>& output : outputs_)
-    output.call_unmeasured(index, &Output::frame, report);
+  for (OutputStage& output : outputs_) output.frame(report);
 }
 
 void Pipeline::end_threads() {
-  motion_.end();
+  beside_.end();
   segmentation_.end();
   mapping_.end();
   feed_.end();
+  for (OutputStage& output : outputs_) output.end();
 }
 
 void Pipeline::finish() {
@@ -120,10 +143,7 @@ void Pipeline::finish() {
   const SourceReport source = feed_.report();
   const std::vector<StageTime> times = times_.take();
   if (!map_directory_.empty()) keep_failure_of([this] { mapping_.save(map_directory_); });
-  for (StageCaller<Output>& output : outputs_) {
-    keep_failure_of(
-        [&] { output.call_unmeasured({}, &Output::finish, summary(*map, source, times)); });
-  }
+  for (OutputStage& output : outputs_) output.finish([&] { return summary(*map, source, times); });
 }
 
 RunSummary Pipeline::summary(const SparseMap& map, const SourceReport& source,
@@ -134,6 +154,7 @@ RunSummary Pipeline::summary(const SparseMap& map, const SourceReport& source,
           .times = times,
           .dropped_frames = static_cast<int>(feed_.dropped()),
           .loops_closed = mapping_.loops(),
+          .dropped_reports = dropped_reports(),
           .wall_seconds = wall_seconds_,
           .cpu_seconds = cpu_seconds_,
           .recorded_seconds = poses_.empty() ? 0.0 : poses_.back().time - poses_.front().time,
@@ -144,6 +165,11 @@ RunSummary Pipeline::summary(const SparseMap& map, const SourceReport& source,
           .segmentation_failure = segmentation_.first_failure(),
           .complete = !stop_.requested(),
           .failure = message_of(stop_.failure())};
+}
+
+int Pipeline::dropped_reports() const {
+  return std::accumulate(outputs_.begin(), outputs_.end(), 0,
+                         [](int sum, const auto& output) { return sum + output.dropped(); });
 }
 
 void Pipeline::keep_failure_of(const std::function<void()>& step) {

@@ -1,6 +1,7 @@
 #include "stillpoint/runtime/pipeline_config.hpp"
 
 #include <algorithm>
+#include <functional>
 
 #include "stillpoint/contracts/segmenter.hpp"
 #include "stillpoint/contracts/source.hpp"
@@ -36,6 +37,8 @@ constexpr StageSection kStages[] = {
     {"loop_closer", &PipelineConfig::loop_closer},
     {"map_backend", &PipelineConfig::map_backend},
 };
+
+using VisitMore = std::function<void(OptionVisitor&)>;
 
 /// Reads the sections of one tree into a PipelineConfig.
 class PipelineReader {
@@ -111,7 +114,11 @@ class PipelineReader {
   std::optional<StageSpec> read_stage(const ConfigNode* node, const std::string& path,
                                       const std::string& kind, PipelineConfig& config) {
     OptionRecord record;
-    auto stage = node ? check_stage(*node, path, kind, config, record) : std::nullopt;
+    const bool segmenter = kind == Segmenter::kKind;
+    const VisitMore more = [&](OptionVisitor& v) {
+      if (segmenter) config.segmentation.visit_in_segmenter(v);
+    };
+    auto stage = node ? check_stage(*node, path, kind, more, record) : std::nullopt;
     if (stage) document_.children.push_back(std::move(record));
     return stage;
   }
@@ -125,18 +132,22 @@ class PipelineReader {
       for (std::size_t i = 0; i < list->children.size(); ++i) {
         OptionRecord element;
         const std::string path = "outputs[" + std::to_string(i) + "]";
-        const auto output = check_stage(list->children[i], path, "output", config, element);
+        OutputOptions options;
+        const auto output = check_stage(
+            list->children[i], path, "output", [&](OptionVisitor& v) { options.visit(v); },
+            element);
         if (!output) continue;
-        config.outputs.push_back(*output);
+        config.outputs.push_back({*output, options});
         record.children.push_back(std::move(element));
       }
     }
     document_.children.push_back(std::move(record));
   }
 
-  /// Nothing when the section has no usable type; faults of options are collected.
+  /// Nothing when the section has no usable type; faults of options are collected. `more` visits
+  /// the options that are the runtime's.
   std::optional<StageSpec> check_stage(const ConfigNode& node, const std::string& path,
-                                       const std::string& kind, PipelineConfig& config,
+                                       const std::string& kind, const VisitMore& more,
                                        OptionRecord& record) {
     YamlOptionReader reader(&node, path);
     reader.ignore("type");
@@ -157,7 +168,7 @@ class PipelineReader {
       faults_.add(type->location, registry_.explain_missing(kind, type->scalar));
       return std::nullopt;
     }
-    if (kind == Segmenter::kKind) config.segmentation.visit_in_segmenter(reader);
+    more(reader);
     try {
       plugin->entry->describe(reader);
     } catch (const std::exception& error) {
@@ -226,6 +237,12 @@ void SegmentationOptions::visit_in_segmenter(OptionVisitor& v) {
   v.choice("on_failure", on_failure,
            {{"stop", OnFailure::kStop}, {"continue", OnFailure::kContinue}},
            {.help = "end the run, or go on without labels for that frame"});
+}
+
+void OutputOptions::visit(OptionVisitor& v) {
+  v.choice(
+      "when_full", when_full, {{"wait", WhenFull::kWait}, {"drop", WhenFull::kDrop}},
+      {.help = "threaded, when the output is too slow: tracking waits, or frames are left out"});
 }
 
 StageSpec::StageSpec(std::string section, const PluginType& type,

@@ -62,7 +62,7 @@ void check_keyframe(const KeyFrame& keyframe, const Frame& frame, const SparseMa
   require(keyframe.id == next,
           "the key frame has id " + std::to_string(keyframe.id) + ", but the next one is " +
               std::to_string(next),
-          "ids count from the id end of the first map that the tracker sees");
+          "take TrackHints::next_keyframe");
   require(keyframe.frame == frame.index,
           "the key frame is of frame " + std::to_string(keyframe.frame),
           "KeyFrame::frame must be the index of the frame that was tracked");
@@ -160,6 +160,13 @@ void check_weights(const StaticWeights& weights, const Segmentation& segmentatio
       std::to_string(weights.object_moves.size()) + " objects are judged, but there are " +
           std::to_string(segmentation.objects.size()),
       "object_moves has one entry per object of the labels, or none");
+}
+
+void check_prepared(const PreparedFrame* prepared, const Frame& frame) {
+  require(prepared != nullptr, "prepare() gave nothing",
+          "give a PreparedFrame with the frame, of your own type or not");
+  require(prepared->frame.get() == &frame, "prepare() gave another frame",
+          "make it with the frame that prepare() was given");
 }
 
 void check_tracking(const TrackResult& result, const Frame& frame, const SparseMap& map,

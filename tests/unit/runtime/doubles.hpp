@@ -164,15 +164,20 @@ class FakeTracker final : public Tracker {
  public:
   explicit FakeTracker(Journal& journal, std::uint32_t spacing = 2)
       : journal_(journal), spacing_(spacing) {}
-  void prepare(FramePtr frame) override { journal_.write("prepare", frame->index); }
-  TrackResult track(FramePtr frame, const StaticWeights&, const SparseMap& map,
-                    TrackHints) override {
+  PreparedFramePtr prepare(FramePtr frame) override {
+    journal_.write("prepare", frame->index);
+    return std::make_unique<PreparedFrame>(std::move(frame));
+  }
+  TrackResult track(PreparedFramePtr prepared, const StaticWeights&, const SparseMap& map,
+                    TrackHints hints) override {
+    const FramePtr& frame = prepared->frame;
     journal_.write("track", frame->index);
-    if (next_id_ > 0 && map.empty()) throw std::logic_error("the first key frame is not there");
+    if (hints.next_keyframe > 0 && map.empty())
+      throw std::logic_error("the first key frame is not there");
     TrackResult result{.state = TrackState::kTracking};
     const Pose pose(Eigen::Translation3d(frame->index, 0.0, 0.0));
     if (frame->index % spacing_ == 0) {
-      KeyFrame keyframe{.id = next_id_++, .frame = frame->index, .time = frame->time};
+      KeyFrame keyframe{.id = hints.next_keyframe, .frame = frame->index, .time = frame->time};
       keyframe.world_from_camera = pose;
       keyframe.camera = frame->camera;
       keyframe.features = std::make_shared<const Features>();
@@ -188,7 +193,6 @@ class FakeTracker final : public Tracker {
  private:
   Journal& journal_;
   std::uint32_t spacing_;
-  KeyFrameId next_id_ = 0;
   KeyFrame reference_;
 };
 
@@ -220,8 +224,7 @@ class FakeCloser final : public LoopCloser {
   std::optional<MapCorrection> close(const SparseMap& map, KeyFrameId latest,
                                      std::stop_token) override {
     journal_.write("close", map.keyframe(latest)->frame);
-    MapCorrection correction{.base_version = map.version(),
-                             .keyframe_id_end = static_cast<KeyFrameId>(map.keyframe_id_end())};
+    MapCorrection correction{.keyframe_id_end = static_cast<KeyFrameId>(map.keyframe_id_end())};
     for (KeyFrameId id = 0; id < map.keyframe_id_end(); ++id)
       correction.moved.push_back(
           {id, Eigen::Translation3d(0.0, 1.0, 0.0) * map.world_from_keyframe(id)});
@@ -262,7 +265,7 @@ class FakeOutput final : public Output {
   explicit FakeOutput(Journal& journal) : journal_(journal) {}
   void frame(const FrameReport& report) override {
     for (const StageTime& time : report.times) times.push_back(time);
-    journal_.write("output", report.frame.index);
+    journal_.write("output", report.frame->index);
   }
   void finish(const RunSummary& summary) override {
     for (const StageTime& time : summary.times) times.push_back(time);
@@ -270,6 +273,7 @@ class FakeOutput final : public Output {
     poses = summary.poses;
     source = summary.source;
     dropped = summary.dropped_frames;
+    dropped_reports = summary.dropped_reports;
     complete = summary.complete;
     failure = summary.failure;
     ++finished;
@@ -281,6 +285,7 @@ class FakeOutput final : public Output {
   std::vector<TrackedPose> poses;
   SourceReport source;
   int dropped = -1;
+  int dropped_reports = -1;
   bool complete = false;
   std::string failure;
   int finished = 0;

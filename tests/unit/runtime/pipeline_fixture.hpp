@@ -24,7 +24,7 @@ struct PipelineFixture {
             .local_mapper = {mapper, "orb"},
             .loop_closer = {closer, "bits"},
             .map_backend = {backend, "cloud"},
-            .outputs = {{output, "first"}, {second_output, "second"}},
+            .outputs = {{{output, "first"}}, {{second_output, "second"}}},
             .map_directory = ::testing::TempDir() + "stillpoint_pipeline_test"};
   }
 

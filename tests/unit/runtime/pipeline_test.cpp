@@ -11,6 +11,7 @@
 namespace stillpoint {
 namespace {
 
+using testing::Journal;
 using testing::PipelineFixture;
 using testing::runtime;
 using Strings = std::vector<std::string>;
@@ -62,6 +63,22 @@ TEST(Pipeline, ThreadedTheMovingCheckRunsBesideTheExtractionOfFeatures) {
   EXPECT_EQ(f.journal.entries("track"), (Strings{"track 0", "track 1", "track 2"}));
 }
 
+TEST(Pipeline, AViewerThatHangsDelaysNothing) {
+  PipelineFixture f(60);
+  Journal of_viewer;
+  of_viewer.hook = [&](const std::string& entry) {
+    if (entry == "output 0") f.journal.wait_for("output 59");
+  };
+  Stages stages = f.stages();
+  const auto viewer = std::make_shared<testing::FakeOutput>(of_viewer);
+  stages.outputs.push_back({{viewer, "viewer"}, WhenFull::kDrop});
+  Pipeline(std::move(stages), runtime(Mode::kThreaded), {}).run();
+  EXPECT_EQ(f.journal.entries("output").size(), 60u);
+  EXPECT_GT(viewer->dropped_reports, 0);
+  EXPECT_EQ(of_viewer.entries("output").size() + static_cast<std::size_t>(viewer->dropped_reports),
+            60u);
+}
+
 TEST_P(PipelineInBothModes, CorrectionsReachTheMapsAlsoAtTheEnd) {
   PipelineFixture f(60);
   Pipeline(f.stages(), runtime(GetParam()), {}).run();
@@ -88,7 +105,7 @@ TEST_P(PipelineInBothModes, AllTimesAreReportedOnceAndNameTheirFrame) {
       continue;
     EXPECT_TRUE(seen.emplace(time.stage, time.frame).second) << time.stage << ' ' << time.frame;
   }
-  std::size_t expected = 8 * 4 + 3 + 2 * 2;              // per frame, check, per key frame
+  std::size_t expected = 9 * 4 + 3 + 2 * 2;              // per frame, check, per key frame
   if (GetParam() == Mode::kThreaded) expected += 2 * 4;  // two kinds of waiting
   EXPECT_EQ(seen.size(), expected);
 }
@@ -97,7 +114,7 @@ TEST_P(PipelineInBothModes, NullStagesRunThrough) {
   PipelineFixture f(5);
   Stages stages;
   stages.source = {f.source, "list"};
-  stages.outputs = {{f.output, "first"}};
+  stages.outputs = {{{f.output, "first"}}};
   Pipeline(std::move(stages), runtime(GetParam()), {}).run();
   EXPECT_EQ(f.output->poses.size(), 5u);
   EXPECT_TRUE(f.output->map.empty());
@@ -227,11 +244,12 @@ TEST_P(PipelineInBothModes, FramesWithoutDepthAreTheSourcesFault) {
 class TrackerThatDiverges final : public Tracker {
  public:
   explicit TrackerThatDiverges(testing::Journal& journal) : tracker_(journal) {}
-  void prepare(FramePtr frame) override { tracker_.prepare(frame); }
-  TrackResult track(FramePtr frame, const StaticWeights& weights, const SparseMap& map,
+  PreparedFramePtr prepare(FramePtr frame) override { return tracker_.prepare(std::move(frame)); }
+  TrackResult track(PreparedFramePtr prepared, const StaticWeights& weights, const SparseMap& map,
                     TrackHints hints) override {
-    TrackResult result = tracker_.track(frame, weights, map, hints);
-    if (frame->index == 3) result.world_from_camera.translation().x() = std::nan("");
+    const std::uint32_t frame = prepared->frame->index;
+    TrackResult result = tracker_.track(std::move(prepared), weights, map, hints);
+    if (frame == 3) result.world_from_camera.translation().x() = std::nan("");
     return result;
   }
 

@@ -206,6 +206,17 @@ INSTANTIATE_TEST_SUITE_P(
                    "the pose of the key frame is no rigid motion"}),
     [](const auto& test) { return test.param.name; });
 
+TEST(StageResults, WhatIsPreparedIsTheFrame) {
+  const auto frame = std::make_shared<const Frame>(right_frame());
+  const PreparedFrame right(frame), other(std::make_shared<const Frame>(right_frame()));
+  const auto message = [&](const PreparedFrame* prepared) {
+    return message_of([&] { check_prepared(prepared, *frame); });
+  };
+  EXPECT_EQ(message(&right), "");
+  EXPECT_THAT(message(&other), HasSubstr("prepare() gave another frame"));
+  EXPECT_THAT(message(nullptr), HasSubstr("prepare() gave nothing"));
+}
+
 TEST(StageResults, WhoIsLostNeedsNoPose) {
   TrackResult result{.state = TrackState::kLost};
   result.world_from_camera.translation().x() = kNan;

@@ -17,7 +17,6 @@ struct MovedKeyFrame {
 };
 
 struct MapCorrection {
-  std::uint64_t base_version = 0;  ///< of the map it was computed on
   KeyFrameId keyframe_id_end = 0;  ///< of the map it was computed on
   std::vector<MovedKeyFrame> moved;
   /// Landmark positions in world, where optimised; others move with their reference key frame.

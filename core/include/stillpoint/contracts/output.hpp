@@ -1,7 +1,8 @@
-// Contract: what a run leaves behind (paper IV). Thread 1.
+// Contract: what a run leaves behind (paper IV). A thread of its own, behind a queue.
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -25,18 +26,18 @@ struct StageTime {
   std::uint32_t frame = 0;  ///< index of the frame the work was for
 };
 
-/// Everything the pipeline knows of one frame. References are valid during the call only.
+/// Everything the pipeline knows of one frame. Images are shared with the stages: never write them.
 struct FrameReport {
-  const Frame& frame;
-  const Segmentation& segmentation;
-  const MovingPoints& moving;
-  const MapEvidence& evidence;
-  const StaticWeights& weights;
-  const TrackResult& result;
-  /// What ended since the last report: stages of this frame, of other threads, and the outputs of
-  /// the frame before.
-  const std::vector<StageTime>& times;
+  FramePtr frame;
+  SegmentationPtr segmentation;
+  MovingPoints moving;
+  MapEvidence evidence;
+  std::shared_ptr<const StaticWeights> weights;
+  TrackResult result;
+  /// What ended since the last report: stages of this frame, and of other threads.
+  std::vector<StageTime> times;
 };
+using FrameReportPtr = std::shared_ptr<const FrameReport>;
 
 /// One frame's pose, relative to its reference key frame.
 struct TrackedPose {
@@ -56,6 +57,7 @@ struct RunSummary {
   const std::vector<StageTime>& times;  ///< what ended since the last report
   int dropped_frames = 0;               ///< by `pace: sensor`
   int loops_closed = 0;
+  int dropped_reports = 0;  ///< by outputs that were too slow, with `when_full: drop`
   double wall_seconds = 0.0;
   double cpu_seconds = 0.0;  ///< of the whole process during the run
   double recorded_seconds = 0.0;
@@ -73,8 +75,11 @@ class STILLPOINT_EXPORT Output {
   static constexpr const char* kKind = "output";
   virtual ~Output();
 
+  /// In order of the frames. Threaded, tracking is some frames ahead; with `when_full: drop` it may
+  /// be so far ahead that frames are left out.
   virtual void frame(const FrameReport&) {}
-  /// Always called, also after a failure or Ctrl-C: what was computed is saved.
+  /// Always called, also after a failure or Ctrl-C: what was computed is saved. After the last
+  /// frame(), on thread 1; references are valid during the call only.
   virtual void finish(const RunSummary&) {}
 };
 

@@ -19,7 +19,6 @@ namespace stillpoint {
 class STILLPOINT_EXPORT SparseMap {
  public:
   bool empty() const { return keyframe_count_ == 0; }
-  std::uint64_t version() const { return version_; }
 
   /// One past the largest id ever given, removed elements included.
   std::size_t keyframe_id_end() const { return keyframes_.size(); }
@@ -65,7 +64,6 @@ class STILLPOINT_EXPORT SparseMap {
   std::vector<LandmarkId> successor_;  // by landmark id, kNoId = not fused
   std::size_t keyframe_count_ = 0;
   std::size_t landmark_count_ = 0;
-  std::uint64_t version_ = 0;
 };
 
 /// Makes the next version of a map: elements are cloned when first changed, so that every copy

@@ -1,7 +1,9 @@
 // Contract: the camera's pose in the sparse map (paper III-A). Thread 1.
 #pragma once
 
+#include <memory>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "stillpoint/contracts/frame.hpp"
@@ -39,7 +41,21 @@ struct TrackResult {
   std::optional<KeyFrame> keyframe;           ///< to be inserted
 };
 
+/// What a tracker has found in a frame before it knows weights and map, features for instance. Each
+/// tracker derives its own.
+class STILLPOINT_EXPORT PreparedFrame {
+ public:
+  explicit PreparedFrame(FramePtr prepared) : frame(std::move(prepared)) {}
+  virtual ~PreparedFrame();
+  PreparedFrame(const PreparedFrame&) = delete;
+  PreparedFrame& operator=(const PreparedFrame&) = delete;
+
+  const FramePtr frame;
+};
+using PreparedFramePtr = std::unique_ptr<PreparedFrame>;
+
 struct TrackHints {
+  KeyFrameId next_keyframe = 0;  ///< the id of the key frame, if this frame becomes one
   bool mapping_waiting = false;  ///< a key frame is already waiting for the local mapper
   bool localise_only = false;    ///< the map stays as it is: no key frames
 };
@@ -49,15 +65,13 @@ class STILLPOINT_EXPORT Tracker {
   static constexpr const char* kKind = "tracker";
   virtual ~Tracker();
 
-  /// Everything that needs neither weights nor map; overlaps the network (paper III-D). Always
-  /// followed by track() with the same frame.
-  virtual void prepare(FramePtr frame) = 0;
+  /// Everything that needs neither weights nor map; overlaps the network (paper III-D).
+  virtual PreparedFramePtr prepare(FramePtr frame) = 0;
 
-  /// Never writes the map. A key frame that it returns has the id that the map will give it: ids
-  /// are counted by the tracker, beginning at the id end of the first map it sees. With an empty
-  /// map, the first usable frame becomes the first key frame, at the origin.
-  virtual TrackResult track(FramePtr frame, const StaticWeights& weights, const SparseMap& map,
-                            TrackHints hints) = 0;
+  /// `prepared` is what prepare() gave for the frame, never null. Never writes the map. With an
+  /// empty map, the first usable frame becomes the first key frame, at the origin.
+  virtual TrackResult track(PreparedFramePtr prepared, const StaticWeights& weights,
+                            const SparseMap& map, TrackHints hints) = 0;
 };
 
 }  // namespace stillpoint

@@ -31,6 +31,8 @@ class MappingSystem {
   ~MappingSystem() { end(); }
 
   MapStore::Snapshot snapshot() const { return map_.snapshot(); }
+  /// The id that the next key frame pushed has to have.
+  KeyFrameId next_keyframe() const { return next_keyframe_; }
   /// Waits while too many key frames are waiting, and until the very first one is in the map:
   /// nothing can be tracked before.
   void push(NewKeyFrame keyframe);
@@ -74,6 +76,7 @@ class MappingSystem {
   StageCaller<LoopCloser> loop_closer_;
   StageCaller<MapBackend> map_backend_;
   MapStore map_;
+  KeyFrameId next_keyframe_;       // of the thread that pushes
   std::uint32_t dense_frame_ = 0;  // given last to the dense map, for messages and times
   int loops_ = 0;
   // Of the loop thread: the map does not show yet what it found last, so it looks for nothing more.

@@ -1,15 +1,19 @@
 // The program: Fig. 2 of the paper, with a stage in each box.
 #pragma once
 
+#include <deque>
 #include <exception>
 #include <functional>
 #include <memory>
 #include <stop_token>
 #include <vector>
 
+#include "stillpoint/runtime/beside_tracking.hpp"
 #include "stillpoint/runtime/frame_feed.hpp"
+#include "stillpoint/runtime/map_check.hpp"
 #include "stillpoint/runtime/mapping_system.hpp"
-#include "stillpoint/runtime/motion_stage.hpp"
+#include "stillpoint/runtime/moving_check.hpp"
+#include "stillpoint/runtime/output_stage.hpp"
 #include "stillpoint/runtime/segmentation_stage.hpp"
 
 namespace stillpoint {
@@ -27,12 +31,14 @@ class Pipeline {
   void run(std::stop_token stop = {});
 
  private:
+  void add_outputs(std::vector<OutputSetup> setups);
   void process(const FramePtr& frame);
-  void report(const FrameReport& report);
+  void report(FrameReportPtr report);
   void end_threads();
   void finish();
   RunSummary summary(const SparseMap& map, const SourceReport& source,
                      const std::vector<StageTime>& times) const;
+  int dropped_reports() const;
   void keep_failure_of(const std::function<void()>& step);
 
   const RuntimeOptions options_;
@@ -44,9 +50,7 @@ class Pipeline {
 
   StageCaller<Decision> decision_;
   StageCaller<Tracker> tracker_;
-  std::vector<StageCaller<Output>> outputs_;
 
-  KeyFrameId next_keyframe_ = 0;
   std::vector<TrackedPose> poses_;
   double wall_seconds_ = 0.0;
   double cpu_seconds_ = 0.0;
@@ -54,8 +58,11 @@ class Pipeline {
   // Last: their threads use the clock, the stop signal and the time log.
   FrameFeed feed_;
   SegmentationStage segmentation_;
-  MotionStage motion_;
+  MovingCheck moving_check_;
+  MapCheck map_check_;
+  BesideTracking beside_;
   MappingSystem mapping_;
+  std::deque<OutputStage> outputs_;  // a deque: they cannot be moved
 };
 
 }  // namespace stillpoint

@@ -12,6 +12,7 @@
 #include "stillpoint/options.hpp"
 #include "stillpoint/runtime/install_layout.hpp"
 #include "stillpoint/runtime/registry.hpp"
+#include "stillpoint/runtime/stage.hpp"
 
 namespace stillpoint {
 
@@ -54,6 +55,13 @@ struct SegmentationOptions {
   void visit_in_segmenter(OptionVisitor& visitor);
 };
 
+/// What stands in an element of `outputs:`, beside the options of the plugin.
+struct OutputOptions {
+  WhenFull when_full = WhenFull::kWait;
+
+  void visit(OptionVisitor& visitor);
+};
+
 struct ConfigNode;
 
 /// A stage section whose options have been found valid.
@@ -80,6 +88,11 @@ class StageSpec {
   std::shared_ptr<const ConfigNode> options_;
 };
 
+struct OutputSpec {
+  StageSpec stage;
+  OutputOptions options;
+};
+
 /// A section left out is an empty optional: the built-in null stage.
 struct PipelineConfig {
   std::filesystem::path file;
@@ -96,7 +109,7 @@ struct PipelineConfig {
   std::optional<StageSpec> local_mapper;
   std::optional<StageSpec> loop_closer;
   std::optional<StageSpec> map_backend;
-  std::vector<StageSpec> outputs;
+  std::vector<OutputSpec> outputs;
   RuntimeOptions runtime;
 
   /// The complete file: every option of every stage with its value, paths absolute, nothing

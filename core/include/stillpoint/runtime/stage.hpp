@@ -24,6 +24,14 @@ struct Stage {
   std::string type;
 };
 
+/// What becomes of a report when an output is too slow to take it.
+enum class WhenFull { kWait /* tracking waits */, kDrop /* the report that waited longest goes */ };
+
+struct OutputSetup {
+  Stage<Output> stage;
+  WhenFull when_full = WhenFull::kWait;
+};
+
 /// What sits in each box. Made from a pipeline file, or by hand for tests.
 struct Stages {
   Stage<Source> source;  ///< must be there
@@ -36,7 +44,7 @@ struct Stages {
   Stage<LocalMapper> local_mapper;
   Stage<LoopCloser> loop_closer;
   Stage<MapBackend> map_backend;
-  std::vector<Stage<Output>> outputs;
+  std::vector<OutputSetup> outputs;
   std::filesystem::path map_directory;  ///< made for the dense map at the end; empty: not saved
   SparseMap known_map;                  ///< to begin with; empty: the first frame begins one
   bool localise_only = false;           ///< the map stays as it is

@@ -30,6 +30,9 @@ void check_evidence(const MapEvidence& evidence);
 /// Of a decision on these labels.
 void check_weights(const StaticWeights& weights, const Segmentation& segmentation, cv::Size frame);
 
+/// Of a tracker, before it tracks `frame`.
+void check_prepared(const PreparedFrame* prepared, const Frame& frame);
+
 /// Of a tracker, for a frame; `next` is the id of the next key frame.
 void check_tracking(const TrackResult& result, const Frame& frame, const SparseMap& map,
                     KeyFrameId next);

@@ -1,0 +1,30 @@
+// The map check of each frame, at the poses that the camera may have before it is tracked.
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "stillpoint/runtime/pose_prediction.hpp"
+#include "stillpoint/runtime/stage.hpp"
+
+namespace stillpoint {
+
+class MapCheck {
+ public:
+  MapCheck(Stage<MapChecker> checker, TimeLog& times)
+      : checker_(std::move(checker), "map check", times) {}
+
+  bool present() const { return checker_.present(); }
+  /// Once per frame, in order. Nothing is known while nothing has been tracked.
+  MapEvidence at(const Frame& frame, const MovingPoints& moving, const SparseMap& map);
+  /// What became of the frame that at() was asked for last; before it is asked for the next one.
+  void tracked(const FramePtr& frame, std::shared_ptr<const StaticWeights> weights,
+               const TrackResult& result, const SparseMap& map);
+
+ private:
+  StageCaller<MapChecker> checker_;
+  PosePrediction prediction_;
+  std::optional<TrackedFrame> to_remember_;
+};
+
+}  // namespace stillpoint

@@ -1,0 +1,53 @@
+// Outputs beside thread 1: slow ones do not delay tracking.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "stillpoint/runtime/bounded_queue.hpp"
+#include "stillpoint/runtime/stage.hpp"
+#include "stillpoint/runtime/stop_signal.hpp"
+#include "stillpoint/runtime/worker.hpp"
+
+namespace stillpoint {
+
+/// Outputs that get the same reports, one after the other. Threaded, reports wait in a queue.
+/// Unlike those of other stages it is worked off after a stop as well: what was computed is saved.
+class OutputStage {
+ public:
+  OutputStage(std::vector<Stage<Output>> outputs, WhenFull when_full, Mode mode, StopSignal& stop,
+              TimeLog& times);
+  ~OutputStage() { end(); }
+  OutputStage(const OutputStage&) = delete;
+  OutputStage& operator=(const OutputStage&) = delete;
+
+  /// With a full queue it waits, or leaves out the report that has waited longest.
+  void frame(FrameReportPtr report);
+  /// Hands over what waits and ends the thread. No frame() may follow.
+  void end();
+  /// After end(). Every output is finished, with `summary` as it is then; the first failure stops
+  /// the run.
+  void finish(const std::function<RunSummary()>& summary);
+  /// Reports left out. After end().
+  int dropped() const { return dropped_; }
+
+ private:
+  struct Named {
+    StageCaller<Output> output;
+    std::string label;  // of its times
+  };
+
+  void write(const FrameReport& report);
+  void work();
+
+  const bool drops_;
+  StopSignal& stop_;
+  std::vector<Named> outputs_;
+  int dropped_ = 0;  // of thread 1
+  BoundedQueue<FrameReportPtr> queue_;
+  std::jthread thread_;  // last: it uses all the others
+};
+
+}  // namespace stillpoint

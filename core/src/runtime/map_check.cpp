@@ -1,0 +1,39 @@
+#include "stillpoint/runtime/map_check.hpp"
+
+#include <utility>
+
+#include "stillpoint/runtime/stage_results.hpp"
+
+namespace stillpoint {
+namespace {
+
+MapEvidence compare(MapChecker& checker, const Frame& frame, std::span<const Pose> guesses,
+                    const SparseMap& map) {
+  MapEvidence found = checker.check(frame, guesses, map);
+  check_evidence(found);
+  return found;
+}
+
+}  // namespace
+
+MapEvidence MapCheck::at(const Frame& frame, const MovingPoints& moving, const SparseMap& map) {
+  if (!checker_.present()) return {};
+  // Here, not in tracked(): that would be on the thread of tracking.
+  if (const auto tracked = std::exchange(to_remember_, std::nullopt))
+    checker_.call("map_check", frame.index, &MapChecker::remember, *tracked);
+  const std::vector<Pose> guesses = prediction_.guesses(frame.time, moving, map);
+  if (guesses.empty()) return {};
+  return checker_.call("map_check", frame.index, compare, frame, guesses, map);
+}
+
+void MapCheck::tracked(const FramePtr& frame, std::shared_ptr<const StaticWeights> weights,
+                       const TrackResult& result, const SparseMap& map) {
+  if (!checker_.present()) return;
+  to_remember_.reset();
+  if (result.state == TrackState::kTracking)
+    to_remember_ = {frame, std::move(weights), result.reference, result.reference_from_camera,
+                    result.world_from_camera};
+  prediction_.tracked(to_remember_, map);
+}
+
+}  // namespace stillpoint

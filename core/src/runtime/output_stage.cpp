@@ -1,0 +1,61 @@
+#include "stillpoint/runtime/output_stage.hpp"
+
+#include <exception>
+#include <utility>
+
+namespace stillpoint {
+namespace {
+
+constexpr std::size_t kReportsWaiting = 8;  // with the images of their frames, 2.5 MB each
+
+}  // namespace
+
+OutputStage::OutputStage(std::vector<Stage<Output>> outputs, WhenFull when_full, Mode mode,
+                         StopSignal& stop, TimeLog& times)
+    : drops_(when_full == WhenFull::kDrop), stop_(stop), queue_(kReportsWaiting) {
+  for (Stage<Output>& output : outputs) {
+    std::string label = "output " + output.type;
+    outputs_.push_back({{std::move(output), "output", times}, std::move(label)});
+  }
+  if (mode == Mode::kThreaded && !outputs_.empty()) thread_ = std::jthread([this] { work(); });
+}
+
+void OutputStage::frame(FrameReportPtr report) {
+  if (!thread_.joinable())
+    write(*report);
+  else if (drops_)
+    dropped_ += queue_.push_or_drop_oldest(std::move(report)) ? 1 : 0;
+  else
+    queue_.push(std::move(report), stop_.token());
+}
+
+void OutputStage::end() {
+  queue_.close();
+  if (thread_.joinable()) thread_.join();
+}
+
+void OutputStage::finish(const std::function<RunSummary()>& summary) {
+  for (Named& named : outputs_) {
+    try {
+      named.output.call_unmeasured({}, &Output::finish, summary());
+    } catch (...) {
+      stop_.fail(std::current_exception());
+    }
+  }
+}
+
+void OutputStage::write(const FrameReport& report) {
+  for (Named& named : outputs_)
+    named.output.call(named.label.c_str(), report.frame->index, &Output::frame, report);
+}
+
+void OutputStage::work() {
+  try {
+    while (const auto report = queue_.pop({})) write(**report);
+  } catch (...) {
+    stop_.fail(std::current_exception());
+    queue_.close();
+  }
+}
+
+}  // namespace stillpoint
