@@ -118,6 +118,27 @@ TEST_F(PipelineConfigTest, PathsBelongToTheFileThatNamesThem) {
   EXPECT_EQ(load({.pipeline = "child.yaml", .dataset = "sub"}).recording, folder_ / "sub");
 }
 
+TEST_F(PipelineConfigTest, AParentHasAPathOrAName) {
+  setenv("STILLPOINT_CONFIG_PATH", "shipped", 1);
+  fs::create_directories("shipped/pipelines");
+  write("shipped/pipelines/known.yaml", kSource);
+  write("shipped/pipelines/base.yaml", kSource);
+  write("base.yaml", "version: 1\nsource: {type: tum_rgbd, path: mine}\n");
+  write("by_name.yaml", "extends: known\n");
+  EXPECT_EQ(source_path(load({.pipeline = "by_name.yaml"})), folder_ / "shipped/pipelines/data");
+  write("by_path.yaml", "extends: base.yaml\n");
+  EXPECT_EQ(source_path(load({.pipeline = "by_path.yaml"})), folder_ / "mine");
+  write("unknown.yaml", "extends: knwon\n");
+  try {
+    load({.pipeline = "unknown.yaml"});
+    FAIL();
+  } catch (const ConfigError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("unknown.yaml:1:10: error: extends: no pipeline named "
+                                        "'knwon'; did you mean 'known'?"));
+  }
+  unsetenv("STILLPOINT_CONFIG_PATH");
+}
+
 TEST_F(PipelineConfigTest, OverriddenVariablesNeedNotBeSet) {
   unsetenv("STILLPOINT_TEST_UNSET");
   write("p.yaml", "version: 1\nsource: {type: tum_rgbd, path: '${STILLPOINT_TEST_UNSET}/x'}\n");

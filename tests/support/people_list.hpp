@@ -33,7 +33,7 @@ struct PeopleList {
 /// Throws ConfigError with every fault of the file.
 inline PeopleList load_people_list(const std::filesystem::path& file) {
   FaultList faults;
-  ConfigNode tree = load_config_file(file, faults);
+  ConfigNode tree = load_config_file(file, "recordings", faults);
   substitute_environment(tree, faults);
   remove_nulls(tree);
   YamlOptionReader reader(&tree, "recordings");

@@ -36,7 +36,7 @@ void read_section(const ConfigNode* section, const char* name, T& options, Fault
 SceneFile load_scene(const std::string& name_or_file, const std::vector<std::string>& assignments) {
   FaultList faults;
   const std::filesystem::path file = find_config(name_or_file, "scenes");
-  ConfigNode tree = load_config_file(file, faults);
+  ConfigNode tree = load_config_file(file, "scenes", faults);
   for (const std::string& assignment : assignments)
     tree = merge_sections(std::move(tree), parse_assignment(assignment, faults));
   substitute_environment(tree, faults);

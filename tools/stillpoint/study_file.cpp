@@ -35,7 +35,7 @@ void resolve(std::string& name_or_file, const fs::path& folder) {
 StudyFile load_study(const std::string& name_or_file, Registry& registry) {
   StudyFile result{.file = find_config(name_or_file, "studies"), .study = {}, .effective_yaml = {}};
   FaultList faults;
-  ConfigNode tree = load_config_file(result.file, faults);
+  ConfigNode tree = load_config_file(result.file, "studies", faults);
   faults.throw_if_any();  // of what cannot be read, nothing more can be said
   substitute_environment(tree, faults);
   remove_nulls(tree);

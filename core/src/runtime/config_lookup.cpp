@@ -33,14 +33,16 @@ std::string singular_of(const std::string& category) {
 
 }  // namespace
 
-fs::path find_config(const std::string& name_or_file, const std::string& category) {
-  if (is_file(name_or_file)) return name_or_file;
+fs::path find_config(const std::string& name_or_file, const std::string& category,
+                     const fs::path& folder) {
+  const fs::path from_folder = (folder / name_or_file).lexically_normal();
+  if (is_file(from_folder)) return from_folder;
   const std::string singular = singular_of(category);
   const fs::path path = name_or_file;
   if (path.has_parent_path() || path.extension() == ".yaml")
-    throw Error(Fault::kUsage, "no such " + singular + " file", name_or_file);
-  for (const fs::path& folder : config_folders())
-    if (const fs::path file = folder / category / (name_or_file + ".yaml"); is_file(file))
+    throw Error(Fault::kUsage, "no such " + singular + " file", from_folder.string());
+  for (const fs::path& configs : config_folders())
+    if (const fs::path file = configs / category / (name_or_file + ".yaml"); is_file(file))
       return file;
   const std::vector<std::string> names = available_names(category);
   throw Error(Fault::kUsage, "no " + singular + " named '" + name_or_file + "'" +

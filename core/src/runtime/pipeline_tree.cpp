@@ -54,8 +54,9 @@ ConfigNode load_pipeline_tree(const fs::path& file, const PipelineRequest& reque
     remove_nulls(tree);
     return tree;
   };
-  ConfigNode tree = load_config_file(
-      file, faults, [&](ConfigNode& written) { load_named_sections(written, faults); });
+  ConfigNode tree = load_config_file(file, "pipelines", faults, [&](ConfigNode& written) {
+    load_named_sections(written, faults);
+  });
   const ConfigNode overlay = command_line_overlay(request, faults);
 
   fs::path camera_file;

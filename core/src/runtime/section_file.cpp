@@ -12,7 +12,7 @@ namespace stillpoint {
 
 ConfigNode load_section(const std::filesystem::path& file, const std::string& name,
                         FaultList& faults) {
-  ConfigNode tree = load_config_file(file, faults);
+  ConfigNode tree = load_config_file(file, name + "s", faults);
   substitute_environment(tree, faults);
   remove_nulls(tree);
   for (const ConfigNode& section : tree.children)
@@ -31,13 +31,9 @@ void load_named_sections(ConfigNode& tree, FaultList& faults) {
     ConfigNode* named = tree.find(name);
     if (!named || named->kind != ConfigNode::Kind::kScalar) continue;
     substitute_environment(*named, faults);
-    const std::filesystem::path beside = named->folder / named->scalar;
-    std::error_code error;
     try {
-      ConfigNode section = load_section(std::filesystem::is_regular_file(beside, error)
-                                            ? beside.lexically_normal()
-                                            : find_config(named->scalar, name + "s"),
-                                        name, faults);
+      ConfigNode section =
+          load_section(find_config(named->scalar, name + "s", named->folder), name, faults);
       section.key = name;
       section.replaces = true;
       tree.set(std::move(section));

@@ -13,6 +13,8 @@
 #include <vector>
 
 #include "stillpoint/did_you_mean.hpp"
+#include "stillpoint/error.hpp"
+#include "stillpoint/runtime/config_lookup.hpp"
 
 namespace stillpoint {
 namespace {
@@ -164,35 +166,47 @@ Location start_of(const fs::path& file) { return {file.string(), 1, 1}; }
 
 using Prepare = std::function<void(ConfigNode&)>;
 
-ConfigNode load_chain(const fs::path& file, const Location& named_at, std::vector<fs::path> chain,
-                      const Prepare& prepare, FaultList& faults);
+/// How the files of a chain are read.
+struct Chain {
+  const std::string& category;
+  const Prepare& prepare;
+  FaultList& faults;
+};
+
+ConfigNode load_chain(const fs::path& file, const Location& named_at, std::vector<fs::path> above,
+                      const Chain& chain);
 
 /// Takes `extends` out of a file and loads what it names.
 std::optional<ConfigNode> load_parent(ConfigNode& node, const fs::path& file,
-                                      const std::vector<fs::path>& chain, const Prepare& prepare,
-                                      FaultList& faults) {
+                                      const std::vector<fs::path>& above, const Chain& chain) {
   ConfigNode* extends = node.find("extends");
   if (!extends) return std::nullopt;
-  substitute_environment(*extends, faults);
+  substitute_environment(*extends, chain.faults);
   const ConfigNode named = *extends;
   node.erase("extends");
   if (named.kind != ConfigNode::Kind::kScalar || named.scalar.empty()) {
-    faults.add(named.key_location, "extends takes the path of one file");
+    chain.faults.add(named.key_location, "extends takes the path or the name of one file");
     return std::nullopt;
   }
-  return load_chain((file.parent_path() / named.scalar).lexically_normal(), named.location, chain,
-                    prepare, faults);
+  try {
+    const fs::path parent = find_config(named.scalar, chain.category, file.parent_path());
+    return load_chain(parent, named.location, above, chain);
+  } catch (const Error& fault) {
+    chain.faults.add(named.location, std::string("extends: ") + fault.what());
+    return std::nullopt;
+  }
 }
 
-ConfigNode load_chain(const fs::path& file, const Location& named_at, std::vector<fs::path> chain,
-                      const Prepare& prepare, FaultList& faults) {
+ConfigNode load_chain(const fs::path& file, const Location& named_at, std::vector<fs::path> above,
+                      const Chain& chain) {
+  FaultList& faults = chain.faults;
   std::error_code unreadable;  // said below
   const fs::path identity = fs::weakly_canonical(file, unreadable);
-  if (std::ranges::find(chain, identity) != chain.end()) {
+  if (std::ranges::find(above, identity) != above.end()) {
     faults.add(named_at, "extends goes in a circle: '" + file.string() + "' is already being read");
     return empty_map(start_of(file));
   }
-  chain.push_back(identity);
+  above.push_back(identity);
   const std::optional<std::string> text = read_text(file);
   if (!text) {
     faults.add(named_at, "cannot read '" + file.string() + "'");
@@ -205,8 +219,8 @@ ConfigNode load_chain(const fs::path& file, const Location& named_at, std::vecto
     faults.add(start_of(file), "expected sections, as in 'source: {type: tum_rgbd}'");
     return empty_map(start_of(file));
   }
-  const auto parent = load_parent(*node, file, chain, prepare, faults);
-  if (prepare) prepare(*node);
+  const auto parent = load_parent(*node, file, above, chain);
+  if (chain.prepare) chain.prepare(*node);
   return parent ? merge_sections(*parent, *node) : *node;
 }
 
@@ -242,8 +256,9 @@ std::string substituted(const std::string& text, const Location& where, FaultLis
 
 }  // namespace
 
-ConfigNode load_config_file(const fs::path& file, FaultList& faults, const Prepare& prepare) {
-  return load_chain(file, start_of(file), {}, prepare, faults);
+ConfigNode load_config_file(const fs::path& file, const std::string& category, FaultList& faults,
+                            const Prepare& prepare) {
+  return load_chain(file, start_of(file), {}, {category, prepare, faults});
 }
 
 ConfigNode parse_assignment(const std::string& assignment, FaultList& faults) {

@@ -6,8 +6,10 @@
 
 namespace stillpoint {
 
-/// The file itself if there is one of that path, else NAME.yaml in `category` ("cameras",
-/// "pipelines") of the first config folder that has it. Throws Error(kUsage) that suggests names.
-std::filesystem::path find_config(const std::string& name_or_file, const std::string& category);
+/// The file itself if there is one of that path, from `folder` when it is relative, else NAME.yaml in
+/// `category` ("cameras", "pipelines") of the first config folder that has it. Throws Error(kUsage)
+/// that suggests names.
+std::filesystem::path find_config(const std::string& name_or_file, const std::string& category,
+                                  const std::filesystem::path& folder = {});
 
 }  // namespace stillpoint

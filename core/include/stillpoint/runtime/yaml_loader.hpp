@@ -10,9 +10,11 @@
 
 namespace stillpoint {
 
-/// A file with everything it extends merged below it. An empty map when a file cannot be read or
-/// parsed, which is a fault then. `prepare` is called with each file's own text before merging.
-ConfigNode load_config_file(const std::filesystem::path& file, FaultList& faults,
+/// A file with everything it extends merged below it. `extends` takes a path from that file, or a
+/// name of `category`, see find_config. An empty map when a file cannot be read or parsed, which is
+/// a fault then. `prepare` is called with each file's own text before merging.
+ConfigNode load_config_file(const std::filesystem::path& file, const std::string& category,
+                            FaultList& faults,
                             const std::function<void(ConfigNode&)>& prepare = {});
 
 /// The map for `key.sub=value`; relative paths are meant from the working folder.
