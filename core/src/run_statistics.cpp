@@ -12,11 +12,10 @@
 namespace stillpoint {
 namespace {
 
-constexpr std::array<std::string_view, 16> kPipelineOrder = {
-    "source",       "prepare",      "moving_check", "segmentation_wait",
-    "segmentation", "propagate",    "beside_wait",  "decision",
-    "track",        "track_thread", "map_insert",   "map_refine",
-    "map_correct",  "loop",         "loop_adjust",  "dense"};
+constexpr std::array<std::string_view, 18> kPipelineOrder = {
+    "source",     "prepare",     "moving_check", "map_check", "segmentation_wait", "segmentation",
+    "propagate",  "beside_wait", "decision",     "track",     "track_thread",      "outputs",
+    "map_insert", "map_refine",  "map_correct",  "loop",      "loop_adjust",       "dense"};
 
 auto place_in_pipeline(const StageStatistics::Row& row) {
   return std::find(kPipelineOrder.begin(), kPipelineOrder.end(), row.stage);

@@ -12,11 +12,12 @@ constexpr std::size_t kReportsWaiting = 8;  // with the images of their frames, 
 
 OutputStage::OutputStage(std::vector<Stage<Output>> outputs, WhenFull when_full, Mode mode,
                          StopSignal& stop, TimeLog& times)
-    : drops_(when_full == WhenFull::kDrop), stop_(stop), queue_(kReportsWaiting) {
-  for (Stage<Output>& output : outputs) {
-    std::string label = "output " + output.type;
-    outputs_.push_back({{std::move(output), "output", times}, std::move(label)});
-  }
+    : drops_(when_full == WhenFull::kDrop),
+      label_(drops_ ? "output " + outputs.front().type : "outputs"),
+      stop_(stop),
+      times_(times),
+      queue_(kReportsWaiting) {
+  for (Stage<Output>& output : outputs) outputs_.emplace_back(std::move(output), "output", times);
   if (mode == Mode::kThreaded && !outputs_.empty()) thread_ = std::jthread([this] { work(); });
 }
 
@@ -35,9 +36,9 @@ void OutputStage::end() {
 }
 
 void OutputStage::finish(const std::function<RunSummary()>& summary) {
-  for (Named& named : outputs_) {
+  for (StageCaller<Output>& output : outputs_) {
     try {
-      named.output.call_unmeasured({}, &Output::finish, summary());
+      output.call_unmeasured({}, &Output::finish, summary());
     } catch (...) {
       stop_.fail(std::current_exception());
     }
@@ -45,8 +46,10 @@ void OutputStage::finish(const std::function<RunSummary()>& summary) {
 }
 
 void OutputStage::write(const FrameReport& report) {
-  for (Named& named : outputs_)
-    named.output.call(named.label.c_str(), report.frame->index, &Output::frame, report);
+  const std::uint32_t index = report.frame->index;
+  const ScopedTime time(times_, label_.c_str(), index);
+  for (StageCaller<Output>& output : outputs_)
+    output.call_unmeasured(index, &Output::frame, report);
 }
 
 void OutputStage::work() {

@@ -50,7 +50,7 @@ TEST_P(OutputStageInBothModes, GetsEveryFrameInOrderAndIsMeasured) {
   EXPECT_EQ(stage->dropped(), 0);
   const std::vector<StageTime> times = f.times.take();
   ASSERT_EQ(times.size(), kMany);
-  EXPECT_EQ(times.back().stage, "output viewer");
+  EXPECT_EQ(times.back().stage, "outputs");
   EXPECT_EQ(times.back().frame, kMany - 1);
 }
 

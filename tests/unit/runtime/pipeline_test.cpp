@@ -105,7 +105,7 @@ TEST_P(PipelineInBothModes, AllTimesAreReportedOnceAndNameTheirFrame) {
       continue;
     EXPECT_TRUE(seen.emplace(time.stage, time.frame).second) << time.stage << ' ' << time.frame;
   }
-  std::size_t expected = 9 * 4 + 3 + 2 * 2;              // per frame, check, per key frame
+  std::size_t expected = 8 * 4 + 3 + 2 * 2;              // per frame, check, per key frame
   if (GetParam() == Mode::kThreaded) expected += 2 * 4;  // two kinds of waiting
   EXPECT_EQ(seen.size(), expected);
 }

@@ -34,17 +34,14 @@ class OutputStage {
   int dropped() const { return dropped_; }
 
  private:
-  struct Named {
-    StageCaller<Output> output;
-    std::string label;  // of its times
-  };
-
   void write(const FrameReport& report);
   void work();
 
   const bool drops_;
+  const std::string label_;  // of its times
   StopSignal& stop_;
-  std::vector<Named> outputs_;
+  TimeLog& times_;
+  std::vector<StageCaller<Output>> outputs_;
   int dropped_ = 0;  // of thread 1
   BoundedQueue<FrameReportPtr> queue_;
   std::jthread thread_;  // last: it uses all the others
