@@ -18,7 +18,13 @@ std::string environment(const char* name) {
   return value ? value : "";
 }
 
-/// The folder of the library or program that code has become part of.
+bool is_file(const fs::path& file) {
+  std::error_code ignored;
+  return fs::is_regular_file(file, ignored);
+}
+
+}  // namespace
+
 fs::path folder_of(const void* code) {
   Dl_info info{};
   if (dladdr(code, &info) == 0) return {};
@@ -26,13 +32,6 @@ fs::path folder_of(const void* code) {
   const fs::path file = fs::canonical(info.dli_fname, failed);
   return failed ? fs::path() : file.parent_path();
 }
-
-bool is_file(const fs::path& file) {
-  std::error_code ignored;
-  return fs::is_regular_file(file, ignored);
-}
-
-}  // namespace
 
 std::vector<fs::path> model_folders(const void* own_code) {
   std::vector<fs::path> folders;

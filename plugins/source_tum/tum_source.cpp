@@ -1,7 +1,6 @@
 #include "source_tum/tum_source.hpp"
 
 #include <algorithm>
-#include <opencv2/imgproc.hpp>
 
 namespace stillpoint {
 namespace {
@@ -74,7 +73,6 @@ TumSource::TumSource(Options options, const StageContext& context)
     : recording_(selected_recording(options)),
       model_(required_camera(context)),
       rectifier_(model_),
-      camera_(std::make_shared<const Camera>(rectifier_.camera())),
       log_(context.log) {
   report_.warnings = recording_.warnings;
   for (const std::string& warning : report_.warnings) log_(LogLevel::kWarning, warning);
@@ -100,12 +98,7 @@ Frame TumSource::load(const ImagePair& pair) {
   check_size(recorded_depth, model_, pair.depth.file);
   if (cv::countNonZero(recorded_depth) == 0)
     throw Error(Fault::kData, "the depth image has no measurement", pair.depth.file.string());
-
-  Frame frame{.time = pair.color.time, .camera = camera_};
-  frame.bgr = rectifier_.color(recorded_color);
-  cv::cvtColor(frame.bgr, frame.gray, cv::COLOR_BGR2GRAY);
-  frame.depth = rectifier_.depth(recorded_depth);
-  return frame;
+  return rectifier_.frame(pair.color.time, recorded_color, recorded_depth);
 }
 
 void TumSource::skip(const Error& reason) {

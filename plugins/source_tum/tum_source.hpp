@@ -7,7 +7,6 @@
 
 #include "source_tum/image_reader.hpp"
 #include "source_tum/recording.hpp"
-#include "source_tum/rectifier.hpp"
 #include "stillpoint/sdk.hpp"
 
 namespace stillpoint {
@@ -41,7 +40,6 @@ class TumSource final : public Source {
   Recording recording_;
   CameraModel model_;
   Rectifier rectifier_;
-  std::shared_ptr<const Camera> camera_;
   std::function<void(LogLevel, std::string_view)> log_;
   ImageReader reader_;
   std::size_t position_ = 0;  // in recording_.pairs

@@ -12,7 +12,7 @@
 #include "propagator_flow_depth/flow_depth_propagator.hpp"
 #include "segmenter_label_images/label_image_segmenter.hpp"
 #include "source_tum/tum_source.hpp"
-#include "stillpoint/runtime/pipeline_config.hpp"
+#include "stillpoint/engine/pipeline_config.hpp"
 #include "stillpoint/runtime/segmentation_stage.hpp"
 
 namespace stillpoint {

@@ -15,7 +15,7 @@
 
 #include "stillpoint/contracts/segmenter.hpp"
 #include "stillpoint/contracts/source.hpp"
-#include "stillpoint/runtime/pipeline_config.hpp"
+#include "stillpoint/engine/pipeline_config.hpp"
 
 namespace stillpoint {
 namespace {

@@ -12,9 +12,9 @@
 #include <vector>
 
 #include "evaluation/trajectory.hpp"
-#include "source_tum/rectifier.hpp"
 #include "stillpoint/contracts/frame.hpp"
-#include "stillpoint/runtime/pipeline_config.hpp"
+#include "stillpoint/engine/pipeline_config.hpp"
+#include "stillpoint/rectifier.hpp"
 
 namespace stillpoint {
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "stillpoint/runtime/registry.hpp"
+#include "stillpoint/engine/registry.hpp"
 #include "stillpoint/sdk.hpp"
 
 namespace stillpoint::test {

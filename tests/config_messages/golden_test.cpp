@@ -8,7 +8,7 @@
 #include <sstream>
 
 #include "fake_stages.hpp"
-#include "stillpoint/runtime/pipeline_config.hpp"
+#include "stillpoint/engine/pipeline_config.hpp"
 
 namespace stillpoint::test {
 namespace {

@@ -5,7 +5,7 @@
 #include <fstream>
 
 #include "fake_stages.hpp"
-#include "stillpoint/runtime/pipeline_config.hpp"
+#include "stillpoint/engine/pipeline_config.hpp"
 
 namespace stillpoint::test {
 namespace {

@@ -1,5 +1,5 @@
-# Installs into an empty prefix, builds a plugin of one file against it, and calls the installed
-# program from a folder that has nothing to do with the project.
+# Installs into an empty prefix, builds a plugin of one file and a program with the engine against it,
+# and calls them and the installed program from a folder that has nothing to do with the project.
 set(work ${BUILD_DIR}/install_test)
 set(prefix ${work}/prefix)
 set(elsewhere ${work}/elsewhere)
@@ -46,4 +46,14 @@ expect_in_output("depth_change")
 run(${CMAKE_COMMAND} --install ${work}/plugin)
 run(${program} plugins list)
 expect_in_output("depth_change")
+
+run(${CMAKE_COMMAND} -S ${SOURCE_DIR}/sdk/examples/push_frames -B ${work}/push_frames
+  -G ${GENERATOR} -D CMAKE_CXX_COMPILER=${CXX_COMPILER} -D CMAKE_BUILD_TYPE=Release
+  -D CMAKE_PREFIX_PATH=${prefix})
+run(${CMAKE_COMMAND} --build ${work}/push_frames)
+run(${work}/push_frames/push_frames)
+# 59 steps of 5 mm along the wall.
+if(NOT output MATCHES "after 1.97 s at 0.29[0-9] -?0.00[0-4] -?0.00[0-4] m")
+  message(FATAL_ERROR "the camera went 0.295 m to the right, but:\n${output}")
+endif()
 file(REMOVE_RECURSE ${work})

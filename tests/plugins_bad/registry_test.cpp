@@ -5,8 +5,8 @@
 #include <fstream>
 #include <memory>
 
+#include "stillpoint/engine/registry.hpp"
 #include "stillpoint/error.hpp"
-#include "stillpoint/runtime/registry.hpp"
 #include "stillpoint/runtime/yaml_option_reader.hpp"
 #include "stillpoint/sdk.hpp"
 

@@ -5,7 +5,7 @@
 #include <filesystem>
 
 #include "people/maker.hpp"
-#include "stillpoint/runtime/pipeline_config.hpp"
+#include "stillpoint/engine/pipeline_config.hpp"
 
 namespace stillpoint::testing {
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "people/plans.hpp"
-#include "stillpoint/runtime/pipeline_config.hpp"
+#include "stillpoint/engine/pipeline_config.hpp"
 #include "stillpoint/runtime/yaml_loader.hpp"
 #include "stillpoint/runtime/yaml_option_reader.hpp"
 

@@ -5,7 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <initializer_list>
 
-#include "stillpoint/runtime/pipeline_config.hpp"
+#include "stillpoint/engine/pipeline_config.hpp"
 
 namespace stillpoint {
 

@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <utility>
 
-#include "stillpoint/runtime/map_file.hpp"
+#include "stillpoint/engine/map_file.hpp"
 #include "stillpoint/sdk.hpp"
 
 namespace stillpoint {

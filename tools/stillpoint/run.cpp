@@ -13,8 +13,8 @@
 #include "progress.hpp"
 #include "run_folder.hpp"
 #include "run_table.hpp"
-#include "stillpoint/runtime/make_stages.hpp"
-#include "stillpoint/runtime/pipeline.hpp"
+#include "stillpoint/engine/engine.hpp"
+#include "stillpoint/engine/make_stages.hpp"
 
 namespace stillpoint {
 namespace {
@@ -49,9 +49,9 @@ void run_and_print(Stages stages, const PipelineConfig& config, const RunFolder&
     print_files(folder, ground_truth);
     std::cout << std::flush;
   };
-  Pipeline pipeline(std::move(stages), config.runtime, config.segmentation);
+  Engine engine(std::move(stages), config.runtime, config.segmentation);
   try {
-    pipeline.run(std::move(stop));
+    engine.run(std::move(stop));
   } catch (const Error& error) {
     print();
     folder.log(LogLevel::kInfo, std::string("failed: ") + error.what());

@@ -1,7 +1,7 @@
 #include "scene_file.hpp"
 
 #include "simulation/simulator.hpp"
-#include "stillpoint/runtime/config_lookup.hpp"
+#include "stillpoint/engine/config_lookup.hpp"
 #include "stillpoint/runtime/yaml_loader.hpp"
 #include "stillpoint/runtime/yaml_option_reader.hpp"
 

@@ -1,9 +1,9 @@
 // What can be wrong with a study besides its form: names, folders, pipelines, scenes.
 #pragma once
 
+#include "stillpoint/engine/registry.hpp"
 #include "stillpoint/runtime/config_node.hpp"
 #include "stillpoint/runtime/fault_list.hpp"
-#include "stillpoint/runtime/registry.hpp"
 #include "study/study.hpp"
 
 namespace stillpoint {

@@ -1,7 +1,7 @@
 #include "study_file.hpp"
 
 #include "scene_file.hpp"
-#include "stillpoint/runtime/config_lookup.hpp"
+#include "stillpoint/engine/config_lookup.hpp"
 #include "stillpoint/runtime/yaml_loader.hpp"
 #include "stillpoint/runtime/yaml_option_reader.hpp"
 #include "study_check.hpp"

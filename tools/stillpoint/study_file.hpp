@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <string>
 
-#include "stillpoint/runtime/pipeline_config.hpp"
+#include "stillpoint/engine/pipeline_config.hpp"
 #include "study/study.hpp"
 
 namespace stillpoint {

@@ -23,5 +23,7 @@
 #include "stillpoint/plugin.hpp"
 #include "stillpoint/point_cloud_file.hpp"
 #include "stillpoint/pose_math.hpp"
+#include "stillpoint/rectifier.hpp"
 #include "stillpoint/rigid_motion.hpp"
 #include "stillpoint/size_text.hpp"
+#include "stillpoint/trajectory.hpp"

@@ -1,11 +1,11 @@
-#include "stillpoint/runtime/config_lookup.hpp"
+#include "stillpoint/engine/config_lookup.hpp"
 
 #include <set>
 #include <vector>
 
 #include "stillpoint/did_you_mean.hpp"
+#include "stillpoint/engine/install_layout.hpp"
 #include "stillpoint/error.hpp"
-#include "stillpoint/runtime/install_layout.hpp"
 
 namespace stillpoint {
 namespace {

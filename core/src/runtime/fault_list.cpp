@@ -4,7 +4,7 @@
 #include <tuple>
 
 #include "stillpoint/did_you_mean.hpp"
-#include "stillpoint/runtime/pipeline_config.hpp"
+#include "stillpoint/engine/pipeline_config.hpp"
 
 namespace stillpoint {
 

@@ -1,17 +1,26 @@
-#include "stillpoint/runtime/install_layout.hpp"
+#include "stillpoint/engine/install_layout.hpp"
 
 #include <algorithm>
 #include <cstdlib>
 #include <sstream>
+
+#include "stillpoint/model_lookup.hpp"
 
 namespace stillpoint {
 namespace {
 
 namespace fs = std::filesystem;
 
+constexpr const char* kConfigs = "share/stillpoint/configs";
+
+// The library with this code lies in lib, or in a folder of lib per architecture.
 fs::path installation() {
+  static const char here = 0;
+  const fs::path library_folder = folder_of(&here);
   std::error_code error;
-  return fs::read_symlink("/proc/self/exe", error).parent_path().parent_path();
+  for (fs::path folder = library_folder; folder.has_relative_path(); folder = folder.parent_path())
+    if (fs::is_directory(folder / kConfigs, error)) return folder;
+  return library_folder.parent_path();
 }
 
 std::vector<fs::path> folders_of_variable(const char* name) {
@@ -37,7 +46,7 @@ std::vector<fs::path> default_plugin_folders() {
 
 std::vector<fs::path> config_folders() {
   std::vector<fs::path> folders = folders_of_variable("STILLPOINT_CONFIG_PATH");
-  folders.push_back(installation() / "share/stillpoint/configs");
+  folders.push_back(installation() / kConfigs);
   return folders;
 }
 

@@ -1,4 +1,4 @@
-#include "stillpoint/runtime/make_stages.hpp"
+#include "stillpoint/engine/make_stages.hpp"
 
 #include <optional>
 #include <string>
@@ -64,7 +64,8 @@ Stages make_stages(const PipelineConfig& config, const std::filesystem::path& ou
                 .local_mapper = maker.make<LocalMapper>(config.local_mapper),
                 .loop_closer = maker.make<LoopCloser>(config.loop_closer),
                 .map_backend = maker.make<MapBackend>(config.map_backend),
-                .map_directory = output_directory / "map"};
+                .map_directory = output_directory.empty() ? "" : output_directory / "map"};
+  if (output_directory.empty()) return stages;
   for (const OutputSpec& output : config.outputs)
     stages.outputs.push_back({maker.make<Output>(output.stage), output.options.when_full});
   return stages;

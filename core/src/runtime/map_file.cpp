@@ -1,4 +1,4 @@
-#include "stillpoint/runtime/map_file.hpp"
+#include "stillpoint/engine/map_file.hpp"
 
 #include <fcntl.h>
 #include <unistd.h>

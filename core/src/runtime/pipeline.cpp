@@ -1,6 +1,7 @@
 #include "stillpoint/runtime/pipeline.hpp"
 
 #include <numeric>
+#include <opencv2/imgproc.hpp>
 #include <string>
 #include <utility>
 
@@ -39,6 +40,14 @@ TrackResult track(Tracker& tracker, PreparedFramePtr prepared, const StaticWeigh
   return result;
 }
 
+void check_pushed(const Frame& frame, const Frame* previous) {
+  try {
+    check_frame(frame, frame.index, previous);
+  } catch (const Error& error) {
+    throw Error(Fault::kData, error.what(), "frame " + std::to_string(frame.index));
+  }
+}
+
 NewKeyFrame new_keyframe(const KeyFrame& keyframe, const FramePtr& frame,
                          const SegmentationPtr& labels,
                          const std::shared_ptr<const StaticWeights>& weights) {
@@ -48,14 +57,16 @@ NewKeyFrame new_keyframe(const KeyFrame& keyframe, const FramePtr& frame,
 }  // namespace
 
 Pipeline::Pipeline(Stages stages, const RuntimeOptions& runtime,
-                   const SegmentationOptions& segmentation, std::unique_ptr<PaceClock> clock)
+                   const SegmentationOptions& segmentation, std::shared_ptr<PaceClock> clock)
     : options_(runtime),
       map_directory_(std::move(stages.map_directory)),
       localise_only_(stages.localise_only),
-      clock_(std::move(clock)),
+      clock_(clock ? std::move(clock) : std::make_shared<SteadyClock>()),
+      wall_start_(SteadyClock().now()),
+      cpu_start_(process_cpu_seconds()),
+      source_(std::move(stages.source)),
       decision_(std::move(stages.decision), "decision", times_),
       tracker_(std::move(stages.tracker), "tracking", times_),
-      feed_(std::move(stages.source), runtime, *clock_, stop_, times_),
       segmentation_(std::move(stages.segmenter), std::move(stages.propagator), segmentation,
                     runtime.mode, stop_, times_),
       moving_check_(std::move(stages.moving_checker), times_),
@@ -66,6 +77,15 @@ Pipeline::Pipeline(Stages stages, const RuntimeOptions& runtime,
                std::move(stages.map_backend), std::move(stages.known_map), runtime.mode, stop_,
                times_) {
   add_outputs(std::move(stages.outputs));
+}
+
+Pipeline::~Pipeline() {
+  if (finished_) return;
+  stop_.request();
+  try {
+    finish();
+  } catch (const std::exception&) {  // of interest to those who call finish()
+  }
 }
 
 // Those that tracking waits for share a thread: one that holds up tracking holds up all.
@@ -80,21 +100,43 @@ void Pipeline::add_outputs(std::vector<OutputSetup> setups) {
                             stop_, times_);
 }
 
-void Pipeline::run(std::stop_token stop) {
-  const std::stop_callback forward(std::move(stop), [this] { stop_.request(); });
-  const double wall_start = SteadyClock().now();
-  const double cpu_start = process_cpu_seconds();
-  keep_failure_of([this] {
-    while (const FramePtr frame = feed_.next()) process(frame);
-  });
-  end_threads();
-  wall_seconds_ = SteadyClock().now() - wall_start;
-  cpu_seconds_ = process_cpu_seconds() - cpu_start;
-  finish();
-  if (const auto failure = stop_.failure()) std::rethrow_exception(failure);
+FrameReportPtr Pipeline::push(Frame frame) {
+  if (finished_ || feed_)
+    throw Error(Fault::kUsage, "no frame can be pushed during run() or after finish()");
+  throw_failure();
+  frame.index = pushed_ ? pushed_->index + 1 : 0;
+  if (frame.gray.empty() && frame.bgr.type() == CV_8UC3)
+    cv::cvtColor(frame.bgr, frame.gray, cv::COLOR_BGR2GRAY);
+  check_pushed(frame, pushed_.get());
+  pushed_ = std::make_shared<const Frame>(std::move(frame));
+  FrameReportPtr report;
+  keep_failure_of([&] { report = process(pushed_); });
+  throw_failure();
+  return report;
 }
 
-void Pipeline::process(const FramePtr& frame) {
+void Pipeline::run(std::stop_token stop) {
+  if (finished_ || feed_ || pushed_)
+    throw Error(Fault::kUsage, "run() comes once, instead of frames that are pushed");
+  const std::stop_callback forward(std::move(stop), [this] { stop_.request(); });
+  feed_.emplace(std::move(source_), options_, *clock_, stop_, times_);
+  keep_failure_of([this] {
+    while (const FramePtr frame = feed_->next()) process(frame);
+  });
+  finish();
+}
+
+void Pipeline::finish() {
+  if (finished_) throw Error(Fault::kUsage, "the run is finished already");
+  finished_ = true;
+  end_threads();
+  wall_seconds_ = SteadyClock().now() - wall_start_;
+  cpu_seconds_ = process_cpu_seconds() - cpu_start_;
+  finish_outputs();
+  throw_failure();
+}
+
+FrameReportPtr Pipeline::process(const FramePtr& frame) {
   const std::uint32_t index = frame->index;
   const ScopedTime time(times_, "track_thread", index);
   segmentation_.offer(frame);  // thread 2
@@ -103,7 +145,7 @@ void Pipeline::process(const FramePtr& frame) {
       [=, this, map = mapping_.snapshot()] { return map_check_.at(*frame, *moving, *map); });
   const auto labels = beside_.start([=, this] { return segmentation_.at(frame); });
   auto prepared = tracker_.call("prepare", index, prepare, frame);  // meanwhile
-  if (!beside_.wait(index) || !*labels) return;                     // stopped
+  if (!beside_.wait(index) || !*labels) return nullptr;             // stopped
   const auto weights = std::make_shared<const StaticWeights>(
       decision_.call("decision", index, decide, *frame, **labels, *moving, *evidence));
   TrackResult result =
@@ -113,11 +155,13 @@ void Pipeline::process(const FramePtr& frame) {
                                .localise_only = localise_only_});
   if (result.keyframe) mapping_.push(new_keyframe(*result.keyframe, frame, *labels, weights));
   map_check_.tracked(frame, weights, result, *mapping_.snapshot());
-  report(std::make_shared<const FrameReport>(
-      FrameReport{frame, *labels, *moving, *evidence, weights, std::move(result), times_.take()}));
+  const auto report = std::make_shared<const FrameReport>(
+      FrameReport{frame, *labels, *moving, *evidence, weights, std::move(result), times_.take()});
+  record(report);
+  return report;
 }
 
-void Pipeline::report(FrameReportPtr report) {
+void Pipeline::record(const FrameReportPtr& report) {
   const TrackResult& result = report->result;
   poses_.push_back({.frame = report->frame->index,
                     .time = report->frame->time,
@@ -134,13 +178,13 @@ void Pipeline::end_threads() {
   beside_.end();
   segmentation_.end();
   mapping_.end();
-  feed_.end();
+  if (feed_) feed_->end();
   for (OutputStage& output : outputs_) output.end();
 }
 
-void Pipeline::finish() {
+void Pipeline::finish_outputs() {
   const MapStore::Snapshot map = mapping_.snapshot();
-  const SourceReport source = feed_.report();
+  const SourceReport source = feed_ ? feed_->report() : SourceReport();
   const std::vector<StageTime> times = times_.take();
   if (!map_directory_.empty()) keep_failure_of([this] { mapping_.save(map_directory_); });
   for (OutputStage& output : outputs_) output.finish([&] { return summary(*map, source, times); });
@@ -152,7 +196,7 @@ RunSummary Pipeline::summary(const SparseMap& map, const SourceReport& source,
           .poses = poses_,
           .source = source,
           .times = times,
-          .dropped_frames = static_cast<int>(feed_.dropped()),
+          .dropped_frames = feed_ ? static_cast<int>(feed_->dropped()) : 0,
           .loops_closed = mapping_.loops(),
           .dropped_reports = dropped_reports(),
           .wall_seconds = wall_seconds_,
@@ -178,6 +222,10 @@ void Pipeline::keep_failure_of(const std::function<void()>& step) {
   } catch (...) {
     stop_.fail(std::current_exception());
   }
+}
+
+void Pipeline::throw_failure() const {
+  if (const auto failure = stop_.failure()) std::rethrow_exception(failure);
 }
 
 }  // namespace stillpoint

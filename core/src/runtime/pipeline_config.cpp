@@ -1,4 +1,4 @@
-#include "stillpoint/runtime/pipeline_config.hpp"
+#include "stillpoint/engine/pipeline_config.hpp"
 
 #include <algorithm>
 #include <functional>
@@ -6,7 +6,7 @@
 #include "stillpoint/contracts/segmenter.hpp"
 #include "stillpoint/contracts/source.hpp"
 #include "stillpoint/did_you_mean.hpp"
-#include "stillpoint/runtime/config_lookup.hpp"
+#include "stillpoint/engine/config_lookup.hpp"
 #include "stillpoint/runtime/pipeline_tree.hpp"
 #include "stillpoint/runtime/yaml_option_reader.hpp"
 
@@ -46,13 +46,13 @@ class PipelineReader {
   PipelineReader(const ConfigNode& tree, Registry& registry, FaultList& faults)
       : tree_(tree), registry_(registry), faults_(faults), loaded_(faults.empty()) {}
 
-  PipelineConfig read(const std::vector<std::filesystem::path>& plugin_folders) {
+  PipelineConfig read(const PipelineRequest& request) {
     PipelineConfig config;
     read_version();
-    search_plugins(plugin_folders);
+    search_plugins(request.plugin_folders);
     if (section("camera")) read_options(config.camera.emplace(), "camera");
     config.recording = recording_of(tree_);
-    read_source(config);
+    if (!request.pushed) read_source(config);
     read_options(config.segmentation, "segmentation");
     for (const StageSection& stage : kStages)
       config.*stage.stage = read_stage(section(stage.name), stage.name, stage.name, config);
@@ -257,7 +257,7 @@ PipelineConfig load_pipeline(const PipelineRequest& request, Registry& registry)
   const std::filesystem::path file = find_config(request.pipeline, "pipelines");
   FaultList faults;
   const ConfigNode tree = load_pipeline_tree(file, request, faults);
-  PipelineConfig config = PipelineReader(tree, registry, faults).read(request.plugin_folders);
+  PipelineConfig config = PipelineReader(tree, registry, faults).read(request);
   faults.throw_if_any();
   config.file = file;
   return config;

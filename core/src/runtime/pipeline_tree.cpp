@@ -1,6 +1,6 @@
 #include "stillpoint/runtime/pipeline_tree.hpp"
 
-#include "stillpoint/runtime/config_lookup.hpp"
+#include "stillpoint/engine/config_lookup.hpp"
 #include "stillpoint/runtime/section_file.hpp"
 #include "stillpoint/runtime/yaml_loader.hpp"
 

@@ -1,4 +1,4 @@
-#include "stillpoint/runtime/registry.hpp"
+#include "stillpoint/engine/registry.hpp"
 
 #include <algorithm>
 #include <span>

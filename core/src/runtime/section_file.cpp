@@ -3,8 +3,8 @@
 #include <utility>
 
 #include "stillpoint/did_you_mean.hpp"
-#include "stillpoint/runtime/config_lookup.hpp"
-#include "stillpoint/runtime/pipeline_config.hpp"
+#include "stillpoint/engine/config_lookup.hpp"
+#include "stillpoint/engine/pipeline_config.hpp"
 #include "stillpoint/runtime/yaml_loader.hpp"
 #include "stillpoint/runtime/yaml_option_reader.hpp"
 

@@ -101,7 +101,7 @@ void check_frame(const Frame& frame, std::uint32_t index, const Frame* previous)
   require(!frame.gray.empty(), "the frame has no image", "leave out images that cannot be read");
   require(frame.bgr.size() == frame.gray.size() && frame.depth.size() == frame.gray.size(),
           "the colour, grey and depth images of a frame differ in size",
-          "the source must give all three, of the camera's size");
+          "all three are needed, of the camera's size");
   check_type(frame.bgr, CV_8UC3, "the colour image");
   check_type(frame.gray, CV_8UC1, "the grey image");
   check_type(frame.depth, CV_32FC1, "the depth image");

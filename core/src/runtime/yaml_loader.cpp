@@ -13,8 +13,8 @@
 #include <vector>
 
 #include "stillpoint/did_you_mean.hpp"
+#include "stillpoint/engine/config_lookup.hpp"
 #include "stillpoint/error.hpp"
-#include "stillpoint/runtime/config_lookup.hpp"
 
 namespace stillpoint {
 namespace {

@@ -8,8 +8,8 @@
 #include <string>
 #include <utility>
 
-#include "stillpoint/runtime/make_stages.hpp"
-#include "stillpoint/runtime/pipeline.hpp"
+#include "stillpoint/engine/engine.hpp"
+#include "stillpoint/engine/make_stages.hpp"
 #include "support/simulated_recording.hpp"
 
 namespace stillpoint::testing {
@@ -72,7 +72,7 @@ TEST_P(LoopClosing, ClosesTheLoopAndLeavesASoundMap) {
   Stages stages = make_stages(config, folder.path(), [](LogLevel, std::string_view) {});
   const auto closer = std::make_shared<CheckedLoopCloser>(stages.loop_closer.object);
   stages.loop_closer.object = closer;
-  Pipeline(std::move(stages), config.runtime, config.segmentation).run();
+  Engine(std::move(stages), config.runtime, config.segmentation).run();
   EXPECT_GE(closer->loops(), 1);
   EXPECT_EQ(closer->adjustments(), closer->loops());
   EXPECT_LT(absolute_error(recording, folder.path() / "trajectory.txt"), 0.02);

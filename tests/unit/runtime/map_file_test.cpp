@@ -1,4 +1,4 @@
-#include "stillpoint/runtime/map_file.hpp"
+#include "stillpoint/engine/map_file.hpp"
 
 #include <gmock/gmock.h>
 #include <sqlite3.h>

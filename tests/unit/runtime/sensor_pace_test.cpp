@@ -4,12 +4,12 @@
 #include <condition_variable>
 #include <mutex>
 
-#include "pipeline_fixture.hpp"
+#include "engine_fixture.hpp"
 
 namespace stillpoint {
 namespace {
 
-using testing::PipelineFixture;
+using testing::EngineFixture;
 using testing::runtime;
 using Pace = RuntimeOptions::Pace;
 using Strings = std::vector<std::string>;
@@ -50,7 +50,7 @@ class ManualClock final : public PaceClock {
 };
 
 TEST_P(SensorPace, TwoFramesWaitAndTheOldestMakesRoom) {
-  PipelineFixture f(8);  // 0.1 s apart
+  EngineFixture f(8);  // 0.1 s apart
   auto clock = std::make_unique<ManualClock>();
   ManualClock* time = clock.get();
   f.journal.hook = [&](const std::string& entry) {
@@ -58,19 +58,19 @@ TEST_P(SensorPace, TwoFramesWaitAndTheOldestMakesRoom) {
     if (entry == "output 4") time->advance(0.65);  // 5 and 6 wait
     if (entry == "output 6") time->set(0.75);      // frame 7, the last
   };
-  Pipeline(f.stages(), runtime(GetParam(), Pace::kSensor), {}, std::move(clock)).run();
+  Engine(f.stages(), runtime(GetParam(), Pace::kSensor), {}, std::move(clock)).run();
   EXPECT_EQ(f.journal.entries("track"),
             (Strings{"track 0", "track 3", "track 4", "track 5", "track 6", "track 7"}));
   EXPECT_EQ(f.output->dropped, 2);
 }
 
 TEST_P(SensorPace, AStopEndsTheWait) {
-  PipelineFixture f(8);
+  EngineFixture f(8);
   std::stop_source stop;
   f.journal.hook = [&](const std::string& entry) {
     if (entry == "output 0") stop.request_stop();
   };
-  Pipeline(f.stages(), runtime(GetParam(), Pace::kSensor), {}, std::make_unique<ManualClock>())
+  Engine(f.stages(), runtime(GetParam(), Pace::kSensor), {}, std::make_unique<ManualClock>())
       .run(stop.get_token());
   EXPECT_EQ(f.output->finished, 1);
 }

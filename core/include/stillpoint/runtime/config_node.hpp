@@ -6,10 +6,12 @@
 #include <string_view>
 #include <vector>
 
+#include "stillpoint/export.hpp"
+
 namespace stillpoint {
 
 /// Where something was written.
-struct Location {
+struct STILLPOINT_EXPORT Location {
   std::string file;  ///< or the words of the command line, such as "--set a=1"
   int line = 0;      ///< from 1; 0 on the command line
   int column = 0;    ///< from 1
@@ -17,7 +19,7 @@ struct Location {
   std::string text() const;
 };
 
-struct ConfigNode {
+struct STILLPOINT_EXPORT ConfigNode {
   enum class Kind { kNull, kScalar, kList, kMap };
 
   Kind kind = Kind::kNull;
@@ -44,9 +46,9 @@ ConfigNode merge(ConfigNode base, const ConfigNode& overlay);
 
 /// The same for whole pipeline files: a stage section that names another `type`, or comes from a
 /// file of its own, replaces the one below, because options of one mean nothing to the other.
-ConfigNode merge_sections(ConfigNode base, const ConfigNode& overlay);
+STILLPOINT_EXPORT ConfigNode merge_sections(ConfigNode base, const ConfigNode& overlay);
 
 /// A key without a value counts as left out.
-void remove_nulls(ConfigNode& node);
+STILLPOINT_EXPORT void remove_nulls(ConfigNode& node);
 
 }  // namespace stillpoint

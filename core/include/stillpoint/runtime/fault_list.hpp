@@ -4,11 +4,12 @@
 #include <string>
 #include <vector>
 
+#include "stillpoint/export.hpp"
 #include "stillpoint/runtime/config_node.hpp"
 
 namespace stillpoint {
 
-class FaultList {
+class STILLPOINT_EXPORT FaultList {
  public:
   void add(const Location& where, const std::string& problem);
   void add(const FaultList& others);

@@ -3,10 +3,12 @@
 
 #include <filesystem>
 
+#include "stillpoint/export.hpp"
+
 namespace stillpoint {
 
 /// Held until the end of its scope, or of the process however it ends. Leaves no file behind.
-class FolderLock {
+class STILLPOINT_EXPORT FolderLock {
  public:
   /// Throws Error(kUsage) when another process holds it or the folder cannot be read.
   explicit FolderLock(const std::filesystem::path& folder);

@@ -5,8 +5,8 @@
 #include <exception>
 #include <thread>
 
+#include "stillpoint/engine/pace_clock.hpp"
 #include "stillpoint/runtime/bounded_queue.hpp"
-#include "stillpoint/runtime/pace_clock.hpp"
 #include "stillpoint/runtime/stage.hpp"
 #include "stillpoint/runtime/worker.hpp"
 

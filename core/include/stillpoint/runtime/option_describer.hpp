@@ -17,7 +17,7 @@ struct OptionRow {
   std::string help;
 };
 
-class OptionDescriber final : public OptionVisitor {
+class STILLPOINT_EXPORT OptionDescriber final : public OptionVisitor {
  public:
   const std::vector<OptionRow>& rows() const { return rows_; }
   /// Mistakes of the plugin's author: names used twice, the name 'type', which is the pipeline

@@ -33,6 +33,6 @@ std::string yaml_text(const std::vector<std::string>& values);
 std::string range_text(const OptionInfo& info);
 
 /// The group as a YAML document, one line per option with its comment.
-std::string print_yaml(const OptionRecord& group);
+STILLPOINT_EXPORT std::string print_yaml(const OptionRecord& group);
 
 }  // namespace stillpoint

@@ -5,9 +5,11 @@
 #include <exception>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <stop_token>
 #include <vector>
 
+#include "stillpoint/engine/pace_clock.hpp"
 #include "stillpoint/runtime/beside_tracking.hpp"
 #include "stillpoint/runtime/frame_feed.hpp"
 #include "stillpoint/runtime/map_check.hpp"
@@ -18,45 +20,55 @@
 
 namespace stillpoint {
 
-/// One run over a recording. The caller of run() is thread 1, tracking; docs/threads.md tells about
-/// the others.
+/// What is behind an Engine, which says what its calls do. The caller is thread 1, tracking;
+/// docs/threads.md tells about the others.
 class Pipeline {
  public:
+  /// `clock` null: the steady clock.
   Pipeline(Stages stages, const RuntimeOptions& runtime, const SegmentationOptions& segmentation,
-           std::unique_ptr<PaceClock> clock = std::make_unique<SteadyClock>());
-  ~Pipeline() { stop_.request(); }
+           std::shared_ptr<PaceClock> clock = nullptr);
+  ~Pipeline();
 
-  /// Returns at the end of the recording, or early after a stop. Throws StageError when a stage
-  /// failed. In each case, the outputs have been finished before. Once per object.
-  void run(std::stop_token stop = {});
+  FrameReportPtr push(Frame frame);
+  void run(std::stop_token stop);
+  void finish();
+
+  MapStore::Snapshot map() const { return mapping_.snapshot(); }
+  const std::vector<TrackedPose>& poses() const { return poses_; }
 
  private:
   void add_outputs(std::vector<OutputSetup> setups);
-  void process(const FramePtr& frame);
-  void report(FrameReportPtr report);
+  FrameReportPtr process(const FramePtr& frame);
+  void record(const FrameReportPtr& report);
   void end_threads();
-  void finish();
+  void finish_outputs();
   RunSummary summary(const SparseMap& map, const SourceReport& source,
                      const std::vector<StageTime>& times) const;
   int dropped_reports() const;
   void keep_failure_of(const std::function<void()>& step);
+  void throw_failure() const;
 
   const RuntimeOptions options_;
   const std::filesystem::path map_directory_;
   const bool localise_only_;
-  std::unique_ptr<PaceClock> clock_;
+  const std::shared_ptr<PaceClock> clock_;
+  const double wall_start_;
+  const double cpu_start_;
   StopSignal stop_;
   TimeLog times_;
 
+  Stage<Source> source_;  // until run()
   StageCaller<Decision> decision_;
   StageCaller<Tracker> tracker_;
 
+  FramePtr pushed_;  // the last one
   std::vector<TrackedPose> poses_;
+  bool finished_ = false;
   double wall_seconds_ = 0.0;
   double cpu_seconds_ = 0.0;
 
   // Last: their threads use the clock, the stop signal and the time log.
-  FrameFeed feed_;
+  std::optional<FrameFeed> feed_;  // in run()
   SegmentationStage segmentation_;
   MovingCheck moving_check_;
   MapCheck map_check_;

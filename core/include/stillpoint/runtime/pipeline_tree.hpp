@@ -1,9 +1,9 @@
 // All that a user says about a pipeline, merged into one tree.
 #pragma once
 
+#include "stillpoint/engine/pipeline_config.hpp"
 #include "stillpoint/runtime/config_node.hpp"
 #include "stillpoint/runtime/fault_list.hpp"
-#include "stillpoint/runtime/pipeline_config.hpp"
 
 namespace stillpoint {
 

@@ -1,54 +1,19 @@
-// The boxes of a pipeline as the runtime holds them.
+// How the runtime calls a stage.
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
 #include <functional>
 #include <memory>
 #include <optional>
 #include <string>
 #include <utility>
-#include <vector>
 
+#include "stillpoint/engine/stages.hpp"
 #include "stillpoint/runtime/null_stages.hpp"
 #include "stillpoint/runtime/stage_error.hpp"
 #include "stillpoint/runtime/time_log.hpp"
-#include "stillpoint/sdk.hpp"
 
 namespace stillpoint {
-
-/// An implementation and what the pipeline file calls it. Without an object: the null stage.
-template <class Interface>
-struct Stage {
-  std::shared_ptr<Interface> object;
-  std::string type;
-};
-
-/// What becomes of a report when an output is too slow to take it.
-enum class WhenFull { kWait /* tracking waits */, kDrop /* the report that waited longest goes */ };
-
-struct OutputSetup {
-  Stage<Output> stage;
-  WhenFull when_full = WhenFull::kWait;
-};
-
-/// What sits in each box. Made from a pipeline file, or by hand for tests.
-struct Stages {
-  Stage<Source> source;  ///< must be there
-  Stage<Segmenter> segmenter;
-  Stage<Propagator> propagator;
-  Stage<MovingChecker> moving_checker;
-  Stage<MapChecker> map_checker;
-  Stage<Decision> decision;
-  Stage<Tracker> tracker;
-  Stage<LocalMapper> local_mapper;
-  Stage<LoopCloser> loop_closer;
-  Stage<MapBackend> map_backend;
-  std::vector<OutputSetup> outputs;
-  std::filesystem::path map_directory;  ///< made for the dense map at the end; empty: not saved
-  SparseMap known_map;                  ///< to begin with; empty: the first frame begins one
-  bool localise_only = false;           ///< the map stays as it is
-};
 
 /// Calls a stage: names it when it fails and measures it. Null stages are not measured.
 template <class Interface>

@@ -7,8 +7,8 @@
 #include <thread>
 #include <utility>
 
+#include "stillpoint/engine/pipeline_config.hpp"
 #include "stillpoint/runtime/bounded_queue.hpp"
-#include "stillpoint/runtime/pipeline_config.hpp"
 #include "stillpoint/runtime/stop_signal.hpp"
 #include "stillpoint/runtime/thread_priority.hpp"
 

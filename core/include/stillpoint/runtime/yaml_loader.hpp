@@ -5,6 +5,7 @@
 #include <functional>
 #include <string>
 
+#include "stillpoint/export.hpp"
 #include "stillpoint/runtime/config_node.hpp"
 #include "stillpoint/runtime/fault_list.hpp"
 
@@ -13,14 +14,14 @@ namespace stillpoint {
 /// A file with everything it extends merged below it. `extends` takes a path from that file, or a
 /// name of `category`, see find_config. An empty map when a file cannot be read or parsed, which is
 /// a fault then. `prepare` is called with each file's own text before merging.
-ConfigNode load_config_file(const std::filesystem::path& file, const std::string& category,
-                            FaultList& faults,
-                            const std::function<void(ConfigNode&)>& prepare = {});
+STILLPOINT_EXPORT ConfigNode load_config_file(const std::filesystem::path& file,
+                                              const std::string& category, FaultList& faults,
+                                              const std::function<void(ConfigNode&)>& prepare = {});
 
 /// The map for `key.sub=value`; relative paths are meant from the working folder.
-ConfigNode parse_assignment(const std::string& assignment, FaultList& faults);
+STILLPOINT_EXPORT ConfigNode parse_assignment(const std::string& assignment, FaultList& faults);
 
 /// Replaces ${NAME} in every scalar by the environment variable.
-void substitute_environment(ConfigNode& node, FaultList& faults);
+STILLPOINT_EXPORT void substitute_environment(ConfigNode& node, FaultList& faults);
 
 }  // namespace stillpoint

@@ -14,7 +14,7 @@
 namespace stillpoint {
 
 /// One reader reads one section: visit once, then call finish().
-class YamlOptionReader final : public OptionVisitor {
+class STILLPOINT_EXPORT YamlOptionReader final : public OptionVisitor {
  public:
   /// `section` null: everything keeps its default. `path` names it in messages. A section that is
   /// not a map is a fault.

@@ -3,9 +3,11 @@
 
 #include <stop_token>
 
+#include "stillpoint/export.hpp"
+
 namespace stillpoint {
 
-class PaceClock {
+class STILLPOINT_EXPORT PaceClock {
  public:
   virtual ~PaceClock() = default;
   virtual double now() = 0;  ///< seconds
@@ -14,7 +16,7 @@ class PaceClock {
 };
 
 /// The clock that runs evenly, whatever happens to the clock on the wall.
-class SteadyClock final : public PaceClock {
+class STILLPOINT_EXPORT SteadyClock final : public PaceClock {
  public:
   double now() override;
   void wait_until(double time, std::stop_token stop) override;

@@ -6,12 +6,12 @@
 #include <memory>
 
 #include "doubles.hpp"
-#include "stillpoint/runtime/pipeline.hpp"
+#include "stillpoint/engine/engine.hpp"
 
 namespace stillpoint::testing {
 
-struct PipelineFixture {
-  explicit PipelineFixture(std::uint32_t frames = 6)
+struct EngineFixture {
+  explicit EngineFixture(std::uint32_t frames = 6)
       : source(std::make_shared<FakeSource>(journal, frames)) {}
 
   Stages stages() {

@@ -33,7 +33,7 @@ struct UnusableLibrary {
 /// used. A library that fails a check is listed with its reason and the others still load. Loaded
 /// libraries stay in memory until the process ends, also after the registry is gone: exceptions and
 /// shared objects point into their code.
-class Registry {
+class STILLPOINT_EXPORT Registry {
  public:
   /// Stages linked into the program, for tests. The descriptor must outlive every object.
   void add(const PluginDescriptor& descriptor);
@@ -62,9 +62,10 @@ class Registry {
 };
 
 /// Use create().
-std::shared_ptr<void> create_object(const PluginType& type, std::string_view kind,
-                                    OptionVisitor& options, const StageContext& context,
-                                    void (*destroy)(void*));
+STILLPOINT_EXPORT std::shared_ptr<void> create_object(const PluginType& type, std::string_view kind,
+                                                      OptionVisitor& options,
+                                                      const StageContext& context,
+                                                      void (*destroy)(void*));
 
 /// Makes an object of `Interface` with the options that the visitor writes into it. The object
 /// keeps its library. An exception of the constructor leaves as Error in words that name the type:

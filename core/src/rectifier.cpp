@@ -1,9 +1,13 @@
-#include "source_tum/rectifier.hpp"
+#include "stillpoint/rectifier.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <opencv2/calib3d.hpp>
 #include <opencv2/imgproc.hpp>
+#include <string>
+
+#include "stillpoint/error.hpp"
+#include "stillpoint/size_text.hpp"
 
 namespace stillpoint {
 namespace {
@@ -51,12 +55,24 @@ std::vector<float> metres_of_raw(const CameraModel& model) {
 }  // namespace
 
 Rectifier::Rectifier(const CameraModel& model)
-    : crop_(crop_of(model)), camera_(model.undistorted()), metres_(metres_of_raw(model)) {
+    : model_(model),
+      crop_(crop_of(model)),
+      camera_(std::make_shared<const Camera>(model.undistorted())),
+      metres_(metres_of_raw(model)) {
   if (!is_distorted(model)) return;
   cv::Mat x, y;
-  undistortion_map(model, camera_, x, y);
+  undistortion_map(model, *camera_, x, y);
   cv::convertMaps(x, y, color_map_, color_weights_, CV_16SC2);
   depth_map_ = nearest_pixels(x.reshape(1, 1), y.reshape(1, 1), model);
+}
+
+Frame Rectifier::frame(double time, const cv::Mat& bgr, const cv::Mat& depth_image) const {
+  check(bgr, "colour", {CV_8UC3});
+  check(depth_image, "depth", {CV_16UC1, CV_32FC1});
+  Frame frame{.time = time, .bgr = color(bgr), .camera = camera_};
+  cv::cvtColor(frame.bgr, frame.gray, cv::COLOR_BGR2GRAY);
+  frame.depth = depth(depth_image);
+  return frame;
 }
 
 cv::Mat Rectifier::color(const cv::Mat& bgr) const {
@@ -66,20 +82,47 @@ cv::Mat Rectifier::color(const cv::Mat& bgr) const {
   return undistorted;
 }
 
-cv::Mat Rectifier::depth(const cv::Mat& raw) const {
-  cv::Mat depth(camera_.height, camera_.width, CV_32FC1);
+cv::Mat Rectifier::depth(const cv::Mat& recorded) const {
+  if (recorded.type() == CV_16UC1)
+    return rectified_depth<std::uint16_t>(recorded,
+                                          [this](std::uint16_t raw) { return metres_[raw]; });
+  const auto nearest = static_cast<float>(model_.min_depth);
+  const auto farthest = static_cast<float>(model_.max_depth);
+  return rectified_depth<float>(recorded, [=](float metres) {
+    return metres >= nearest && metres <= farthest ? metres : 0.0F;  // also for NaN
+  });
+}
+
+template <class Value, class Metres>
+cv::Mat Rectifier::rectified_depth(const cv::Mat& recorded, Metres metres) const {
+  cv::Mat depth(camera_->height, camera_->width, CV_32FC1);
+  const cv::Mat whole = recorded.isContinuous() ? recorded : recorded.clone();
   for (int y = 0; y < depth.rows; ++y) {
     float* out = depth.ptr<float>(y);
     if (depth_map_.empty()) {
-      const std::uint16_t* in = raw.ptr<std::uint16_t>(y + crop_.y) + crop_.x;
-      for (int x = 0; x < depth.cols; ++x) out[x] = metres_[in[x]];
+      const Value* in = whole.ptr<Value>(y + crop_.y) + crop_.x;
+      for (int x = 0; x < depth.cols; ++x) out[x] = metres(in[x]);
     } else {
       const int* from = &depth_map_[static_cast<std::size_t>(y) * depth.cols];
-      const std::uint16_t* in = raw.ptr<std::uint16_t>();
-      for (int x = 0; x < depth.cols; ++x) out[x] = from[x] < 0 ? 0.0F : metres_[in[from[x]]];
+      const Value* in = whole.ptr<Value>();
+      for (int x = 0; x < depth.cols; ++x) out[x] = from[x] < 0 ? 0.0F : metres(in[from[x]]);
     }
   }
   return depth;
+}
+
+void Rectifier::check(const cv::Mat& image, const char* name,
+                      std::initializer_list<int> types) const {
+  if (image.size() != cv::Size(model_.width, model_.height))
+    throw Error(Fault::kData,
+                std::string("the ") + name + " image has " + size_text(image.size()) +
+                    " pixels, but camera '" + model_.name + "' has " +
+                    size_text({model_.width, model_.height}),
+                "", "choose the camera of these images");
+  if (std::ranges::find(types, image.type()) == types.end())
+    throw Error(Fault::kData,
+                std::string("the ") + name + " image is of " + cv::typeToString(image.type()), "",
+                std::string("it must be of ") + cv::typeToString(*types.begin()));
 }
 
 }  // namespace stillpoint

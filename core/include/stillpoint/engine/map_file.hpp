@@ -4,19 +4,20 @@
 #include <filesystem>
 
 #include "stillpoint/contracts/sparse_map.hpp"
+#include "stillpoint/export.hpp"
 
 namespace stillpoint {
 
 /// Puts the map into `file`, in place of the file that is there, at once and as a whole: whenever
 /// the process dies, the file is the earlier or the new one. Throws Error(kUsage) when it cannot be
 /// written or what is there is no file; it then stays.
-void save_map(const SparseMap& map, const std::filesystem::path& file);
+STILLPOINT_EXPORT void save_map(const SparseMap& map, const std::filesystem::path& file);
 
 /// Throws what save_map would throw, before anything is computed.
-void require_writable(const std::filesystem::path& file);
+STILLPOINT_EXPORT void require_writable(const std::filesystem::path& file);
 
 /// The map of a file; ids are counted anew, without gaps. Throws Error(kData) for a file that is
 /// not there, truncated, damaged, of another kind or of a newer version. Never changes the file.
-SparseMap load_map(const std::filesystem::path& file);
+STILLPOINT_EXPORT SparseMap load_map(const std::filesystem::path& file);
 
 }  // namespace stillpoint

@@ -8,32 +8,33 @@
 #include <vector>
 
 #include "stillpoint/contracts/camera.hpp"
+#include "stillpoint/engine/install_layout.hpp"
+#include "stillpoint/engine/registry.hpp"
+#include "stillpoint/engine/stages.hpp"
 #include "stillpoint/error.hpp"
 #include "stillpoint/options.hpp"
-#include "stillpoint/runtime/install_layout.hpp"
-#include "stillpoint/runtime/registry.hpp"
-#include "stillpoint/runtime/stage.hpp"
 
 namespace stillpoint {
 
 /// Every fault of a configuration, one line `file:line:column: error: …` each.
-class ConfigError final : public Error {
+class STILLPOINT_EXPORT ConfigError final : public Error {
  public:
   explicit ConfigError(const std::string& lines) : Error(Fault::kUsage, lines) {}
 };
 
-/// What the command line says.
+/// A pipeline file and what is changed of it.
 struct PipelineRequest {
   std::string pipeline;                  ///< a file, or a name from configs/pipelines
   std::filesystem::path dataset;         ///< replaces source.path; relative to the working folder
   std::string camera;                    ///< a file, or a name from configs/cameras
   std::vector<std::string> assignments;  ///< `key.sub=value`
+  bool pushed = false;                   ///< frames come from Engine::process(): without `source:`
   /// Searched after the file's own plugins.paths.
   std::vector<std::filesystem::path> plugin_folders = default_plugin_folders();
 };
 
 /// The `runtime:` section.
-struct RuntimeOptions {
+struct STILLPOINT_EXPORT RuntimeOptions {
   enum class Mode { kInline, kThreaded } mode = Mode::kThreaded;
   enum class Pace { kFree, kSensor } pace = Pace::kFree;
   int seed = 1;
@@ -43,7 +44,7 @@ struct RuntimeOptions {
 };
 
 /// The `segmentation:` section, and `segmenter.on_failure`: how labels meet frames.
-struct SegmentationOptions {
+struct STILLPOINT_EXPORT SegmentationOptions {
   enum class Schedule { kWait, kLatest } schedule = Schedule::kWait;
   int interval = 1;            ///< frames, of `latest`: from one that the network takes to the next
   int latency = 3;             ///< frames; of `latest` in mode inline, instead of the clock
@@ -56,7 +57,7 @@ struct SegmentationOptions {
 };
 
 /// What stands in an element of `outputs:`, beside the options of the plugin.
-struct OutputOptions {
+struct STILLPOINT_EXPORT OutputOptions {
   WhenFull when_full = WhenFull::kWait;
 
   void visit(OptionVisitor& visitor);
@@ -65,7 +66,7 @@ struct OutputOptions {
 struct ConfigNode;
 
 /// A stage section whose options have been found valid.
-class StageSpec {
+class STILLPOINT_EXPORT StageSpec {
  public:
   StageSpec(std::string section, const PluginType& type, std::shared_ptr<const ConfigNode> options);
 
@@ -98,7 +99,7 @@ struct PipelineConfig {
   std::filesystem::path file;
   std::filesystem::path recording;  ///< source.path; empty when there is none
   std::optional<CameraModel> camera;
-  std::optional<StageSpec> source;  ///< always there
+  std::optional<StageSpec> source;  ///< always there, unless frames are pushed
   std::optional<StageSpec> segmenter;
   SegmentationOptions segmentation;
   std::optional<StageSpec> propagator;
@@ -120,12 +121,12 @@ struct PipelineConfig {
 /// Reads and checks everything; nothing of it runs. Plugins are searched for in the file's
 /// plugins.paths and then in the request's folders, and stay in `registry`.
 /// Throws ConfigError with every fault found, or Error when there is no such file.
-PipelineConfig load_pipeline(const PipelineRequest& request, Registry& registry);
+STILLPOINT_EXPORT PipelineConfig load_pipeline(const PipelineRequest& request, Registry& registry);
 
 /// A camera by name from configs/cameras, or from a file with a `camera:` section.
-CameraModel load_camera(const std::string& name_or_file);
+STILLPOINT_EXPORT CameraModel load_camera(const std::string& name_or_file);
 
 /// The text of a camera file.
-std::string camera_yaml(CameraModel camera);
+STILLPOINT_EXPORT std::string camera_yaml(CameraModel camera);
 
 }  // namespace stillpoint

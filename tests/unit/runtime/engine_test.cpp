@@ -1,4 +1,4 @@
-#include "stillpoint/runtime/pipeline.hpp"
+#include "stillpoint/engine/engine.hpp"
 
 #include <gtest/gtest.h>
 
@@ -6,25 +6,25 @@
 #include <set>
 #include <thread>
 
-#include "pipeline_fixture.hpp"
+#include "engine_fixture.hpp"
 
 namespace stillpoint {
 namespace {
 
+using testing::EngineFixture;
 using testing::Journal;
-using testing::PipelineFixture;
 using testing::runtime;
 using Strings = std::vector<std::string>;
 
-class PipelineInBothModes : public ::testing::TestWithParam<Mode> {};
-INSTANTIATE_TEST_SUITE_P(Modes, PipelineInBothModes,
+class EngineInBothModes : public ::testing::TestWithParam<Mode> {};
+INSTANTIATE_TEST_SUITE_P(Modes, EngineInBothModes,
                          ::testing::Values(Mode::kInline, Mode::kThreaded), [](const auto& test) {
                            return test.param == Mode::kInline ? "Inline" : "Threaded";
                          });
 
-TEST(Pipeline, InlineCallsTheBoxesInTheOrderOfThePaper) {
-  PipelineFixture f(2);
-  Pipeline(f.stages(), runtime(Mode::kInline), {}).run();
+TEST(Engine, InlineCallsTheBoxesInTheOrderOfThePaper) {
+  EngineFixture f(2);
+  Engine(f.stages(), runtime(Mode::kInline), {}).run();
   EXPECT_EQ(f.journal.entries(),
             (Strings{"source 0",      "segment 0", "prepare 0", "propagate 0 0",
                      "decide 0",      "track 0",   "insert 0",  "refine 0",
@@ -34,9 +34,9 @@ TEST(Pipeline, InlineCallsTheBoxesInTheOrderOfThePaper) {
                      "save 0",        "finish 0"}));
 }
 
-TEST_P(PipelineInBothModes, EveryFrameGoesThroughEveryBox) {
-  PipelineFixture f(40);
-  Pipeline(f.stages(), runtime(GetParam()), {}).run();
+TEST_P(EngineInBothModes, EveryFrameGoesThroughEveryBox) {
+  EngineFixture f(40);
+  Engine(f.stages(), runtime(GetParam()), {}).run();
   for (const char* call :
        {"source", "segment", "prepare", "propagate", "decide", "track", "output"})
     EXPECT_EQ(f.journal.entries(call).size(), 40u) << call;
@@ -53,18 +53,18 @@ TEST_P(PipelineInBothModes, EveryFrameGoesThroughEveryBox) {
   EXPECT_EQ(f.output->source.skipped, 2u);
 }
 
-TEST(Pipeline, ThreadedTheMovingCheckRunsBesideTheExtractionOfFeatures) {
-  PipelineFixture f(3);
+TEST(Engine, ThreadedTheMovingCheckRunsBesideTheExtractionOfFeatures) {
+  EngineFixture f(3);
   f.journal.hook = [&](const std::string& entry) {
     if (entry == "prepare 1") f.journal.wait_for("propagate 1 1");
     if (entry == "check 1 2") f.journal.wait_for("prepare 2");
   };
-  Pipeline(f.stages(), runtime(Mode::kThreaded), {}).run();
+  Engine(f.stages(), runtime(Mode::kThreaded), {}).run();
   EXPECT_EQ(f.journal.entries("track"), (Strings{"track 0", "track 1", "track 2"}));
 }
 
-TEST(Pipeline, AViewerThatHangsDelaysNothing) {
-  PipelineFixture f(60);
+TEST(Engine, AViewerThatHangsDelaysNothing) {
+  EngineFixture f(60);
   Journal of_viewer;
   of_viewer.hook = [&](const std::string& entry) {
     if (entry == "output 0") f.journal.wait_for("output 59");
@@ -72,16 +72,16 @@ TEST(Pipeline, AViewerThatHangsDelaysNothing) {
   Stages stages = f.stages();
   const auto viewer = std::make_shared<testing::FakeOutput>(of_viewer);
   stages.outputs.push_back({{viewer, "viewer"}, WhenFull::kDrop});
-  Pipeline(std::move(stages), runtime(Mode::kThreaded), {}).run();
+  Engine(std::move(stages), runtime(Mode::kThreaded), {}).run();
   EXPECT_EQ(f.journal.entries("output").size(), 60u);
   EXPECT_GT(viewer->dropped_reports, 0);
   EXPECT_EQ(of_viewer.entries("output").size() + static_cast<std::size_t>(viewer->dropped_reports),
             60u);
 }
 
-TEST_P(PipelineInBothModes, CorrectionsReachTheMapsAlsoAtTheEnd) {
-  PipelineFixture f(60);
-  Pipeline(f.stages(), runtime(GetParam()), {}).run();
+TEST_P(EngineInBothModes, CorrectionsReachTheMapsAlsoAtTheEnd) {
+  EngineFixture f(60);
+  Engine(f.stages(), runtime(GetParam()), {}).run();
   // Every key frame closes a loop that lifts the map by one metre. Threaded, a correction may be
   // computed before the last one is applied, and then replaces it. Key frames come in at y = 0.
   const SparseMap& map = f.output->map;
@@ -95,9 +95,9 @@ TEST_P(PipelineInBothModes, CorrectionsReachTheMapsAlsoAtTheEnd) {
     EXPECT_TRUE(pose.isApprox(map.world_from_keyframe(id))) << id;
 }
 
-TEST_P(PipelineInBothModes, AllTimesAreReportedOnceAndNameTheirFrame) {
-  PipelineFixture f(4);
-  Pipeline(f.stages(), runtime(GetParam()), {}).run();
+TEST_P(EngineInBothModes, AllTimesAreReportedOnceAndNameTheirFrame) {
+  EngineFixture f(4);
+  Engine(f.stages(), runtime(GetParam()), {}).run();
   std::set<std::pair<std::string, std::uint32_t>> seen;
   for (const StageTime& time : f.output->times) {
     EXPECT_GE(time.wall_ms, 0.0);
@@ -110,32 +110,32 @@ TEST_P(PipelineInBothModes, AllTimesAreReportedOnceAndNameTheirFrame) {
   EXPECT_EQ(seen.size(), expected);
 }
 
-TEST_P(PipelineInBothModes, NullStagesRunThrough) {
-  PipelineFixture f(5);
+TEST_P(EngineInBothModes, NullStagesRunThrough) {
+  EngineFixture f(5);
   Stages stages;
   stages.source = {f.source, "list"};
   stages.outputs = {{{f.output, "first"}}};
-  Pipeline(std::move(stages), runtime(GetParam()), {}).run();
+  Engine(std::move(stages), runtime(GetParam()), {}).run();
   EXPECT_EQ(f.output->poses.size(), 5u);
   EXPECT_TRUE(f.output->map.empty());
 }
 
-TEST_P(PipelineInBothModes, NullMapperKeepsTheKeyFrames) {
-  PipelineFixture f(5);
+TEST_P(EngineInBothModes, NullMapperKeepsTheKeyFrames) {
+  EngineFixture f(5);
   Stages stages = f.stages();
   stages.local_mapper = {};
-  Pipeline(std::move(stages), runtime(GetParam()), {}).run();
+  Engine(std::move(stages), runtime(GetParam()), {}).run();
   EXPECT_EQ(f.output->map.keyframe_count(), 3u);
 }
 
-TEST_P(PipelineInBothModes, EmptyRecordingFinishes) {
-  PipelineFixture f(0);
-  Pipeline(f.stages(), runtime(GetParam()), {}).run();
+TEST_P(EngineInBothModes, EmptyRecordingFinishes) {
+  EngineFixture f(0);
+  Engine(f.stages(), runtime(GetParam()), {}).run();
   EXPECT_EQ(f.output->finished, 1);
   EXPECT_TRUE(f.output->complete);
 }
 
-TEST(Pipeline, NeedsASource) { EXPECT_THROW(Pipeline({}, {}, {}), Error); }
+TEST(Engine, NeedsASource) { EXPECT_THROW(Engine({}, {}, {}).run(), Error); }
 
 struct FailureCase {
   const char* name;
@@ -143,9 +143,9 @@ struct FailureCase {
   const char* message;
 };
 
-class PipelineFailure : public ::testing::TestWithParam<std::tuple<Mode, FailureCase>> {};
+class EngineFailure : public ::testing::TestWithParam<std::tuple<Mode, FailureCase>> {};
 INSTANTIATE_TEST_SUITE_P(
-    Stages, PipelineFailure,
+    Stages, EngineFailure,
     ::testing::Combine(
         ::testing::Values(Mode::kInline, Mode::kThreaded),
         ::testing::Values(
@@ -178,13 +178,13 @@ INSTANTIATE_TEST_SUITE_P(
              std::get<1>(test.param).name;
     });
 
-TEST_P(PipelineFailure, IsNamedAndWhatWasComputedIsSaved) {
+TEST_P(EngineFailure, IsNamedAndWhatWasComputedIsSaved) {
   const auto& [mode, failure] = GetParam();
-  PipelineFixture f(200);
+  EngineFixture f(200);
   f.journal.failing = failure.entry;
-  Pipeline pipeline(f.stages(), runtime(mode), {});
+  Engine engine(f.stages(), runtime(mode), {});
   try {
-    pipeline.run();
+    engine.run();
     FAIL() << "no exception";
   } catch (const StageError& error) {
     EXPECT_STREQ(error.what(), failure.message);
@@ -203,11 +203,11 @@ class UnusableSource final : public Source {
   }
 };
 
-TEST_P(PipelineInBothModes, DataFaultsOfTheSourceStayDataFaults) {
-  PipelineFixture f;
+TEST_P(EngineInBothModes, DataFaultsOfTheSourceStayDataFaults) {
+  EngineFixture f;
   f.source = std::make_shared<UnusableSource>();
   try {
-    Pipeline(f.stages(), runtime(GetParam()), {}).run();
+    Engine(f.stages(), runtime(GetParam()), {}).run();
     FAIL() << "no exception";
   } catch (const Error& error) {
     EXPECT_EQ(error.fault(), Fault::kData);
@@ -226,16 +226,16 @@ class SourceWithoutDepth final : public Source {
   }
 };
 
-TEST_P(PipelineInBothModes, FramesWithoutDepthAreTheSourcesFault) {
-  PipelineFixture f;
+TEST_P(EngineInBothModes, FramesWithoutDepthAreTheSourcesFault) {
+  EngineFixture f;
   f.source = std::make_shared<SourceWithoutDepth>();
   try {
-    Pipeline(f.stages(), runtime(GetParam()), {}).run();
+    Engine(f.stages(), runtime(GetParam()), {}).run();
     FAIL() << "no exception";
   } catch (const Error& error) {
     EXPECT_STREQ(error.what(),
                  "source (list) failed on frame 0: the colour, grey and depth images of a frame "
-                 "differ in size; the source must give all three, of the camera's size");
+                 "differ in size; all three are needed, of the camera's size");
   }
   EXPECT_EQ(f.output->finished, 1);
 }
@@ -266,10 +266,10 @@ class DecisionOnAnotherImage final : public Decision {
   }
 };
 
-TEST_P(PipelineInBothModes, WrongResultsEndTheRunWithTheStageThatGaveThem) {
-  const auto message = [](PipelineFixture& f, Stages stages) -> std::string {
+TEST_P(EngineInBothModes, WrongResultsEndTheRunWithTheStageThatGaveThem) {
+  const auto message = [](EngineFixture& f, Stages stages) -> std::string {
     try {
-      Pipeline(std::move(stages), runtime(GetParam()), {}).run();
+      Engine(std::move(stages), runtime(GetParam()), {}).run();
     } catch (const StageError& error) {
       EXPECT_EQ(f.output->finished, 1);
       EXPECT_EQ(f.output->failure, error.what());
@@ -277,7 +277,7 @@ TEST_P(PipelineInBothModes, WrongResultsEndTheRunWithTheStageThatGaveThem) {
     }
     return "no exception";
   };
-  PipelineFixture diverging;
+  EngineFixture diverging;
   Stages stages = diverging.stages();
   stages.tracker = {std::make_shared<TrackerThatDiverges>(diverging.journal), "mine"};
   EXPECT_EQ(
@@ -285,7 +285,7 @@ TEST_P(PipelineInBothModes, WrongResultsEndTheRunWithTheStageThatGaveThem) {
       "tracking (mine) failed on frame 3: the pose is no rigid motion; it must be finite, with "
       "an orthonormal rotation; say kLost where there is none");
   EXPECT_EQ(diverging.output->poses.size(), 3u);
-  PipelineFixture misjudging;
+  EngineFixture misjudging;
   stages = misjudging.stages();
   stages.decision = {std::make_shared<DecisionOnAnotherImage>(), "mine"};
   EXPECT_EQ(message(misjudging, std::move(stages)),
@@ -293,31 +293,31 @@ TEST_P(PipelineInBothModes, WrongResultsEndTheRunWithTheStageThatGaveThem) {
             "1 x 1; the decision must give one byte per pixel of the frame, or nothing");
 }
 
-TEST_P(PipelineInBothModes, AStopFromAnotherThreadEndsTheRun) {
-  PipelineFixture f(1'000'000'000);
+TEST_P(EngineInBothModes, AStopFromAnotherThreadEndsTheRun) {
+  EngineFixture f(1'000'000'000);
   std::stop_source stop;
   std::jthread stopper([&] {
     f.journal.wait_for("output 5");
     stop.request_stop();
   });
-  Pipeline(f.stages(), runtime(GetParam()), {}).run(stop.get_token());
+  Engine(f.stages(), runtime(GetParam()), {}).run(stop.get_token());
   EXPECT_EQ(f.output->finished, 1);
   EXPECT_FALSE(f.output->complete);
   EXPECT_EQ(f.output->failure, "");
   EXPECT_GE(f.output->poses.size(), 6u);
 }
 
-TEST_P(PipelineInBothModes, AStopBeforeTheRunProcessesNothing) {
-  PipelineFixture f;
+TEST_P(EngineInBothModes, AStopBeforeTheRunProcessesNothing) {
+  EngineFixture f;
   std::stop_source stop;
   stop.request_stop();
-  Pipeline(f.stages(), runtime(GetParam()), {}).run(stop.get_token());
+  Engine(f.stages(), runtime(GetParam()), {}).run(stop.get_token());
   EXPECT_EQ(f.output->poses.size(), 0u);
   EXPECT_EQ(f.output->finished, 1);
 }
 
-TEST(Pipeline, ARefinementIsHurriedWhenAnotherKeyFrameWaits) {
-  PipelineFixture f(5);
+TEST(Engine, ARefinementIsHurriedWhenAnotherKeyFrameWaits) {
+  EngineFixture f(5);
   f.mapper->while_refining = [&](KeyFrameId id, std::stop_token hurry) {
     if (id > 0) return;
     f.journal.wait_for("track 2");  // a key frame, pushed while this one is being refined
@@ -327,27 +327,27 @@ TEST(Pipeline, ARefinementIsHurriedWhenAnotherKeyFrameWaits) {
     changed.wait(lock, hurry, [] { return false; });
     EXPECT_TRUE(hurry.stop_requested());
   };
-  Pipeline(f.stages(), runtime(Mode::kThreaded), {}).run();
+  Engine(f.stages(), runtime(Mode::kThreaded), {}).run();
   EXPECT_EQ(f.output->map.keyframe_count(), 3u);
 }
 
-TEST(Pipeline, AStopHurriesTheRefinementUnderWay) {
-  PipelineFixture f(1);
+TEST(Engine, AStopHurriesTheRefinementUnderWay) {
+  EngineFixture f(1);
   std::stop_source stop;
   f.mapper->while_refining = [&](KeyFrameId, std::stop_token hurry) {
     stop.request_stop();
     EXPECT_TRUE(hurry.stop_requested());
   };
-  Pipeline(f.stages(), runtime(Mode::kThreaded), {}).run(stop.get_token());
+  Engine(f.stages(), runtime(Mode::kThreaded), {}).run(stop.get_token());
   EXPECT_EQ(f.output->map.keyframe_count(), 1u);
 }
 
-TEST(Pipeline, InlineNeverHurries) {
-  PipelineFixture f(9);
+TEST(Engine, InlineNeverHurries) {
+  EngineFixture f(9);
   f.mapper->while_refining = [](KeyFrameId, std::stop_token hurry) {
     EXPECT_FALSE(hurry.stop_requested());
   };
-  Pipeline(f.stages(), runtime(Mode::kInline), {}).run();
+  Engine(f.stages(), runtime(Mode::kInline), {}).run();
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-#include "source_tum/rectifier.hpp"
+#include "stillpoint/rectifier.hpp"
 
 #include <gtest/gtest.h>
 

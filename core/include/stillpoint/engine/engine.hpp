@@ -1,0 +1,95 @@
+// Stillpoint as a library: RGB-D frames go in, poses and a map come out.
+//
+//   Engine engine({.request = {.pipeline = "stillpoint", .pushed = true}});
+//   const Rectifier rectifier(load_camera("tum_fr3"));
+//   while (…) {
+//     const FrameReportPtr report = engine.process(rectifier.frame(time, bgr, depth));
+//     if (report->result.state == TrackState::kTracking) use(report->result.world_from_camera);
+//   }
+//   engine.finish();
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <stop_token>
+#include <string_view>
+#include <vector>
+
+#include "stillpoint/engine/pace_clock.hpp"
+#include "stillpoint/engine/pipeline_config.hpp"
+#include "stillpoint/engine/stages.hpp"
+#include "stillpoint/export.hpp"
+
+namespace stillpoint {
+
+/// Warnings and errors to stderr, a line each.
+STILLPOINT_EXPORT void log_to_stderr(LogLevel level, std::string_view text);
+
+/// What an engine is made from, a pipeline file above all.
+struct EngineSetup {
+  PipelineRequest request;
+  /// Made when it is not there. The pipeline's outputs write into it, and the dense map into its
+  /// folder `map`; empty: no outputs, and the dense map is not saved.
+  std::filesystem::path output_directory;
+  SparseMap known_map;         ///< to begin with, see load_map(); empty: the first frame begins one
+  bool localise_only = false;  ///< the known map stays as it is
+  /// Called from any thread, one at a time or not: it has to allow for both.
+  std::function<void(LogLevel, std::string_view)> log = log_to_stderr;
+};
+
+/// One pose of the trajectory.
+struct StampedPose {
+  double time = 0.0;  ///< seconds, of the frame
+  Pose world_from_camera = Pose::Identity();
+};
+
+/// One run of a pipeline. process(), run(), finish() and poses() are called from one thread, which
+/// is thread 1 of the paper's Fig. 2, tracking; `runtime.mode: threaded` has the others behind it.
+///
+/// A failure of a stage, on whatever thread, ends the run: it leaves process(), run() or finish()
+/// as an Error that names the stage and the frame, and what was computed until then is there.
+class STILLPOINT_EXPORT Engine {
+ public:
+  /// Throws ConfigError with every fault of the configuration, or Error when a stage cannot be
+  /// made.
+  explicit Engine(EngineSetup setup);
+  /// From objects. `clock` is what `pace: sensor` goes by; null: the steady clock.
+  Engine(Stages stages, const RuntimeOptions& runtime, const SegmentationOptions& segmentation,
+         std::shared_ptr<PaceClock> clock = nullptr);
+  /// Without finish() before, stops like Ctrl-C: outputs are finished, failures are not told.
+  ~Engine();
+  Engine(Engine&&) noexcept;
+  Engine& operator=(Engine&&) = delete;
+
+  /// Estimates the pose of the next frame. Its `index` is given here; a missing `gray` is made from
+  /// `bgr`. The images are shared with other threads, not copied: never write them afterwards.
+  ///
+  /// In mode `inline`, everything of the frame is done at return. `threaded`, mapping goes on, so
+  /// that world_from_camera of the report is where the camera was on the map of that moment, and
+  /// trajectory() may know better later.
+  ///
+  /// Throws Error(kData) for a frame that cannot be used (other size than its camera, depth that is
+  /// not CV_32FC1, time that does not increase); it counts for nothing, and the next may follow.
+  FrameReportPtr process(Frame frame);
+
+  /// Feeds all frames of the pipeline's source, then finish(). Ends early after a stop, with what
+  /// was computed saved.
+  void run(std::stop_token stop = {});
+
+  /// Waits until the maps know all key frames, saves the dense map and finishes outputs. Once; no
+  /// frame may follow.
+  void finish();
+
+  /// A snapshot that never changes. From any thread, at any time.
+  std::shared_ptr<const SparseMap> map() const;
+  /// Of every frame processed, in order.
+  const std::vector<TrackedPose>& poses() const;
+  /// Of the frames that were tracked, by what the map says now.
+  std::vector<StampedPose> trajectory() const;
+
+ private:
+  std::unique_ptr<class Pipeline> pipeline_;
+};
+
+}  // namespace stillpoint

@@ -1,0 +1,47 @@
+// What sits in each box of the paper's Fig. 2.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "stillpoint/sdk.hpp"
+
+namespace stillpoint {
+
+/// An implementation and what messages call it, the `type` of a pipeline file. Without an object:
+/// the box is left out.
+template <class Interface>
+struct Stage {
+  std::shared_ptr<Interface> object;
+  std::string type;
+};
+
+/// What becomes of a report when an output is too slow to take it.
+enum class WhenFull { kWait /* tracking waits */, kDrop /* the report that waited longest goes */ };
+
+struct OutputSetup {
+  Stage<Output> stage;
+  WhenFull when_full = WhenFull::kWait;
+};
+
+/// Made from a pipeline file by make_stages(), or by hand.
+struct Stages {
+  Stage<Source> source;  ///< needed by Engine::run() alone
+  Stage<Segmenter> segmenter;
+  Stage<Propagator> propagator;
+  Stage<MovingChecker> moving_checker;
+  Stage<MapChecker> map_checker;
+  Stage<Decision> decision;
+  Stage<Tracker> tracker;
+  Stage<LocalMapper> local_mapper;
+  Stage<LoopCloser> loop_closer;
+  Stage<MapBackend> map_backend;
+  std::vector<OutputSetup> outputs;
+  std::filesystem::path map_directory;  ///< made for the dense map at the end; empty: not saved
+  SparseMap known_map;                  ///< to begin with; empty: the first frame begins one
+  bool localise_only = false;           ///< the map stays as it is
+};
+
+}  // namespace stillpoint

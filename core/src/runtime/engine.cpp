@@ -1,0 +1,67 @@
+#include "stillpoint/engine/engine.hpp"
+
+#include <iostream>
+#include <utility>
+
+#include "stillpoint/engine/make_stages.hpp"
+#include "stillpoint/engine/registry.hpp"
+#include "stillpoint/runtime/pipeline.hpp"
+
+namespace stillpoint {
+namespace {
+
+void make_folder(const std::filesystem::path& folder) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error)
+    throw Error(Fault::kUsage, "cannot be made: " + error.message(), folder.string(),
+                "choose another output_directory");
+}
+
+std::unique_ptr<Pipeline> make_pipeline(EngineSetup setup) {
+  Registry registry;
+  const PipelineConfig config = load_pipeline(setup.request, registry);
+  if (!setup.output_directory.empty()) make_folder(setup.output_directory);
+  Stages stages = make_stages(config, setup.output_directory, setup.log);
+  stages.known_map = std::move(setup.known_map);
+  stages.localise_only = setup.localise_only;
+  return std::make_unique<Pipeline>(std::move(stages), config.runtime, config.segmentation);
+}
+
+}  // namespace
+
+void log_to_stderr(LogLevel level, std::string_view text) {
+  if (level == LogLevel::kWarning) std::cerr << "warning: " + std::string(text) + '\n';
+  if (level == LogLevel::kError) std::cerr << "error: " + std::string(text) + '\n';
+}
+
+Engine::Engine(EngineSetup setup) : pipeline_(make_pipeline(std::move(setup))) {}
+
+Engine::Engine(Stages stages, const RuntimeOptions& runtime,
+               const SegmentationOptions& segmentation, std::shared_ptr<PaceClock> clock)
+    : pipeline_(
+          std::make_unique<Pipeline>(std::move(stages), runtime, segmentation, std::move(clock))) {}
+
+Engine::~Engine() = default;
+Engine::Engine(Engine&&) noexcept = default;
+
+FrameReportPtr Engine::process(Frame frame) { return pipeline_->push(std::move(frame)); }
+
+void Engine::run(std::stop_token stop) { pipeline_->run(std::move(stop)); }
+
+void Engine::finish() { pipeline_->finish(); }
+
+std::shared_ptr<const SparseMap> Engine::map() const { return pipeline_->map(); }
+
+const std::vector<TrackedPose>& Engine::poses() const { return pipeline_->poses(); }
+
+std::vector<StampedPose> Engine::trajectory() const {
+  const auto current = map();
+  std::vector<StampedPose> trajectory;
+  for (const TrackedPose& pose : poses())
+    if (const auto in_world = world_from_camera(*current, pose))
+      trajectory.push_back({pose.time, *in_world});
+  return trajectory;
+}
+
+}  // namespace stillpoint

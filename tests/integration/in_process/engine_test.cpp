@@ -1,0 +1,109 @@
+// Frames of one's own through a shipped pipeline: the same as `stillpoint run` makes of them.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <opencv2/imgcodecs.hpp>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "stillpoint/engine/engine.hpp"
+#include "stillpoint/engine/map_file.hpp"
+#include "support/simulated_recording.hpp"
+
+namespace stillpoint::testing {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct ImagePair {
+  double time;  // seconds
+  fs::path color, depth;
+};
+
+// The simulator writes both images of a pair with one stamp.
+std::vector<ImagePair> pairs_of(const fs::path& recording) {
+  std::ifstream color_list(recording / "rgb.txt"), depth_list(recording / "depth.txt");
+  std::vector<ImagePair> pairs;
+  for (std::string color, depth; std::getline(color_list, color);) {
+    std::getline(depth_list, depth);
+    if (color.starts_with("#")) continue;
+    const std::size_t blank = color.find(' ');
+    pairs.push_back({std::stod(color), recording / color.substr(blank + 1),
+                     recording / depth.substr(depth.find(' ') + 1)});
+  }
+  return pairs;
+}
+
+EngineSetup setup_of(const fs::path& folder, const std::string& mode) {
+  const fs::path source = STILLPOINT_SOURCE_DIR;
+  return {
+      .request = {.pipeline = (source / "configs/pipelines/stillpoint.yaml").string(),
+                  .assignments = {"runtime.mode=" + mode},
+                  .pushed = true,
+                  .plugin_folders = {fs::path(STILLPOINT_BINARY_DIR) / "lib/stillpoint/plugins"}},
+      .output_directory = folder};
+}
+
+void push_all(Engine& engine, const fs::path& recording) {
+  const Rectifier rectifier(load_camera((recording / "camera.yaml").string()));
+  for (const ImagePair& pair : pairs_of(recording)) {
+    const FrameReportPtr report = engine.process(rectifier.frame(
+        pair.time, cv::imread(pair.color.string()), cv::imread(pair.depth.string(), -1)));
+    ASSERT_EQ(report->result.state, TrackState::kTracking);
+    ASSERT_TRUE(report->segmentation->known());
+    ASSERT_EQ(report->weights->track.size(), report->frame->bgr.size());
+  }
+  engine.finish();
+}
+
+TEST(PushedRecording, GivesWhatRunGivesInline) {
+  const fs::path& recording = recording_with_people();
+  const TemporaryFolder pushed, run;
+  Engine engine(setup_of(pushed.path(), "inline"));
+  push_all(engine, recording);
+  const Outcome outcome = call({"run", "stillpoint", "--dataset", recording.string(), "-o",
+                                run.path().string(), "--set", "runtime.mode=inline"});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  for (const char* file : {"trajectory.txt", "keyframes.txt", "map/map.ot"}) {
+    ASSERT_TRUE(fs::exists(run.path() / file)) << file;
+    EXPECT_EQ(text_of(pushed.path() / file), text_of(run.path() / file)) << file;
+  }
+  EXPECT_GT(count_poses(run.path() / "trajectory.txt"), 0u);
+}
+
+TEST(PushedRecording, IsTrackedOnThreadsAndItsMapCanBeGoneOnWith) {
+  const fs::path& recording = recording_with_people();
+  const TemporaryFolder folder;
+  {
+    Engine engine(setup_of(folder.path(), "threaded"));
+    push_all(engine, recording);
+    EXPECT_EQ(engine.trajectory().size(), pairs_of(recording).size());
+    save_map(*engine.map(), folder.path() / "room.map");
+  }
+  EXPECT_LT(absolute_error(recording, folder.path() / "trajectory.txt"), 0.01);
+  EngineSetup again = setup_of({}, "threaded");  // without outputs
+  again.known_map = load_map(folder.path() / "room.map");
+  again.localise_only = true;
+  const std::size_t keyframes = again.known_map.keyframe_count();
+  Engine engine(std::move(again));
+  push_all(engine, recording);
+  EXPECT_EQ(engine.map()->keyframe_count(), keyframes);
+}
+
+TEST(PushedRecording, FaultsOfThePipelineAreToldBeforeAnythingIsMade) {
+  const TemporaryFolder folder;
+  EngineSetup setup = setup_of(folder.path() / "out", "treaded");
+  try {
+    Engine engine(std::move(setup));
+    FAIL() << "no error";
+  } catch (const ConfigError& error) {
+    EXPECT_NE(std::string(error.what()).find("did you mean 'threaded'"), std::string::npos)
+        << error.what();
+  }
+  EXPECT_FALSE(fs::exists(folder.path() / "out"));
+}
+
+}  // namespace
+}  // namespace stillpoint::testing
