@@ -7,6 +7,7 @@
 #include <string>
 
 #include "stillpoint/error.hpp"
+#include "stillpoint/option_check.hpp"
 #include "stillpoint/size_text.hpp"
 
 namespace stillpoint {
@@ -42,6 +43,12 @@ std::vector<int> nearest_pixels(const cv::Mat& x, const cv::Mat& y, const Camera
   return indices;
 }
 
+/// Limits what follows can rely on: a crop inside the image, for one.
+const CameraModel& checked(const CameraModel& model) {
+  check_options(model, "camera '" + model.name + "'");
+  return model;
+}
+
 std::vector<float> metres_of_raw(const CameraModel& model) {
   std::vector<float> metres(65536, 0.0F);
   const double nearest = std::ceil(std::min(model.min_depth * model.depth_factor, 65536.0));
@@ -55,7 +62,7 @@ std::vector<float> metres_of_raw(const CameraModel& model) {
 }  // namespace
 
 Rectifier::Rectifier(const CameraModel& model)
-    : model_(model),
+    : model_(checked(model)),
       crop_(crop_of(model)),
       camera_(std::make_shared<const Camera>(model.undistorted())),
       metres_(metres_of_raw(model)) {

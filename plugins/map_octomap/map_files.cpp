@@ -50,8 +50,7 @@ void write_occupancy(const SemanticOctree& tree, const std::filesystem::path& fi
   out.commit();
 }
 
-void write_point_cloud(const SemanticOctree& tree, const MapClasses& classes,
-                       const std::filesystem::path& file) {
+std::vector<LabelledPoint> occupied_points(const SemanticOctree& tree) {
   std::vector<LabelledPoint> points;
   for_each_occupied_voxel(tree, [&](const Eigen::Vector3d& at, const SemanticVoxel& voxel) {
     const auto color = voxel.getColor();
@@ -59,7 +58,12 @@ void write_point_cloud(const SemanticOctree& tree, const MapClasses& classes,
                       .rgb = {color.r, color.g, color.b},
                       .label = voxel.classes().best()});
   });
-  write_ply(points, classes.names, file);
+  return points;
+}
+
+void write_point_cloud(const SemanticOctree& tree, const MapClasses& classes,
+                       const std::filesystem::path& file) {
+  write_ply(occupied_points(tree), classes.names, file);
 }
 
 }  // namespace stillpoint

@@ -8,6 +8,7 @@
 
 #include "map_octomap/semantic_octree.hpp"
 #include "stillpoint/class_names.hpp"
+#include "stillpoint/contracts/labelled_point.hpp"
 
 namespace stillpoint {
 
@@ -48,5 +49,8 @@ void write_occupancy(const SemanticOctree& tree, const std::filesystem::path& fi
 /// The occupied voxels, by write_ply().
 void write_point_cloud(const SemanticOctree& tree, const MapClasses& classes,
                        const std::filesystem::path& file);
+
+/// A point at the centre of each occupied voxel.
+std::vector<LabelledPoint> occupied_points(const SemanticOctree& tree);
 
 }  // namespace stillpoint

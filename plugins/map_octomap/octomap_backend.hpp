@@ -51,6 +51,7 @@ class OctomapBackend final : public MapBackend {
   void integrate(const DenseKeyFrame& keyframe) override;
   void move(std::span<const MovedKeyFrame> moved) override;
   void save(const std::filesystem::path& directory) override;
+  std::vector<LabelledPoint> occupied() const override { return occupied_points(tree_); }
 
   const SemanticOctree& tree() const { return tree_; }
 

@@ -38,9 +38,13 @@ void VoxelCloudBackend::move(std::span<const MovedKeyFrame> moved) {
 }
 
 void VoxelCloudBackend::save(const std::filesystem::path& directory) {
+  write_ply(occupied(), classes_, directory / "cloud.ply");
+}
+
+std::vector<LabelledPoint> VoxelCloudBackend::occupied() const {
   std::vector<LabelledPoint> cloud;
   for (const VoxelPoint& point : points()) cloud.push_back(point.mean);
-  write_ply(cloud, classes_, directory / "cloud.ply");
+  return cloud;
 }
 
 std::vector<VoxelPoint> VoxelCloudBackend::points() const {

@@ -29,6 +29,7 @@ class VoxelCloudBackend final : public MapBackend {
   void integrate(const DenseKeyFrame& keyframe) override;
   void move(std::span<const MovedKeyFrame> moved) override;
   void save(const std::filesystem::path& directory) override;
+  std::vector<LabelledPoint> occupied() const override;
 
   /// All key frames at their current poses; without voxels of too few points.
   std::vector<VoxelPoint> points() const;

@@ -56,4 +56,12 @@ run(${work}/push_frames/push_frames)
 if(NOT output MATCHES "after 1.97 s at 0.29[0-9] -?0.00[0-4] -?0.00[0-4] m")
   message(FATAL_ERROR "the camera went 0.295 m to the right, but:\n${output}")
 endif()
+
+if(PYTHON)
+  run(${CMAKE_COMMAND} -E env PYTHONPATH=${prefix}/lib/python3/dist-packages
+    ${PYTHON} ${SOURCE_DIR}/sdk/examples/push_arrays/push_arrays.py)
+  expect_in_output("90 of 90 frames tracked, error 0.")  # mm
+  expect_in_output("weights: plate 0, wall 255")
+  expect_in_output(" 0 of them at the plate")
+endif()
 file(REMOVE_RECURSE ${work})

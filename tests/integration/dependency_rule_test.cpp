@@ -1,5 +1,5 @@
-// Who may include whom: options ← contracts ← plugin ← runtime ← tools; plugins know the SDK and
-// never each other; the evaluation knows nothing of the runtime.
+// Who may include whom: options ← contracts ← plugin ← engine ← runtime ← tools; plugins know the
+// SDK and never each other; the evaluation knows nothing of the runtime.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -75,12 +75,19 @@ std::vector<std::string> prefixes_of(const fs::path& parent) {
 TEST(DependencyRule, OptionsKnowNothingAndContractsOnlyThem) {
   expect_none_begins(kPublic / "options.hpp", {"stillpoint/contracts", "stillpoint/plugin"});
   for (const fs::path& folder : {kPublic / "contracts", kRoot / "core/src/contracts"})
-    expect_none_begins(folder, {"stillpoint/plugin", "stillpoint/runtime"});
+    expect_none_begins(folder, {"stillpoint/plugin", "stillpoint/engine", "stillpoint/runtime"});
 }
 
-TEST(DependencyRule, SdkHeadersDoNotKnowTheRuntime) {
+TEST(DependencyRule, SdkHeadersDoNotKnowTheEngine) {
   for (const fs::directory_entry& entry : fs::directory_iterator(kPublic))
-    if (entry.is_regular_file()) expect_none_begins(entry.path(), {"stillpoint/runtime"});
+    if (entry.is_regular_file())
+      expect_none_begins(entry.path(), {"stillpoint/engine", "stillpoint/runtime"});
+}
+
+// The runtime's headers are not installed.
+TEST(DependencyRule, TheEngineIsUsedWithoutTheRuntime) {
+  for (const fs::path& folder : {kPublic / "engine", kRoot / "sdk"})
+    expect_none_begins(folder, {"stillpoint/runtime"});
 }
 
 TEST(DependencyRule, CoreKnowsNeitherToolsNorPlugins) {
@@ -90,7 +97,7 @@ TEST(DependencyRule, CoreKnowsNeitherToolsNorPlugins) {
 
 TEST(DependencyRule, PluginsKnowTheSdkAndNotEachOther) {
   for (const std::string& plugin : folders_in(kRoot / "plugins")) {
-    std::vector<std::string> forbidden = {"stillpoint/runtime"};
+    std::vector<std::string> forbidden = {"stillpoint/engine", "stillpoint/runtime"};
     for (const std::string& prefix : prefixes_of(kRoot / "plugins"))
       if (prefix != plugin + "/") forbidden.push_back(prefix);
     expect_none_begins(kRoot / "plugins" / plugin, forbidden);
@@ -99,7 +106,8 @@ TEST(DependencyRule, PluginsKnowTheSdkAndNotEachOther) {
 
 TEST(DependencyRule, LibrariesOfTheToolsDoNotKnowTheRuntime) {
   for (const std::string& tool : folders_in(kRoot / "tools"))
-    if (tool != "stillpoint") expect_none_begins(kRoot / "tools" / tool, {"stillpoint/runtime"});
+    if (tool != "stillpoint")
+      expect_none_begins(kRoot / "tools" / tool, {"stillpoint/engine", "stillpoint/runtime"});
 }
 
 }  // namespace

@@ -78,8 +78,8 @@ class Replay {
 };
 
 /// From frame `first` to the end.
-std::vector<evaluation::StampedPose> poses_since(const Trajectory& estimate, int first) {
-  std::vector<evaluation::StampedPose> poses = estimate.poses;
+std::vector<StampedPose> poses_since(const Trajectory& estimate, int first) {
+  std::vector<StampedPose> poses = estimate.poses;
   std::erase_if(poses, [&](const auto& pose) { return pose.time < stamp_of(first) - 0.01; });
   return poses;
 }

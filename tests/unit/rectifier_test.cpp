@@ -2,8 +2,13 @@
 
 #include <gtest/gtest.h>
 
+#include <functional>
+#include <limits>
 #include <opencv2/calib3d.hpp>
 #include <opencv2/imgproc.hpp>
+#include <string>
+
+#include "stillpoint/error.hpp"
 
 namespace stillpoint {
 namespace {
@@ -103,6 +108,64 @@ TEST(Rectifier, AcceptsNoLowerLimitAndFactorsBeyondSixteenBits) {
   const cv::Mat metres = Rectifier(model).depth(cv::Mat(16, 16, CV_16UC1, cv::Scalar(65535)));
   EXPECT_EQ(metres.at<float>(0, 0), 65535.f / 100000.f);
   EXPECT_EQ(cv::countNonZero(Rectifier(model).depth(cv::Mat::zeros(16, 16, CV_16UC1))), 0);
+}
+
+TEST(Rectifier, TakesDepthInMetresLikeRawDepth) {
+  for (CameraModel model : {fr1(), CameraModel{.name = "ideal"}}) {
+    model.crop = {20, 30, 560, 420};
+    cv::Mat raw(480, 640, CV_16UC1), metres(480, 640, CV_32FC1);
+    cv::randu(raw, 0, 65536);
+    for (int y = 0; y < 480; ++y)
+      for (int x = 0; x < 640; ++x)
+        metres.at<float>(y, x) = static_cast<float>(raw.at<std::uint16_t>(y, x)) / 5000.f;
+    metres.at<float>(200, 300) = std::numeric_limits<float>::quiet_NaN();
+    raw.at<std::uint16_t>(200, 300) = 0;
+    const Rectifier rectifier(model);
+    EXPECT_EQ(cv::norm(rectifier.depth(raw), rectifier.depth(metres), cv::NORM_INF), 0);
+  }
+}
+
+TEST(Rectifier, MakesWholeFrames) {
+  const Rectifier rectifier(fr1());
+  cv::Mat bgr(480, 640, CV_8UC3), depth(480, 640, CV_16UC1, cv::Scalar(5000));
+  cv::randu(bgr, 0, 256);
+  const Frame frame = rectifier.frame(3.5, bgr, depth);
+  EXPECT_EQ(frame.time, 3.5);
+  EXPECT_EQ(frame.gray.size(), frame.bgr.size());
+  EXPECT_EQ(frame.depth.at<float>(240, 320), 1.f);
+  EXPECT_EQ(frame.camera->fx, fr1().fx);
+}
+
+void expect_fault(const std::function<void()>& call, Fault fault, const std::string& message) {
+  try {
+    call();
+    ADD_FAILURE() << "no error";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.fault(), fault);
+    EXPECT_EQ(error.what(), message);
+  }
+}
+
+TEST(Rectifier, RefusesImagesOfAnotherSizeOrType) {
+  const Rectifier rectifier(fr1());
+  const cv::Mat bgr(480, 640, CV_8UC3), depth(480, 640, CV_16UC1);
+  expect_fault([&] { rectifier.frame(0, cv::Mat(240, 320, CV_8UC3), depth); }, Fault::kData,
+               "the colour image has 320 x 240 pixels, but camera 'fr1' has 640 x 480; choose the "
+               "camera of these images");
+  expect_fault([&] { rectifier.frame(0, bgr, cv::Mat(480, 640, CV_64FC1)); }, Fault::kData,
+               "the depth image is of CV_64FC1; it must be of CV_16UC1");
+}
+
+TEST(Rectifier, RefusesCamerasThatAreNone) {
+  CameraModel model = fr1();
+  model.crop = {600, 0, 100, 100};
+  expect_fault([&] { Rectifier{model}; }, Fault::kUsage,
+               "camera 'fr1': crop takes x, y, width, height within the image, at least 16 x 16");
+  model = fr1();
+  model.fx = 0;
+  expect_fault([&] { Rectifier{model}; }, Fault::kUsage, "camera 'fr1': fx = 0 is not at least 1");
+  model.fx = std::numeric_limits<double>::quiet_NaN();
+  expect_fault([&] { Rectifier{model}; }, Fault::kUsage, "camera 'fr1': fx = nan is not finite");
 }
 
 TEST(Rectifier, LeavesImagesOfAnIdealCameraAlone) {

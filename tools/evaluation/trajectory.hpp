@@ -10,11 +10,6 @@
 
 namespace stillpoint::evaluation {
 
-struct StampedPose {
-  double time;  // seconds
-  Pose world_from_camera;
-};
-
 /// Poses by strictly rising time; at least one.
 struct Trajectory {
   std::string name;  ///< the file, for messages

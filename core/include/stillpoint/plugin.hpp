@@ -20,7 +20,7 @@
 namespace stillpoint {
 
 /// Goes up with any change under contracts/, in plugin.hpp or in options.hpp.
-inline constexpr std::uint32_t kPluginApi = 8;
+inline constexpr std::uint32_t kPluginApi = 9;
 
 #define STILLPOINT_TEXT_(x) #x
 #define STILLPOINT_TEXT(x) STILLPOINT_TEXT_(x)

@@ -1,22 +1,14 @@
 // Point clouds with colours and classes, as files.
 #pragma once
 
-#include <Eigen/Core>
-#include <array>
-#include <cstdint>
 #include <filesystem>
 #include <span>
 
 #include "stillpoint/class_names.hpp"
+#include "stillpoint/contracts/labelled_point.hpp"
 #include "stillpoint/export.hpp"
 
 namespace stillpoint {
-
-struct LabelledPoint {
-  Eigen::Vector3f position = Eigen::Vector3f::Zero();  ///< metres, in world
-  std::array<std::uint8_t, 3> rgb{};
-  std::uint8_t label = 0;  ///< class id
-};
 
 /// Binary PLY: x, y, z (float), red, green, blue, label (uchar) per point; comments name the
 /// classes. The file is whole or not there; throws Error(kUsage) when it cannot be written.

@@ -14,6 +14,12 @@ using Pose = Eigen::Isometry3d;
 using Vector6d = Eigen::Matrix<double, 6, 1>;
 using Matrix6d = Eigen::Matrix<double, 6, 6>;
 
+/// A pose of a trajectory.
+struct StampedPose {
+  double time = 0.0;  ///< seconds
+  Pose world_from_camera = Pose::Identity();
+};
+
 /// Cross-product matrix: skew(a) * b = a × b.
 STILLPOINT_EXPORT Eigen::Matrix3d skew(const Eigen::Vector3d& v);
 

@@ -15,6 +15,7 @@ namespace stillpoint {
 /// camera model. May be called from any thread.
 class STILLPOINT_EXPORT Rectifier {
  public:
+  /// Throws Error(kUsage) for a model that is none, with a crop outside of the image for instance.
   explicit Rectifier(const CameraModel& model);
 
   /// The camera of the resulting images.

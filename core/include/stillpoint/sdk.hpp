@@ -19,6 +19,7 @@
 #include "stillpoint/majority_vote.hpp"
 #include "stillpoint/model_lookup.hpp"
 #include "stillpoint/objects.hpp"
+#include "stillpoint/option_check.hpp"
 #include "stillpoint/options.hpp"
 #include "stillpoint/plugin.hpp"
 #include "stillpoint/point_cloud_file.hpp"

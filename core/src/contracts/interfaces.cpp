@@ -18,6 +18,7 @@ std::optional<MapCorrection> LoopCloser::adjust(const SparseMap&, std::stop_toke
   return std::nullopt;
 }
 MapBackend::~MapBackend() = default;
+std::vector<LabelledPoint> MapBackend::occupied() const { return {}; }
 Output::~Output() = default;
 
 const char* name_of(TrackState state) {

@@ -53,6 +53,10 @@ void Engine::finish() { pipeline_->finish(); }
 
 std::shared_ptr<const SparseMap> Engine::map() const { return pipeline_->map(); }
 
+std::vector<LabelledPoint> Engine::dense_map() const { return pipeline_->dense_map(); }
+
+const ClassNames& Engine::classes() const { return pipeline_->classes(); }
+
 const std::vector<TrackedPose>& Engine::poses() const { return pipeline_->poses(); }
 
 std::vector<StampedPose> Engine::trajectory() const {

@@ -11,16 +11,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kConfigs = "share/stillpoint/configs";
-
-// The library with this code lies in lib, or in a folder of lib per architecture.
+// The library with this code lies in lib, on Debian in a folder of lib per architecture.
 fs::path installation() {
   static const char here = 0;
-  const fs::path library_folder = folder_of(&here);
-  std::error_code error;
-  for (fs::path folder = library_folder; folder.has_relative_path(); folder = folder.parent_path())
-    if (fs::is_directory(folder / kConfigs, error)) return folder;
-  return library_folder.parent_path();
+  const fs::path folder = folder_of(&here), above = folder.parent_path();
+  const bool per_architecture = folder == above.parent_path() / STILLPOINT_LIBRARY_FOLDER;
+  return per_architecture ? above.parent_path() : above;
 }
 
 std::vector<fs::path> folders_of_variable(const char* name) {
@@ -46,7 +42,7 @@ std::vector<fs::path> default_plugin_folders() {
 
 std::vector<fs::path> config_folders() {
   std::vector<fs::path> folders = folders_of_variable("STILLPOINT_CONFIG_PATH");
-  folders.push_back(installation() / kConfigs);
+  folders.push_back(installation() / "share/stillpoint/configs");
   return folders;
 }
 

@@ -79,8 +79,14 @@ void MappingSystem::end() {
   dense_mapping_.end();
 }
 
+std::vector<LabelledPoint> MappingSystem::dense_points() {
+  const std::lock_guard lock(dense_mutex_);
+  return map_backend_.call_unmeasured({}, &MapBackend::occupied);
+}
+
 void MappingSystem::save(const std::filesystem::path& directory) {
   if (!map_backend_.present()) return;
+  const std::lock_guard lock(dense_mutex_);
   map_backend_.call_unmeasured({}, [&](MapBackend& backend) {
     std::error_code error;
     std::filesystem::create_directories(directory, error);
@@ -139,6 +145,7 @@ void MappingSystem::adjust(const AdjustRequest& request) {
 }
 
 void MappingSystem::map_densely(const DenseItem& item) {
+  const std::lock_guard lock(dense_mutex_);
   if (const auto* keyframe = std::get_if<std::shared_ptr<const DenseKeyFrame>>(&item)) {
     dense_frame_ = (*keyframe)->frame->index;
     map_backend_.call("dense", dense_frame_, &MapBackend::integrate, **keyframe);

@@ -1,10 +1,14 @@
 // Frames of one's own through a shipped pipeline: the same as `stillpoint run` makes of them.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <opencv2/imgcodecs.hpp>
+#include <stop_token>
 #include <string>
+#include <thread>
 #include <utility>
 #include <vector>
 
@@ -37,9 +41,10 @@ std::vector<ImagePair> pairs_of(const fs::path& recording) {
 }
 
 EngineSetup setup_of(const fs::path& folder, const std::string& mode) {
-  const fs::path source = STILLPOINT_SOURCE_DIR;
+  // A test program lies elsewhere than an installed library.
+  ::setenv("STILLPOINT_CONFIG_PATH", STILLPOINT_SOURCE_DIR "/configs", 1);
   return {
-      .request = {.pipeline = (source / "configs/pipelines/stillpoint.yaml").string(),
+      .request = {.pipeline = "stillpoint",
                   .assignments = {"runtime.mode=" + mode},
                   .pushed = true,
                   .plugin_folders = {fs::path(STILLPOINT_BINARY_DIR) / "lib/stillpoint/plugins"}},
@@ -78,7 +83,15 @@ TEST(PushedRecording, IsTrackedOnThreadsAndItsMapCanBeGoneOnWith) {
   const TemporaryFolder folder;
   {
     Engine engine(setup_of(folder.path(), "threaded"));
+    std::jthread viewer([&](const std::stop_token& stop) {
+      for (std::size_t landmarks = 0; !stop.stop_requested();) {
+        landmarks = std::max(landmarks, engine.map()->landmark_count());
+        if (landmarks > 0) engine.dense_map();
+      }
+    });
     push_all(engine, recording);
+    viewer.request_stop();
+    EXPECT_GT(engine.dense_map().size(), 1000u);
     EXPECT_EQ(engine.trajectory().size(), pairs_of(recording).size());
     save_map(*engine.map(), folder.path() / "room.map");
   }

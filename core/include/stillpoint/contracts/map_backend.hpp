@@ -4,8 +4,10 @@
 #include <filesystem>
 #include <memory>
 #include <span>
+#include <vector>
 
 #include "stillpoint/contracts/frame.hpp"
+#include "stillpoint/contracts/labelled_point.hpp"
 #include "stillpoint/contracts/map_correction.hpp"
 #include "stillpoint/contracts/segmentation.hpp"
 #include "stillpoint/contracts/static_weights.hpp"
@@ -37,6 +39,9 @@ class STILLPOINT_EXPORT MapBackend {
   virtual void move(std::span<const MovedKeyFrame> moved) = 0;
   /// Writes the map's files into an existing folder; may bring the map up to date before.
   virtual void save(const std::filesystem::path& directory) = 0;
+  /// What is occupied by what was integrated so far, a point per cell. Nothing for a map that is no
+  /// set of points. Between other calls, on any thread.
+  virtual std::vector<LabelledPoint> occupied() const;
 };
 
 }  // namespace stillpoint

@@ -38,12 +38,6 @@ struct EngineSetup {
   std::function<void(LogLevel, std::string_view)> log = log_to_stderr;
 };
 
-/// One pose of the trajectory.
-struct StampedPose {
-  double time = 0.0;  ///< seconds, of the frame
-  Pose world_from_camera = Pose::Identity();
-};
-
 /// One run of a pipeline. process(), run(), finish() and poses() are called from one thread, which
 /// is thread 1 of the paper's Fig. 2, tracking; `runtime.mode: threaded` has the others behind it.
 ///
@@ -83,6 +77,11 @@ class STILLPOINT_EXPORT Engine {
 
   /// A snapshot that never changes. From any thread, at any time.
   std::shared_ptr<const SparseMap> map() const;
+  /// What the dense map holds now, in the world; it is some key frames behind. Nothing without a
+  /// map back end. From any thread, at any time; waits for the key frame that is being mapped.
+  std::vector<LabelledPoint> dense_map() const;
+  /// Of the segmenter, by label: of images, objects and the dense map. Empty without one.
+  const ClassNames& classes() const;
   /// Of every frame processed, in order.
   const std::vector<TrackedPose>& poses() const;
   /// Of the frames that were tracked, by what the map says now.

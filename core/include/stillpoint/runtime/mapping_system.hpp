@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <mutex>
 #include <variant>
 #include <vector>
 
@@ -42,6 +43,8 @@ class MappingSystem {
   void end();
   /// Loops closed. Only after end().
   int loops() const { return loops_; }
+  /// What the dense map holds now. From any thread.
+  std::vector<LabelledPoint> dense_points();
   /// Writes the dense map into `directory`, if there is one. Only after end().
   void save(const std::filesystem::path& directory);
 
@@ -77,6 +80,7 @@ class MappingSystem {
   StageCaller<MapBackend> map_backend_;
   MapStore map_;
   KeyFrameId next_keyframe_;       // of the thread that pushes
+  std::mutex dense_mutex_;         // held while the dense map is called: anybody may read it
   std::uint32_t dense_frame_ = 0;  // given last to the dense map, for messages and times
   int loops_ = 0;
   // Of the loop thread: the map does not show yet what it found last, so it looks for nothing more.

@@ -34,6 +34,8 @@ class Pipeline {
   void finish();
 
   MapStore::Snapshot map() const { return mapping_.snapshot(); }
+  std::vector<LabelledPoint> dense_map() { return mapping_.dense_points(); }
+  const ClassNames& classes() const { return classes_; }
   const std::vector<TrackedPose>& poses() const { return poses_; }
 
  private:
@@ -51,6 +53,7 @@ class Pipeline {
   const RuntimeOptions options_;
   const std::filesystem::path map_directory_;
   const bool localise_only_;
+  const ClassNames classes_;
   const std::shared_ptr<PaceClock> clock_;
   const double wall_start_;
   const double cpu_start_;
