@@ -1,6 +1,7 @@
 #include "source_tum/tum_source.hpp"
 
 #include <algorithm>
+#include <opencv2/core.hpp>
 
 namespace stillpoint {
 namespace {

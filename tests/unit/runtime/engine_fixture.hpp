@@ -7,6 +7,7 @@
 
 #include "doubles.hpp"
 #include "stillpoint/engine/engine.hpp"
+#include "stillpoint/runtime/worker.hpp"
 
 namespace stillpoint::testing {
 
