@@ -5,6 +5,7 @@
 
 #include "stillpoint/engine/make_stages.hpp"
 #include "stillpoint/engine/registry.hpp"
+#include "stillpoint/runtime/folder_lock.hpp"
 #include "stillpoint/runtime/pipeline.hpp"
 
 namespace stillpoint {
@@ -18,16 +19,6 @@ void make_folder(const std::filesystem::path& folder) {
                 "choose another output_directory");
 }
 
-std::unique_ptr<Pipeline> make_pipeline(EngineSetup setup) {
-  Registry registry;
-  const PipelineConfig config = load_pipeline(setup.request, registry);
-  if (!setup.output_directory.empty()) make_folder(setup.output_directory);
-  Stages stages = make_stages(config, setup.output_directory, setup.log);
-  stages.known_map = std::move(setup.known_map);
-  stages.localise_only = setup.localise_only;
-  return std::make_unique<Pipeline>(std::move(stages), config.runtime, config.segmentation);
-}
-
 }  // namespace
 
 void log_to_stderr(LogLevel level, std::string_view text) {
@@ -35,7 +26,18 @@ void log_to_stderr(LogLevel level, std::string_view text) {
   if (level == LogLevel::kError) std::cerr << "error: " + std::string(text) + '\n';
 }
 
-Engine::Engine(EngineSetup setup) : pipeline_(make_pipeline(std::move(setup))) {}
+Engine::Engine(EngineSetup setup) {
+  Registry registry;
+  const PipelineConfig config = load_pipeline(setup.request, registry);
+  if (!setup.output_directory.empty()) {
+    make_folder(setup.output_directory);
+    lock_ = std::make_unique<FolderLock>(setup.output_directory);
+  }
+  Stages stages = make_stages(config, setup.output_directory, setup.log);
+  stages.known_map = std::move(setup.known_map);
+  stages.localise_only = setup.localise_only;
+  pipeline_ = std::make_unique<Pipeline>(std::move(stages), config.runtime, config.segmentation);
+}
 
 Engine::Engine(Stages stages, const RuntimeOptions& runtime,
                const SegmentationOptions& segmentation, std::shared_ptr<PaceClock> clock)

@@ -106,7 +106,7 @@ FrameReportPtr Pipeline::push(Frame frame) {
     throw Error(Fault::kUsage, "no frame can be pushed during run() or after finish()");
   throw_failure();
   frame.index = pushed_ ? pushed_->index + 1 : 0;
-  if (frame.gray.empty() && frame.bgr.type() == CV_8UC3)
+  if (frame.gray.empty() && !frame.bgr.empty() && frame.bgr.type() == CV_8UC3)
     cv::cvtColor(frame.bgr, frame.gray, cv::COLOR_BGR2GRAY);
   check_pushed(frame, pushed_.get());
   pushed_ = std::make_shared<const Frame>(std::move(frame));

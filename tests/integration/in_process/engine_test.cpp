@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <fstream>
 #include <opencv2/imgcodecs.hpp>
+#include <optional>
 #include <stop_token>
 #include <string>
 #include <thread>
@@ -103,6 +104,14 @@ TEST(PushedRecording, IsTrackedOnThreadsAndItsMapCanBeGoneOnWith) {
   Engine engine(std::move(again));
   push_all(engine, recording);
   EXPECT_EQ(engine.map()->keyframe_count(), keyframes);
+}
+
+TEST(PushedRecording, TwoEnginesDoNotWriteIntoOneFolder) {
+  const TemporaryFolder folder;
+  std::optional<Engine> first(setup_of(folder.path(), "inline"));
+  EXPECT_THROW(Engine(setup_of(folder.path(), "inline")), Error);
+  first.reset();
+  EXPECT_NO_THROW(Engine(setup_of(folder.path(), "inline")));
 }
 
 TEST(PushedRecording, FaultsOfThePipelineAreToldBeforeAnythingIsMade) {

@@ -102,7 +102,8 @@ TEST_P(PushedFrames, ThatCannotBeUsedCountForNothing) {
   EXPECT_EQ(message_of([&] { engine.process(earlier); }, Fault::kData),
             "frame 1: the frame is 1.000000 s older than the one before; give frames in order of "
             "time");
-  EXPECT_EQ(message_of([&] { engine.process({.time = 20.0}); }, Fault::kData),
+  const cv::Mat nothing(0, 0, CV_8UC3);
+  EXPECT_EQ(message_of([&] { engine.process({.time = 20.0, .bgr = nothing}); }, Fault::kData),
             "frame 1: the frame has no image; leave out images that cannot be read");
   EXPECT_EQ(engine.process(make_frame(1))->frame->index, 1u);
   engine.finish();

@@ -29,12 +29,13 @@ STILLPOINT_EXPORT void log_to_stderr(LogLevel level, std::string_view text);
 /// What an engine is made from, a pipeline file above all.
 struct EngineSetup {
   PipelineRequest request;
-  /// Made when it is not there. The pipeline's outputs write into it, and the dense map into its
-  /// folder `map`; empty: no outputs, and the dense map is not saved.
+  /// Made when it is not there, and no other engine's or run's meanwhile. The pipeline's outputs
+  /// write into it, and the dense map into its folder `map`; empty: no outputs, and the dense map
+  /// is not saved.
   std::filesystem::path output_directory;
   SparseMap known_map;         ///< to begin with, see load_map(); empty: the first frame begins one
   bool localise_only = false;  ///< the known map stays as it is
-  /// Called from any thread, one at a time or not: it has to allow for both.
+  /// Called from any thread, also by several at once.
   std::function<void(LogLevel, std::string_view)> log = log_to_stderr;
 };
 
@@ -64,7 +65,7 @@ class STILLPOINT_EXPORT Engine {
   /// trajectory() may know better later.
   ///
   /// Throws Error(kData) for a frame that cannot be used (other size than its camera, depth that is
-  /// not CV_32FC1, time that does not increase); it counts for nothing, and the next may follow.
+  /// not CV_32FC1, time that runs backwards); it counts for nothing, and the next may follow.
   FrameReportPtr process(Frame frame);
 
   /// Feeds all frames of the pipeline's source, then finish(). Ends early after a stop, with what
@@ -88,6 +89,7 @@ class STILLPOINT_EXPORT Engine {
   std::vector<StampedPose> trajectory() const;
 
  private:
+  std::unique_ptr<class FolderLock> lock_;  // of the output directory
   std::unique_ptr<class Pipeline> pipeline_;
 };
 
