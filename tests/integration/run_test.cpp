@@ -184,6 +184,28 @@ TEST_F(Run, NothingTrackedIsSaid) {
   EXPECT_THAT(run_with("100").err, ::testing::Not(HasSubstr("no frame was tracked")));
 }
 
+TEST_F(Run, EarlierPicturesDoNotOutliveTheirRun) {
+  const auto run_with = [&](const std::vector<std::string>& settings) {
+    std::vector<std::string> arguments = {"--dataset", simulated_recording().string(), "--set",
+                                          "source.limit=3"};
+    arguments.insert(arguments.end(), settings.begin(), settings.end());
+    const Outcome outcome = run("same", "orb_baseline", arguments);
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  };
+  const auto images = out() / "same/images";
+  const std::string every_frame = "outputs=[{type: images, every: 1}]";
+  run_with({"--set", every_frame});
+  EXPECT_TRUE(fs::exists(images / "000002.jpg"));
+  std::ofstream(images / "mine.jpg") << "a picture of the user's";
+  run_with({});
+  EXPECT_FALSE(fs::exists(images / "000002.jpg"));
+  EXPECT_TRUE(fs::exists(images / "mine.jpg"));
+  fs::remove(images / "mine.jpg");
+  run_with({"--set", every_frame});
+  run_with({});
+  EXPECT_FALSE(fs::exists(images));
+}
+
 TEST_F(Run, EarlierDenseMapDoesNotOutliveItsRun) {
   const auto run_with = [&](const std::string& backend) {
     const Outcome outcome = run("same", "orb_baseline",

@@ -84,6 +84,45 @@ TEST_F(RegistryTest, OlderApi) {
                                   ", this program has API " + std::to_string(kPluginApi) +
                                   "; rebuild it against Stillpoint "));
 }
+TEST_F(RegistryTest, NothingOfALibraryThatDoesNotFitIsRun) {
+  use("older_api");
+  Registry registry;
+  registry.search(folder_);
+  EXPECT_EQ(registry.unusable().size(), 1u);
+  EXPECT_EQ(std::getenv("STILLPOINT_OLDER_API_RAN"), nullptr);
+}
+TEST_F(RegistryTest, LibraryFromBeforeThereWereStamps) {
+  use("no_stamp");
+  EXPECT_THAT(reason(), HasSubstr("built for a plugin API before 10, this program has API "));
+}
+TEST_F(RegistryTest, StampThatIsDamaged) {
+  std::string bytes = bytes_of("good");
+  bytes.replace(bytes.find("stillpoint plugin\n"), 10, "stillwater");
+  write("damaged", bytes);
+  EXPECT_EQ(reason(), "its stamp is damaged");
+}
+TEST_F(RegistryTest, StampWhoseNumberIsNone) {
+  std::string bytes = bytes_of("good");
+  const std::string line = "moving_checker " + std::to_string(MovingChecker::kApi) + "\n";
+  bytes.replace(bytes.find(line) + line.size() - 2, 1, "x");
+  write("damaged", bytes);
+  EXPECT_EQ(reason(), "its stamp is damaged");
+}
+TEST_F(RegistryTest, OlderContract) {
+  use("older_kind");
+  EXPECT_EQ(reason().find("built for API " + std::to_string(Output::kApi - 1) +
+                          " of kind 'output', this program has API " +
+                          std::to_string(Output::kApi) + "; rebuild it against Stillpoint "),
+            0u);
+}
+TEST_F(RegistryTest, OlderContractLeavesTheOtherKindsUsable) {
+  use("older_and_newer_kinds");
+  EXPECT_THAT(reason(), HasSubstr("output 'viewer': built for API "));
+  Registry registry;
+  registry.search(folder_);
+  EXPECT_EQ(registry.find("output", "viewer"), nullptr);
+  EXPECT_TRUE(make(registry, "current")->check({}, {}).reliable);
+}
 TEST_F(RegistryTest, NewerApi) {
   use("newer_api");
   EXPECT_THAT(reason(), HasSubstr("built for plugin API " + std::to_string(kPluginApi + 1)));
@@ -101,7 +140,7 @@ TEST_F(RegistryTest, UndefinedSymbol) {
 }
 TEST_F(RegistryTest, UnknownKind) {
   use("unknown_kind");
-  EXPECT_EQ(reason(), "provides 'pulse' of unknown kind 'radar'");
+  EXPECT_EQ(reason(), "radar 'pulse': there is no kind 'radar'");
 }
 TEST_F(RegistryTest, IncompleteEntry) {
   use("incomplete_entry");

@@ -8,6 +8,7 @@
 #include <cerrno>
 #include <cstring>
 #include <fstream>
+#include <regex>
 #include <system_error>
 #include <utility>
 
@@ -21,6 +22,17 @@ namespace fs = std::filesystem;
 constexpr const char* kResults[] = {"pipeline.yaml", "log.txt",     "trajectory.txt",
                                     "keyframes.txt", "timings.csv", "summary.json"};
 constexpr const char* kMaps[] = {"map.ot", "map.bt", "map.ply", "map.pgm", "map.yaml", "cloud.ply"};
+
+/// Maps and pictures, by their names: nothing else in these folders is the program's.
+std::vector<fs::path> files_of_a_run(const fs::path& folder) {
+  static const std::regex kPicture(R"(\d{6,}\.(jpg|png))");
+  std::vector<fs::path> files;
+  for (const char* name : kMaps) files.push_back(folder / "map" / name);
+  std::error_code none;
+  for (const auto& entry : fs::directory_iterator(folder / "images", none))
+    if (std::regex_match(entry.path().filename().string(), kPicture)) files.push_back(entry.path());
+  return files;
+}
 
 [[noreturn]] void fail(const fs::path& path, const std::string& reason) {
   throw Error(Fault::kUsage, "cannot write the run folder: " + reason, path.string(),
@@ -58,7 +70,7 @@ RunFolder::~RunFolder() {
 
 void RunFolder::begin(const std::string& effective_yaml) {
   remove_earlier_results();
-  note_earlier_maps();
+  note_earlier_files();
   std::ofstream yaml(path_ / "pipeline.yaml");
   if (!(yaml << effective_yaml << std::flush)) fail(path_ / "pipeline.yaml", std::strerror(errno));
   const std::lock_guard lock(mutex_);
@@ -87,20 +99,20 @@ void RunFolder::log(LogLevel level, std::string_view text) const {
   if (level == LogLevel::kError) console_.line("error: " + std::string(text));
 }
 
-void RunFolder::note_earlier_maps() {
-  for (const char* name : kMaps) {
+void RunFolder::note_earlier_files() {
+  for (const fs::path& file : files_of_a_run(path_)) {
     std::error_code missing;
-    const fs::path file = path_ / "map" / name;
     const fs::file_time_type written = fs::last_write_time(file, missing);
-    if (!missing) earlier_maps_.emplace_back(file, written);
+    if (!missing) earlier_files_.emplace_back(file, written);
   }
 }
 
-void RunFolder::remove_earlier_maps() const {
+void RunFolder::remove_earlier_files() const {
   std::error_code ignored;
-  for (const auto& [file, written] : earlier_maps_)
+  for (const auto& [file, written] : earlier_files_) {
     if (fs::last_write_time(file, ignored) == written && !ignored) fs::remove(file, ignored);
-  if (!earlier_maps_.empty()) fs::remove(path_ / "map", ignored);  // if nothing is left in it
+    fs::remove(file.parent_path(), ignored);  // if nothing is left in it
+  }
 }
 
 std::vector<std::string> RunFolder::contents() const {

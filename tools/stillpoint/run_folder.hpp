@@ -32,20 +32,22 @@ class RunFolder {
   RunFolder& operator=(const RunFolder&) = delete;
 
   /// Once all that the run needs is there: removes results of an earlier run, but for its dense
-  /// map, and writes pipeline.yaml and log.txt. Throws Error(kUsage) when that is not possible.
+  /// map and pictures, and writes pipeline.yaml and log.txt. Throws Error(kUsage) when that is not
+  /// possible.
   void begin(const std::string& effective_yaml);
 
   const std::filesystem::path& path() const { return path_; }
   /// Into log.txt; warnings and errors also to the console. May be called from any thread.
   void log(LogLevel level, std::string_view text) const;
-  /// Of an earlier run, what this one has not replaced. After a run that did not fail.
-  void remove_earlier_maps() const;
+  /// Maps and pictures of an earlier run that this one has not replaced. After a run that did not
+  /// fail.
+  void remove_earlier_files() const;
   /// Names of what is in it, sorted; folders end with '/'.
   std::vector<std::string> contents() const;
 
  private:
   void remove_earlier_results() const;
-  void note_earlier_maps();
+  void note_earlier_files();
 
   std::filesystem::path path_;
   Console& console_;
@@ -54,7 +56,7 @@ class RunFolder {
   mutable std::mutex mutex_;
   std::shared_ptr<spdlog::logger> log_;                          // guarded, like early_
   mutable std::vector<std::pair<LogLevel, std::string>> early_;  // lines before begin()
-  std::vector<std::pair<std::filesystem::path, std::filesystem::file_time_type>> earlier_maps_;
+  std::vector<std::pair<std::filesystem::path, std::filesystem::file_time_type>> earlier_files_;
 };
 
 }  // namespace stillpoint

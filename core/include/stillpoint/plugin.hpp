@@ -1,14 +1,16 @@
-// How a library tells what it provides: one constant descriptor behind one exported symbol. No code
-// of the plugin runs before its API number and ABI tag have been compared.
+// How a library tells what it provides: a constant descriptor, and a stamp that says what it was
+// built for. The stamp is read from the file: nothing of a library that does not fit is ever run.
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <opencv2/core/version.hpp>
 #include <optional>
+#include <span>
 #include <string_view>
 #include <type_traits>
 
@@ -19,19 +21,32 @@
 
 namespace stillpoint {
 
-/// Goes up with any change under contracts/, in plugin.hpp or in options.hpp.
-inline constexpr std::uint32_t kPluginApi = 9;
+/// Of what all kinds share: this header, options.hpp, frames, cameras and class names. Each contract
+/// has a number of its own besides, kApi, for its functions and what they take and give. A number
+/// goes up with any change after which libraries have to be built anew (docs/writing_a_plugin.md).
+inline constexpr std::uint32_t kPluginApi = 10;
 
 #define STILLPOINT_TEXT_(x) #x
 #define STILLPOINT_TEXT(x) STILLPOINT_TEXT_(x)
 
-/// What must be equal for C++ objects to cross the border: compiler, language, standard library,
-/// Eigen with its alignment (it changes with -mavx), OpenCV.
+#ifdef _GLIBCXX_DEBUG
+#define STILLPOINT_STD_DEBUG_ "-glibcxxdebug"
+#else
+#define STILLPOINT_STD_DEBUG_ ""
+#endif
+#ifdef EIGEN_DEFAULT_TO_ROW_MAJOR
+#define STILLPOINT_EIGEN_ORDER_ "-rowmajor"
+#else
+#define STILLPOINT_EIGEN_ORDER_ ""
+#endif
+
+/// What must be equal for C++ objects to cross the border: compiler, language, standard library and
+/// its debug mode, Eigen with its alignment (it changes with -mavx) and order, OpenCV.
 inline constexpr const char* kAbiTag =
     "gcc" STILLPOINT_TEXT(__GNUC__) "-c++" STILLPOINT_TEXT(__cplusplus) "-cxx11abi"
-    STILLPOINT_TEXT(_GLIBCXX_USE_CXX11_ABI) "-eigen" STILLPOINT_TEXT(EIGEN_WORLD_VERSION) "."
+    STILLPOINT_TEXT(_GLIBCXX_USE_CXX11_ABI) STILLPOINT_STD_DEBUG_ "-eigen" STILLPOINT_TEXT(EIGEN_WORLD_VERSION) "."
     STILLPOINT_TEXT(EIGEN_MAJOR_VERSION) "." STILLPOINT_TEXT(EIGEN_MINOR_VERSION) "-align"
-    STILLPOINT_TEXT(EIGEN_MAX_ALIGN_BYTES) "-opencv" STILLPOINT_TEXT(CV_VERSION_MAJOR) "."
+    STILLPOINT_TEXT(EIGEN_MAX_ALIGN_BYTES) STILLPOINT_EIGEN_ORDER_ "-opencv" STILLPOINT_TEXT(CV_VERSION_MAJOR) "."
     STILLPOINT_TEXT(CV_VERSION_MINOR);
 
 enum class LogLevel { kDebug, kInfo, kWarning, kError };
@@ -51,6 +66,7 @@ struct StageContext {
 /// One implementation of one contract.
 struct PluginEntry {
   const char* kind;                  ///< of the contract, as Interface::kKind
+  std::uint32_t kind_api;            ///< of the contract, as Interface::kApi
   const char* type;                  ///< what a pipeline file writes after `type:`
   const char* summary;               ///< one line
   void (*describe)(OptionVisitor&);  ///< visits default options
@@ -58,8 +74,6 @@ struct PluginEntry {
 };
 
 struct PluginDescriptor {
-  std::uint32_t api_version;
-  const char* abi_tag;
   const char* name;
   const char* version;
   const PluginEntry* entries;
@@ -68,7 +82,38 @@ struct PluginDescriptor {
 
 inline constexpr const char* kPluginSymbol = "stillpoint_plugin";
 
+/// Lines of text, the rest zero: `stillpoint plugin`, `api N`, `abi TAG`, and `KIND N` for each kind
+/// provided, N its kind_api.
+using PluginStamp = std::array<char, 512>;
+inline constexpr const char* kPluginStampSymbol = "stillpoint_plugin_stamp";
+
 namespace detail {
+
+class StampWriter {
+ public:
+  constexpr void line(std::string_view key, std::string_view value) {
+    text(key);
+    text(" ");
+    text(value);
+    text("\n");
+  }
+  constexpr void line(std::string_view key, std::uint32_t value) {
+    std::array<char, 10> digits{};
+    std::size_t first = digits.size();
+    do digits[--first] = static_cast<char>('0' + value % 10);
+    while ((value /= 10) > 0);
+    line(key, std::string_view(&digits[first], digits.size() - first));
+  }
+  constexpr PluginStamp stamp() const { return stamp_; }
+
+ private:
+  constexpr void text(std::string_view words) {
+    for (const char letter : words) stamp_.at(size_++) = letter;
+  }
+
+  PluginStamp stamp_{};
+  std::size_t size_ = 0;
+};
 
 struct NoOptions {
   void visit(OptionVisitor&) {}
@@ -117,19 +162,40 @@ constexpr PluginEntry provide(const char* type, const char* summary) {
                     std::is_constructible_v<Implementation, Options>,
                 "a class with Options needs a constructor that takes them, (Options) or (Options, "
                 "const StageContext&): what users write in the pipeline file would be lost");
-  return {Interface::kKind, type, summary, &detail::describe<Implementation>,
+  return {Interface::kKind, Interface::kApi, type, summary, &detail::describe<Implementation>,
           &detail::create<Interface, Implementation>};
+}
+
+/// At compile time; too many kinds do not compile.
+constexpr PluginStamp stamp_of(std::span<const PluginEntry> entries,
+                               std::uint32_t api = kPluginApi, std::string_view abi = kAbiTag) {
+  detail::StampWriter writer;
+  writer.line("stillpoint", "plugin");
+  writer.line("api", api);
+  writer.line("abi", abi);
+  for (std::size_t i = 0; i < entries.size(); ++i) {
+    bool first = true;  // of its kind
+    for (std::size_t j = 0; j < i; ++j)
+      first = first && std::string_view(entries[j].kind) != entries[i].kind;
+    if (first) writer.line(entries[i].kind, entries[i].kind_api);
+  }
+  return writer.stamp();
 }
 
 }  // namespace stillpoint
 
 /// Once per library, at namespace scope: STILLPOINT_PLUGIN(name, "version", provide<…>(…), …);
-#define STILLPOINT_PLUGIN(plugin_name, plugin_version, ...)                          \
-  namespace {                                                                        \
-  constexpr stillpoint::PluginEntry stillpoint_entries[] = {__VA_ARGS__};            \
-  }                                                                                  \
-  extern "C" STILLPOINT_EXPORT const stillpoint::PluginDescriptor stillpoint_plugin; \
-  const stillpoint::PluginDescriptor stillpoint_plugin = {                           \
-      stillpoint::kPluginApi, stillpoint::kAbiTag,                                   \
-      #plugin_name,           plugin_version,                                        \
-      stillpoint_entries,     sizeof(stillpoint_entries) / sizeof(stillpoint_entries[0])}
+#define STILLPOINT_PLUGIN(plugin_name, plugin_version, ...)                              \
+  namespace {                                                                            \
+  constexpr stillpoint::PluginEntry stillpoint_entries[] = {__VA_ARGS__};                \
+  }                                                                                      \
+  STILLPOINT_PLUGIN_STAMP(stillpoint::stamp_of(stillpoint_entries));                     \
+  extern "C" STILLPOINT_EXPORT const stillpoint::PluginDescriptor stillpoint_plugin;     \
+  const stillpoint::PluginDescriptor stillpoint_plugin = {                               \
+      #plugin_name, plugin_version, stillpoint_entries,                                  \
+      sizeof(stillpoint_entries) / sizeof(stillpoint_entries[0])}
+
+/// Part of STILLPOINT_PLUGIN.
+#define STILLPOINT_PLUGIN_STAMP(...)                                                     \
+  extern "C" STILLPOINT_EXPORT constinit const stillpoint::PluginStamp stillpoint_plugin_stamp = \
+      __VA_ARGS__

@@ -7,6 +7,7 @@
 #include "stillpoint/error.hpp"
 #include "stillpoint/runtime/option_describer.hpp"
 #include "stillpoint/runtime/plugin_library.hpp"
+#include "stillpoint/runtime/plugin_stamp.hpp"
 
 namespace stillpoint {
 namespace {
@@ -37,6 +38,17 @@ std::string fault_of_options(const PluginEntry& entry) {
   }
 }
 
+/// Why a type cannot be used; empty when it can.
+std::string fault_of(const PluginEntry& entry) {
+  if (!entry.kind || !entry.type || !entry.summary || !entry.describe || !entry.create)
+    return "its descriptor has an incomplete entry";
+  const std::string name = std::string(entry.kind) + " '" + entry.type + "'";
+  if (const std::string fault = why_not_fitting(entry.kind, entry.kind_api); !fault.empty())
+    return name + ": " + fault;
+  const std::string fault = fault_of_options(entry);
+  return fault.empty() ? fault : "the options of " + name + ": " + fault;
+}
+
 }  // namespace
 
 void Registry::add(const PluginDescriptor& descriptor) { add(descriptor, {}, nullptr); }
@@ -58,9 +70,8 @@ void Registry::add(const PluginDescriptor& descriptor, const fs::path& file,
                    std::shared_ptr<const void> handle) {
   const std::span<const PluginEntry> entries(descriptor.entries, descriptor.entry_count);
   for (const PluginEntry& entry : entries) {
-    const std::string name = std::string(entry.kind) + " '" + entry.type + "'";
-    if (const std::string fault = fault_of_options(entry); !fault.empty()) {
-      unusable_.push_back({file, "the options of " + name + ": " + fault});
+    if (const std::string fault = fault_of(entry); !fault.empty()) {
+      unusable_.push_back({file, fault});
       continue;
     }
     const PluginType* first = find(entry.kind, entry.type);
@@ -70,7 +81,8 @@ void Registry::add(const PluginDescriptor& descriptor, const fs::path& file,
       continue;
     }
     const std::string provider = first->library.empty() ? "this program" : first->library.string();
-    unusable_.push_back({file, name + " is already provided by " + provider});
+    unusable_.push_back({file, std::string(entry.kind) + " '" + entry.type +
+                                   "' is already provided by " + provider});
   }
 }
 

@@ -1,6 +1,7 @@
 // Contract: from what could move and what does move to what is used (paper III-D). Thread 1.
 #pragma once
 
+#include <cstdint>
 #include "stillpoint/contracts/frame.hpp"
 #include "stillpoint/contracts/map_evidence.hpp"
 #include "stillpoint/contracts/moving_points.hpp"
@@ -13,6 +14,7 @@ namespace stillpoint {
 class STILLPOINT_EXPORT Decision {
  public:
   static constexpr const char* kKind = "decision";
+  static constexpr std::uint32_t kApi = 1;  ///< see kPluginApi
   virtual ~Decision();
 
   /// Called once per frame, in order. Weight images have the frame's size or are empty.

@@ -1,6 +1,7 @@
 // Contract: extends and refines the sparse map (paper III-A). Thread 3, the map's only writer.
 #pragma once
 
+#include <cstdint>
 #include <stop_token>
 
 #include "stillpoint/contracts/keyframe.hpp"
@@ -14,6 +15,7 @@ namespace stillpoint {
 class STILLPOINT_EXPORT LocalMapper {
  public:
   static constexpr const char* kKind = "local_mapper";
+  static constexpr std::uint32_t kApi = 1;  ///< see kPluginApi
   virtual ~LocalMapper();
 
   /// Adds the key frame under its own id, with its landmarks. Quick.

@@ -1,6 +1,7 @@
 // Contract: recognises places seen before (paper III-A). Thread 4.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <stop_token>
 
@@ -13,6 +14,7 @@ namespace stillpoint {
 class STILLPOINT_EXPORT LoopCloser {
  public:
   static constexpr const char* kKind = "loop_closer";
+  static constexpr std::uint32_t kApi = 1;  ///< see kPluginApi
   virtual ~LoopCloser();
 
   /// Nothing when `latest` closes no loop or when `stop` is requested.

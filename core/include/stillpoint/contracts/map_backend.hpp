@@ -1,6 +1,7 @@
 // Contract: the dense map (paper III-E). Thread 5.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <span>
@@ -32,6 +33,7 @@ struct DenseKeyFrame {
 class STILLPOINT_EXPORT MapBackend {
  public:
   static constexpr const char* kKind = "map_backend";
+  static constexpr std::uint32_t kApi = 1;  ///< see kPluginApi
   virtual ~MapBackend();
 
   virtual void integrate(const DenseKeyFrame& keyframe) = 0;

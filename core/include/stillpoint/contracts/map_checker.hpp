@@ -2,6 +2,7 @@
 // not in the DS-SLAM paper.) Beside thread 1.
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <span>
 
@@ -32,6 +33,7 @@ struct TrackedFrame {
 class STILLPOINT_EXPORT MapChecker {
  public:
   static constexpr const char* kKind = "map_checker";
+  static constexpr std::uint32_t kApi = 1;  ///< see kPluginApi
   virtual ~MapChecker();
 
   /// Before a frame is tracked. `guesses` are poses it may have (world_from_camera), the likeliest

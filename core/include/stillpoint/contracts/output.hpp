@@ -73,6 +73,7 @@ struct RunSummary {
 class STILLPOINT_EXPORT Output {
  public:
   static constexpr const char* kKind = "output";
+  static constexpr std::uint32_t kApi = 1;  ///< see kPluginApi
   virtual ~Output();
 
   /// In order of the frames. Threaded, tracking is some frames ahead; with `when_full: drop` it may

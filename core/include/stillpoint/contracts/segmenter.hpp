@@ -1,6 +1,7 @@
 // Contract: class labels for an image (paper III-B). Thread 2.
 #pragma once
 
+#include <cstdint>
 #include "stillpoint/class_names.hpp"
 #include "stillpoint/contracts/frame.hpp"
 #include "stillpoint/contracts/segmentation.hpp"
@@ -11,6 +12,7 @@ namespace stillpoint {
 class STILLPOINT_EXPORT Segmenter {
  public:
   static constexpr const char* kKind = "segmenter";
+  static constexpr std::uint32_t kApi = 1;  ///< see kPluginApi
   virtual ~Segmenter();
 
   /// What its labels mean. Other stages learn it from their StageContext.

@@ -1,6 +1,7 @@
 // Contract: where frames come from. A thread of its own when threaded.
 #pragma once
 
+#include <cstdint>
 #include <cstddef>
 #include <filesystem>
 #include <memory>
@@ -21,6 +22,7 @@ struct SourceReport {
 class STILLPOINT_EXPORT Source {
  public:
   static constexpr const char* kKind = "source";
+  static constexpr std::uint32_t kApi = 1;  ///< see kPluginApi
   virtual ~Source();
 
   /// The next frame in order of time, or nothing at the end. Indices count up from 0 without gaps.

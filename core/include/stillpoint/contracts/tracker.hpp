@@ -1,6 +1,7 @@
 // Contract: the camera's pose in the sparse map (paper III-A). Thread 1.
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -63,6 +64,7 @@ struct TrackHints {
 class STILLPOINT_EXPORT Tracker {
  public:
   static constexpr const char* kKind = "tracker";
+  static constexpr std::uint32_t kApi = 1;  ///< see kPluginApi
   virtual ~Tracker();
 
   /// Everything that needs neither weights nor map; overlaps the network (paper III-D).

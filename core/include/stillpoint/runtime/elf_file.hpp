@@ -2,16 +2,25 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
+#include <stdexcept>
 #include <string>
 #include <string_view>
 
 namespace stillpoint {
 
-/// Why `file` is not a complete shared library for this machine that exports `symbol`; empty when
-/// it is. dlopen() of a truncated file can kill the process, hence the completeness.
+/// `file` is no complete shared library for this machine. dlopen() of a truncated one can kill the
+/// process.
+struct UnusableFile : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+/// The bytes of an object that a shared library exports, as they lie in the file, before relocation;
+/// nothing when it exports none of that name. Throws UnusableFile.
 ///
 /// boost::dll::library_info is not used for this: it trusts every offset in the file, and it reads
 /// the table of debugging symbols, which `strip` and packaging remove.
-std::string why_not_exporting(const std::filesystem::path& file, std::string_view symbol);
+std::optional<std::string> exported_object(const std::filesystem::path& file,
+                                           std::string_view symbol);
 
 }  // namespace stillpoint

@@ -19,7 +19,4 @@ struct PluginLibrary {
 /// Throws nothing. The library stays loaded until the process ends.
 PluginLibrary load_plugin_library(const std::filesystem::path& file);
 
-/// What is wrong with a descriptor, or nothing.
-std::string check_descriptor(const PluginDescriptor& descriptor);
-
 }  // namespace stillpoint
