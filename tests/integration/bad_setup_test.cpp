@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "support/simulated_recording.hpp"
@@ -19,11 +20,15 @@ constexpr int kWrongUsage = 2;
 
 class BadSetup : public ::testing::Test {
  protected:
-  Outcome run(const std::string& pipeline, std::vector<std::string> arguments,
-              const Surroundings& surroundings = {}) const {
+  std::vector<std::string> command(const std::string& pipeline,
+                                   std::vector<std::string> arguments) const {
     arguments.insert(arguments.begin(),
                      {"run", pipeline, "-o", out().string(), "--set", "source.limit=6"});
-    return call(std::move(arguments), surroundings);
+    return arguments;
+  }
+  Outcome run(const std::string& pipeline, std::vector<std::string> arguments,
+              const Surroundings& surroundings = {}) const {
+    return call(command(pipeline, std::move(arguments)), surroundings);
   }
   static std::vector<std::string> on_recording(std::vector<std::string> more = {}) {
     more.insert(more.begin(), {"--dataset", simulated_recording().string()});
@@ -189,6 +194,69 @@ TEST_F(BadPlugins, FailingStageIsNamedAndResultsAreSaved) {
     EXPECT_EQ(summary["failure"], message);
     EXPECT_EQ(count_poses(out() / "trajectory.txt"), 1u);
   }
+}
+
+struct Misdeed {
+  const char* how;
+  const char* reason;
+};
+
+/// A moving checker that does at the fourth frame what no exception tells of.
+class StageThatMisbehaves : public BadPlugins,
+                            public ::testing::WithParamInterface<std::tuple<const char*, Misdeed>> {
+ protected:
+  std::string mode() const { return std::get<0>(GetParam()); }
+  Misdeed misdeed() const { return std::get<1>(GetParam()); }
+  std::vector<std::string> arguments() const {
+    return on_recording({"--set", "moving_checker.type=misbehaves", "--set",
+                         std::string("moving_checker.how=") + misdeed().how, "--set",
+                         "runtime.mode=" + mode(), "--set", "runtime.stage_timeout=0.1"});
+  }
+  void expect_saved(const Outcome& outcome) const {
+    const std::string message =
+        std::string("moving check (misbehaves) failed on frame 3: ") + misdeed().reason;
+    EXPECT_EQ(outcome.exit_code, kStageFailed) << outcome.signal;
+    EXPECT_THAT(outcome.err, HasSubstr("error: " + message));
+    EXPECT_THAT(outcome.out, HasSubstr("trajectory.txt"));
+    // Threaded, the last frame may follow a key frame that was not in the map yet.
+    EXPECT_GE(count_poses(out() / "trajectory.txt"), mode() == "inline" ? 3u : 2u);
+    const auto summary = json_file(out() / "summary.json");
+    EXPECT_FALSE(summary["complete"]);
+    EXPECT_EQ(summary["failure"], message);
+  }
+};
+
+using StageThatEndsTheProcess = StageThatMisbehaves;
+INSTANTIATE_TEST_SUITE_P(
+    Ways, StageThatEndsTheProcess,
+    ::testing::Combine(
+        ::testing::Values("inline", "threaded"),
+        ::testing::Values(Misdeed{"crash", "it crashed: SIGSEGV, Segmentation fault"},
+                          Misdeed{"abort", "it crashed: SIGABRT, Aborted"},
+                          Misdeed{"overflow", "it crashed: SIGSEGV, Segmentation fault"},
+                          Misdeed{"exit", "it called std::exit()"})),
+    [](const auto& test) {
+      return std::string(std::get<0>(test.param)) + "_" + std::get<1>(test.param).how;
+    });
+
+TEST_P(StageThatEndsTheProcess, IsNamedAndResultsAreSaved) {
+  expect_saved(run("orb_baseline", arguments(), with_plugins()));
+}
+
+using StageThatHangs = StageThatMisbehaves;
+INSTANTIATE_TEST_SUITE_P(Modes, StageThatHangs,
+                         ::testing::Combine(::testing::Values("inline", "threaded"),
+                                            ::testing::Values(Misdeed{
+                                                "hang", "it did not return and was given up"})),
+                         [](const auto& test) { return std::string(std::get<0>(test.param)); });
+
+TEST_P(StageThatHangs, IsNamedAndGivenUpByTheSecondCtrlC) {
+  Program program(command("orb_baseline", arguments()), with_plugins());
+  ASSERT_TRUE(program.wait_for("warning: moving check (misbehaves) has not returned for "));
+  program.send(SIGINT);
+  ASSERT_TRUE(program.wait_for("frame 3; Ctrl-C again gives it up"));
+  program.send(SIGINT);
+  expect_saved(program.finish());
 }
 
 }  // namespace

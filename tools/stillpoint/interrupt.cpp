@@ -1,5 +1,6 @@
 #include "interrupt.hpp"
 
+#include <poll.h>
 #include <sys/eventfd.h>
 #include <unistd.h>
 
@@ -7,14 +8,19 @@
 #include <cerrno>
 #include <csignal>
 #include <cstdint>
+#include <utility>
 
 #include "stillpoint/error.hpp"
+#include "stillpoint/runtime/stage_guard.hpp"
 
 namespace stillpoint {
 namespace {
 
+constexpr int kPatience = 1000;  // ms after the first signal
+
 // A signal handler may do little more than this: wake a thread that may do anything.
 std::atomic<int> received{0};
+std::atomic<int> count{0};
 std::atomic<int> wake_up{-1};  // an eventfd
 static_assert(std::atomic<int>::is_always_lock_free);
 
@@ -27,24 +33,33 @@ void wake() {
 
 extern "C" void on_signal(int signal) {
   received = signal;
+  if (++count == 2) {  // the third one ends the process
+    std::signal(SIGINT, SIG_DFL);
+    std::signal(SIGTERM, SIG_DFL);
+  }
   wake();
+}
+
+/// False when nobody has woken it up in time.
+bool wait_for_wake_up(int milliseconds) {
+  pollfd descriptor{.fd = wake_up, .events = POLLIN, .revents = 0};
+  while (::poll(&descriptor, 1, milliseconds) < 0 && errno == EINTR) {
+  }
+  std::uint64_t times = 0;
+  return (descriptor.revents & POLLIN) && ::read(wake_up, &times, sizeof(times)) > 0;
 }
 
 }  // namespace
 
-Interrupt::Interrupt() {
+Interrupt::Interrupt(std::function<void(const std::string& line)> say) {
   received = 0;
+  count = 0;
   wake_up = ::eventfd(0, EFD_CLOEXEC);
   if (wake_up < 0) throw Error(Fault::kStage, "the system gives no eventfd to wait for Ctrl-C");
-  watcher_ = std::jthread([this] {
-    std::uint64_t count = 0;
-    while (::read(wake_up, &count, sizeof(count)) < 0 && errno == EINTR) {
-    }
-    if (received != 0) stop_.request_stop();
-  });
+  watcher_ = std::jthread([this, say = std::move(say)] { watch(say); });
   struct sigaction action {};
   action.sa_handler = on_signal;
-  action.sa_flags = SA_RESETHAND | SA_RESTART;  // the second one ends the process
+  action.sa_flags = SA_RESTART;
   sigaction(SIGINT, &action, nullptr);
   sigaction(SIGTERM, &action, nullptr);
 }
@@ -52,11 +67,26 @@ Interrupt::Interrupt() {
 Interrupt::~Interrupt() {
   std::signal(SIGINT, SIG_DFL);
   std::signal(SIGTERM, SIG_DFL);
+  watcher_.request_stop();
   wake();
   watcher_.join();
   ::close(wake_up);
 }
 
 int Interrupt::signal() { return received; }
+
+void Interrupt::watch(const std::function<void(const std::string& line)>& say) {
+  const std::stop_token end = watcher_.get_stop_token();
+  wait_for_wake_up(-1);
+  if (end.stop_requested()) return;
+  stop_.request_stop();
+  if (count < 2 && !wait_for_wake_up(kPatience)) {
+    for (const std::string& text : StageGuard::calls_longer_than(1e-3 * kPatience))
+      say(text + "; Ctrl-C again gives it up");
+    wait_for_wake_up(-1);
+  }
+  if (end.stop_requested()) return;
+  if (StageGuard::give_up() == 0) std::raise(received);
+}
 
 }  // namespace stillpoint

@@ -1,16 +1,19 @@
 // Ctrl-C as a stop token.
 #pragma once
 
+#include <functional>
 #include <stop_token>
+#include <string>
 #include <thread>
 
 namespace stillpoint {
 
-/// While it lives, the first SIGINT or SIGTERM requests a stop; the second one ends the process as
-/// usual. One at a time.
+/// While it lives, the first SIGINT or SIGTERM requests a stop; should a stage not return for a
+/// second after that, `say` is told. The second one gives up the stages under way (see StageGuard),
+/// or ends the process as usual when there are none; so does the third in any case. One at a time.
 class Interrupt {
  public:
-  Interrupt();
+  explicit Interrupt(std::function<void(const std::string& line)> say = [](const auto&) {});
   ~Interrupt();
   Interrupt(const Interrupt&) = delete;
   Interrupt& operator=(const Interrupt&) = delete;
@@ -20,6 +23,8 @@ class Interrupt {
   static int signal();
 
  private:
+  void watch(const std::function<void(const std::string& line)>& say);
+
   std::stop_source stop_;
   std::jthread watcher_;
 };

@@ -1,5 +1,6 @@
 // stillpoint run: a recording through a pipeline, and what comes out into a run folder.
 #include <csignal>
+#include <cstdlib>
 #include <filesystem>
 #include <iostream>
 #include <memory>
@@ -15,6 +16,7 @@
 #include "run_table.hpp"
 #include "stillpoint/engine/engine.hpp"
 #include "stillpoint/engine/make_stages.hpp"
+#include "stillpoint/runtime/stage_guard.hpp"
 
 namespace stillpoint {
 namespace {
@@ -55,9 +57,13 @@ void run_and_print(Stages stages, const PipelineConfig& config, const RunFolder&
   } catch (const Error& error) {
     print();
     folder.log(LogLevel::kInfo, std::string("failed: ") + error.what());
+    if (StageGuard::has_ended_one()) {  // nothing more of its plugin is to be run
+      std::cerr << "error: " << error.what() << std::endl;
+      std::_Exit(error.exit_code());
+    }
     throw;
   }
-  folder.remove_earlier_maps();
+  folder.remove_earlier_files();
   print();
   if (table->nothing_tracked())
     folder.log(
@@ -102,7 +108,10 @@ void run(const RunArguments& arguments) {
   if (saver) stages.outputs.push_back({{std::move(saver), "map saver"}});
   int signal = 0;
   {
-    const Interrupt interrupt;
+    const StageGuard guard(config.runtime.stage_timeout, [&folder](const std::string& text) {
+      folder.log(LogLevel::kWarning, text + "; Ctrl-C twice gives it up");
+    });
+    const Interrupt interrupt([&console](const std::string& line) { console.line(line); });
     run_and_print(std::move(stages), config, folder, interrupt.token());
     signal = Interrupt::signal();
   }

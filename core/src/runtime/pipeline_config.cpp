@@ -5,10 +5,10 @@
 
 #include "stillpoint/contracts/segmenter.hpp"
 #include "stillpoint/contracts/source.hpp"
-#include "stillpoint/did_you_mean.hpp"
 #include "stillpoint/engine/config_lookup.hpp"
 #include "stillpoint/runtime/pipeline_tree.hpp"
 #include "stillpoint/runtime/yaml_option_reader.hpp"
+#include "stillpoint/support/did_you_mean.hpp"
 
 namespace stillpoint {
 namespace {
@@ -212,6 +212,8 @@ void RuntimeOptions::visit(OptionVisitor& v) {
            {.help = "as fast as possible, or as recorded, dropping frames while busy"});
   v("seed", seed, {.min = 0, .help = "of everything random"});
   v("threads", threads, {.min = 1, .max = 256, .help = "of each solver; inline uses 1"});
+  v("stage_timeout", stage_timeout,
+    {.min = 0, .max = 1e6, .unit = "s", .help = "a stage that takes longer is named; 0: none"});
 }
 
 void SegmentationOptions::visit(OptionVisitor& v) {

@@ -38,7 +38,8 @@ struct STILLPOINT_EXPORT RuntimeOptions {
   enum class Mode { kInline, kThreaded } mode = Mode::kThreaded;
   enum class Pace { kFree, kSensor } pace = Pace::kFree;
   int seed = 1;
-  int threads = 1;  ///< of each solver; always 1 inline
+  int threads = 1;            ///< of each solver; always 1 inline
+  double stage_timeout = 60;  ///< seconds after which the program names a stage; 0: never
 
   void visit(OptionVisitor& visitor);
 };

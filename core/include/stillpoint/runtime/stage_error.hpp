@@ -5,9 +5,9 @@
 #include <exception>
 #include <optional>
 #include <string>
-#include <utility>
 
 #include "stillpoint/error.hpp"
+#include "stillpoint/runtime/stage_guard.hpp"
 
 namespace stillpoint {
 
@@ -19,13 +19,13 @@ class StageError final : public Error {
              const std::exception* cause);
 };
 
-/// Calls `function`; whatever it throws leaves as StageError. An exception object of a plugin never
-/// travels further than its stage.
+/// Calls `function`; whatever it throws leaves as StageError, and where there is a StageGuard also
+/// what ends it otherwise. An exception object of a plugin never travels further than its stage.
 template <class Function>
 auto in_stage(const std::string& stage, std::optional<std::uint32_t> frame, Function&& function)
     -> decltype(function()) {
   try {
-    return std::forward<Function>(function)();
+    return call_guarded(stage, frame, function);
   } catch (const StageError&) {  // of a stage that this one called
     throw;
   } catch (const std::exception& error) {

@@ -1,0 +1,68 @@
+// Stages that crash, end the process or never return: named, and what was computed is saved.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <thread>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "stillpoint/export.hpp"
+
+namespace stillpoint {
+
+/// While it lives, a stage that SIGSEGV, SIGBUS, SIGFPE, SIGILL or SIGABRT hits, or that calls
+/// std::exit(), fails as if it had thrown. Only for programs whose signal handlers are their own;
+/// one at a time; make it after plugins have been loaded, since std::exit() destroys first what
+/// came last.
+///
+/// What the stage held stays as it was, locks and memory included: that is enough to save what was
+/// computed, not to go on. Should saving hang, too, the process ends after half a minute.
+class STILLPOINT_EXPORT StageGuard {
+ public:
+  /// Called on a thread of the guard's, once for each call of a stage that takes longer than
+  /// `patience_seconds`; 0: never.
+  using Late = std::function<void(const std::string& what)>;
+  StageGuard(double patience_seconds, Late late);
+  ~StageGuard();
+  StageGuard(const StageGuard&) = delete;
+  StageGuard& operator=(const StageGuard&) = delete;
+
+  /// The calls of stages that take longer than that: "tracking (orb) has not returned for 12 s,
+  /// frame 3".
+  static std::vector<std::string> calls_longer_than(double seconds);
+  /// Ends the calls under way where they are: they fail. Gives their number.
+  static std::size_t give_up();
+  /// Whether it had to end one. Destructors of that plugin may do as much harm as it did.
+  static bool has_ended_one();
+
+ private:
+  std::jthread watcher_;
+};
+
+/// Calls `function(argument)` as the stage's. Throws std::runtime_error with a reason when a guard
+/// had to end it.
+STILLPOINT_EXPORT void call_guarded(const std::string& stage, std::optional<std::uint32_t> frame,
+                                    void (*function)(void*), void* argument);
+
+/// The same for anything that can be called; gives what it gives.
+template <class Function>
+auto call_guarded(const std::string& stage, std::optional<std::uint32_t> frame, Function& function)
+    -> decltype(function()) {
+  using Result = decltype(function());
+  if constexpr (std::is_void_v<Result>) {
+    call_guarded(
+        stage, frame, [](void* f) { (*static_cast<Function*>(f))(); }, &function);
+  } else {
+    std::optional<Result> result;
+    auto keep = [&] { result.emplace(function()); };
+    call_guarded(stage, frame, keep);
+    return std::move(*result);
+  }
+}
+
+}  // namespace stillpoint

@@ -1,0 +1,227 @@
+#include "stillpoint/runtime/stage_guard.hpp"
+
+#include <pthread.h>
+#include <setjmp.h>
+#include <signal.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <chrono>
+#include <condition_variable>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <iomanip>
+#include <memory>
+#include <mutex>
+#include <sstream>
+#include <stdexcept>
+
+namespace stillpoint {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr std::array kCrashes = {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT};
+constexpr int kGiveUp = SIGUSR2;
+constexpr int kExited = 1000;  // beyond all signals
+constexpr unsigned kSecondsToSave = 30;
+constexpr std::size_t kStackOfHandlers = 64 * 1024;  // bytes
+
+struct Call {
+  const std::string& stage;
+  std::optional<std::uint32_t> frame;
+  Clock::time_point start = Clock::now();
+  pthread_t thread = pthread_self();
+  bool told = false;        // that it is late
+  Call* outer = nullptr;    // of the same thread
+  sigjmp_buf way_out = {};  // back to call_guarded()
+};
+
+// Of a thread; read by signal handlers, hence no lazy allocation.
+#define STILLPOINT_OF_THREAD thread_local __attribute__((tls_model("initial-exec")))
+STILLPOINT_OF_THREAD Call* current = nullptr;
+STILLPOINT_OF_THREAD volatile sig_atomic_t bookkeeping = 0;
+
+std::atomic<bool> guarded{false};
+std::atomic<bool> ended_one{false};
+std::array<char, 256> last_words{};  // of the handler of SIGALRM
+std::mutex calls_mutex;
+std::vector<Call*> calls;  // guarded by calls_mutex
+
+/// In `calls`, and `current`, while it lives.
+class Registered {
+ public:
+  explicit Registered(Call& call) {
+    bookkeeping = 1;
+    call.outer = current;
+    {
+      const std::lock_guard lock(calls_mutex);
+      calls.push_back(&call);
+    }
+    current = &call;
+    bookkeeping = 0;
+  }
+  ~Registered() {
+    bookkeeping = 1;
+    Call* const call = current;
+    current = call->outer;
+    {
+      const std::lock_guard lock(calls_mutex);
+      std::erase(calls, call);
+    }
+    bookkeeping = 0;
+  }
+  Registered(const Registered&) = delete;
+  Registered& operator=(const Registered&) = delete;
+};
+
+/// A stack that has overflowed is none for a handler.
+class StackOfHandlers {
+ public:
+  StackOfHandlers() : memory_(std::make_unique<char[]>(kStackOfHandlers)) {
+    stack_t stack{};
+    stack.ss_sp = memory_.get();
+    stack.ss_size = kStackOfHandlers;
+    sigaltstack(&stack, nullptr);
+  }
+  ~StackOfHandlers() {
+    stack_t none{};
+    none.ss_flags = SS_DISABLE;
+    sigaltstack(&none, nullptr);
+  }
+  StackOfHandlers(const StackOfHandlers&) = delete;
+  StackOfHandlers& operator=(const StackOfHandlers&) = delete;
+
+ private:
+  std::unique_ptr<char[]> memory_;
+};
+
+extern "C" void on_crash(int signal) {
+  if (current && !bookkeeping) siglongjmp(current->way_out, signal);
+  ::signal(signal, SIG_DFL);
+  ::raise(signal);
+}
+
+extern "C" void on_give_up(int signal) {
+  if (current && !bookkeeping) siglongjmp(current->way_out, signal);
+}
+
+extern "C" void on_exit_of_process() {
+  if (guarded && current && !bookkeeping) siglongjmp(current->way_out, kExited);
+}
+
+extern "C" void on_saving_hangs(int) {
+  [[maybe_unused]] const auto written =
+      ::write(STDERR_FILENO, last_words.data(), std::strlen(last_words.data()));
+  ::_exit(1);
+}
+
+std::string reason_of(int what) {
+  if (what == kExited) return "it called std::exit()";
+  if (what == kGiveUp) return "it did not return and was given up";
+  return std::string("it crashed: SIG") + sigabbrev_np(what) + ", " + sigdescr_np(what);
+}
+
+[[noreturn]] void fail(const Call& call, int what) {
+  const std::string reason = reason_of(what);
+  std::snprintf(last_words.data(), last_words.size(),
+                "error: %s: %s; what was computed could not be saved\n", call.stage.c_str(),
+                reason.c_str());
+  ::alarm(kSecondsToSave);
+  ended_one = true;
+  throw std::runtime_error(reason);
+}
+
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+std::string text_of(const Call& call) {
+  std::ostringstream text;
+  text << call.stage << " has not returned for " << std::setprecision(2)
+       << seconds_since(call.start) << " s";
+  if (call.frame) text << ", frame " << *call.frame;
+  return text.str();
+}
+
+void watch(const std::stop_token& stop, double patience, const StageGuard::Late& late) {
+  std::mutex mutex;
+  std::condition_variable_any stopped;
+  std::unique_lock lock(mutex);
+  const auto pause = std::chrono::duration<double>(std::min(patience / 4, 1.0));
+  while (!stopped.wait_for(lock, stop, pause, [] { return false; }) && !stop.stop_requested()) {
+    std::vector<std::string> texts;
+    {
+      const std::lock_guard all(calls_mutex);
+      for (Call* call : calls)
+        if (!call->told && seconds_since(call->start) > patience) {
+          call->told = true;
+          texts.push_back(text_of(*call));
+        }
+    }
+    for (const std::string& text : texts) late(text);
+  }
+}
+
+void handle(int signal, void (*handler)(int)) {
+  struct sigaction action {};
+  action.sa_handler = handler;
+  action.sa_flags = SA_ONSTACK;
+  sigaction(signal, &action, nullptr);
+}
+
+}  // namespace
+
+StageGuard::StageGuard(double patience_seconds, Late late) {
+  for (const int signal : kCrashes) handle(signal, on_crash);
+  handle(kGiveUp, on_give_up);
+  handle(SIGALRM, on_saving_hangs);
+  std::atexit(on_exit_of_process);
+  ended_one = false;
+  guarded = true;
+  if (patience_seconds > 0)
+    watcher_ =
+        std::jthread([patience_seconds, late = std::move(late)](const std::stop_token& stop) {
+          watch(stop, patience_seconds, late);
+        });
+}
+
+StageGuard::~StageGuard() {
+  guarded = false;
+  ::alarm(0);
+  for (const int signal : kCrashes) ::signal(signal, SIG_DFL);
+  ::signal(kGiveUp, SIG_IGN);
+  ::signal(SIGALRM, SIG_DFL);
+}
+
+std::vector<std::string> StageGuard::calls_longer_than(double seconds) {
+  std::vector<std::string> texts;
+  const std::lock_guard all(calls_mutex);
+  for (const Call* call : calls)
+    if (seconds_since(call->start) > seconds) texts.push_back(text_of(*call));
+  return texts;
+}
+
+std::size_t StageGuard::give_up() {
+  const std::lock_guard all(calls_mutex);
+  for (const Call* call : calls) pthread_kill(call->thread, kGiveUp);
+  return calls.size();
+}
+
+bool StageGuard::has_ended_one() { return ended_one; }
+
+void call_guarded(const std::string& stage, std::optional<std::uint32_t> frame,
+                  void (*function)(void*), void* argument) {
+  if (!guarded) return function(argument);
+  thread_local const StackOfHandlers kStack;
+  Call call{.stage = stage, .frame = frame};
+  const Registered registered(call);
+  const int what = sigsetjmp(call.way_out, 1);
+  if (what != 0) fail(call, what);
+  function(argument);
+}
+
+}  // namespace stillpoint
