@@ -4,8 +4,8 @@
 #include <map>
 #include <string_view>
 
-#include "stillpoint/did_you_mean.hpp"
 #include "stillpoint/error.hpp"
+#include "stillpoint/support/did_you_mean.hpp"
 
 namespace stillpoint {
 namespace {

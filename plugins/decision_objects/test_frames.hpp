@@ -2,8 +2,8 @@
 #pragma once
 
 #include "stillpoint/contracts/decision.hpp"
-#include "stillpoint/objects.hpp"
 #include "stillpoint/plugin.hpp"
+#include "stillpoint/support/objects.hpp"
 
 namespace stillpoint::decision {
 

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "map_octomap/map_files.hpp"
-#include "stillpoint/atomic_file.hpp"
 #include "stillpoint/error.hpp"
+#include "stillpoint/support/atomic_file.hpp"
 
 namespace stillpoint {
 namespace {

@@ -4,8 +4,8 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
-#include "stillpoint/atomic_file.hpp"
-#include "stillpoint/point_cloud_file.hpp"
+#include "stillpoint/support/atomic_file.hpp"
+#include "stillpoint/support/point_cloud_file.hpp"
 
 namespace stillpoint {
 

@@ -9,7 +9,7 @@
 
 #include "map_octomap/voxel_bits.hpp"
 #include "stillpoint/contracts/map_backend.hpp"
-#include "stillpoint/majority_vote.hpp"
+#include "stillpoint/support/majority_vote.hpp"
 
 namespace stillpoint {
 

@@ -7,8 +7,8 @@
 #include <unordered_map>
 #include <vector>
 
-#include "stillpoint/majority_vote.hpp"
-#include "stillpoint/point_cloud_file.hpp"
+#include "stillpoint/support/majority_vote.hpp"
+#include "stillpoint/support/point_cloud_file.hpp"
 
 namespace stillpoint {
 

@@ -1,4 +1,5 @@
 #include "map_voxel_cloud/voxel_cloud_backend.hpp"
+#include "stillpoint/support/point_cloud_file.hpp"
 
 namespace stillpoint {
 

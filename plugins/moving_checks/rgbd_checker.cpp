@@ -6,7 +6,7 @@
 #include <limits>
 #include <utility>
 
-#include "stillpoint/median.hpp"
+#include "stillpoint/support/median.hpp"
 
 namespace stillpoint {
 

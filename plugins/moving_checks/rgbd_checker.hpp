@@ -8,7 +8,7 @@
 
 #include "moving_checks/depth_surface.hpp"
 #include "moving_checks/point_follower.hpp"
-#include "stillpoint/rigid_motion.hpp"
+#include "stillpoint/support/rigid_motion.hpp"
 
 namespace stillpoint {
 

@@ -8,7 +8,7 @@
 #include "orb_slam/landmark_geometry.hpp"
 #include "orb_slam/matcher.hpp"
 #include "orb_slam/pose_solver.hpp"
-#include "stillpoint/median.hpp"
+#include "stillpoint/support/median.hpp"
 
 namespace stillpoint::orb {
 namespace {

@@ -5,7 +5,7 @@
 
 #include "orb_slam/landmark_geometry.hpp"
 #include "orb_slam/targets.hpp"
-#include "stillpoint/rigid_motion.hpp"
+#include "stillpoint/support/rigid_motion.hpp"
 
 namespace stillpoint::orb {
 namespace {

@@ -7,7 +7,7 @@
 #include <opencv2/imgcodecs.hpp>
 #include <utility>
 
-#include "stillpoint/atomic_file.hpp"
+#include "stillpoint/support/atomic_file.hpp"
 
 namespace stillpoint {
 namespace {

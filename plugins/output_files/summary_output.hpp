@@ -2,8 +2,8 @@
 #pragma once
 
 #include <filesystem>
-#include <stillpoint/run_statistics.hpp>
 #include <stillpoint/sdk.hpp>
+#include <stillpoint/support/run_statistics.hpp>
 
 namespace stillpoint {
 

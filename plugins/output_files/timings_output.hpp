@@ -4,7 +4,7 @@
 #include <span>
 #include <stillpoint/sdk.hpp>
 
-#include "stillpoint/atomic_file.hpp"
+#include "stillpoint/support/atomic_file.hpp"
 
 namespace stillpoint {
 

@@ -1,8 +1,8 @@
 #include "output_files/trajectory_output.hpp"
 
 #include "output_files/tum_pose.hpp"
-#include "stillpoint/atomic_file.hpp"
-#include "stillpoint/trajectory.hpp"
+#include "stillpoint/support/atomic_file.hpp"
+#include "stillpoint/support/trajectory.hpp"
 
 namespace stillpoint {
 

@@ -7,6 +7,7 @@
 #include "propagator_flow_depth/mask_rim.hpp"
 #include "propagator_flow_depth/mask_warp.hpp"
 #include "propagator_flow_depth/object_matching.hpp"
+#include "stillpoint/support/objects.hpp"
 
 namespace stillpoint {
 namespace {

@@ -4,7 +4,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "propagator_flow_depth/mask_rim.hpp"
-#include "stillpoint/objects.hpp"
+#include "stillpoint/support/objects.hpp"
 
 namespace stillpoint {
 namespace {

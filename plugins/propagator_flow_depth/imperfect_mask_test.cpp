@@ -7,6 +7,7 @@
 
 #include "propagator_flow_depth/flow_depth_propagator.hpp"
 #include "propagator_flow_depth/test_scene.hpp"
+#include "stillpoint/support/objects.hpp"
 
 namespace stillpoint {
 namespace {

@@ -3,7 +3,7 @@
 #include <opencv2/imgproc.hpp>
 #include <vector>
 
-#include "stillpoint/median.hpp"
+#include "stillpoint/support/median.hpp"
 
 namespace stillpoint {
 namespace {

@@ -8,7 +8,7 @@
 
 #include "stillpoint/contracts/frame.hpp"
 #include "stillpoint/contracts/segmentation.hpp"
-#include "stillpoint/objects.hpp"
+#include "stillpoint/support/objects.hpp"
 
 namespace stillpoint {
 

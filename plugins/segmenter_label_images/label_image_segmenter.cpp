@@ -2,6 +2,8 @@
 
 #include <cmath>
 #include <sstream>
+#include "stillpoint/support/objects.hpp"
+#include "stillpoint/support/size_text.hpp"
 
 namespace stillpoint {
 namespace {

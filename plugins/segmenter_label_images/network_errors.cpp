@@ -5,7 +5,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "segmenter_label_images/frame_random.hpp"
-#include "stillpoint/objects.hpp"
+#include "stillpoint/support/objects.hpp"
 
 namespace stillpoint {
 namespace {

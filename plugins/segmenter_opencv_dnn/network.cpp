@@ -6,10 +6,10 @@
 
 #include "segmenter_opencv_dnn/network_file.hpp"
 #include "segmenter_opencv_dnn/quiet_opencv.hpp"
-#include "stillpoint/did_you_mean.hpp"
 #include "stillpoint/error.hpp"
-#include "stillpoint/model_lookup.hpp"
-#include "stillpoint/size_text.hpp"
+#include "stillpoint/support/did_you_mean.hpp"
+#include "stillpoint/support/model_lookup.hpp"
+#include "stillpoint/support/size_text.hpp"
 
 namespace stillpoint {
 namespace {

@@ -4,6 +4,8 @@
 #include <opencv2/core/utility.hpp>
 #include <opencv2/imgproc.hpp>
 #include <ranges>
+#include "stillpoint/support/objects.hpp"
+#include "stillpoint/support/size_text.hpp"
 
 namespace stillpoint {
 namespace {

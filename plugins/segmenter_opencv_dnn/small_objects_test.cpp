@@ -4,7 +4,7 @@
 
 #include <opencv2/core.hpp>
 
-#include "stillpoint/objects.hpp"
+#include "stillpoint/support/objects.hpp"
 
 namespace stillpoint {
 namespace {

@@ -7,8 +7,8 @@
 
 #include "segmenter_segnet/caffe_weights.hpp"
 #include "segmenter_segnet/unpool_layer.hpp"
-#include "stillpoint/did_you_mean.hpp"
 #include "stillpoint/error.hpp"
+#include "stillpoint/support/did_you_mean.hpp"
 
 namespace stillpoint::segnet {
 namespace {

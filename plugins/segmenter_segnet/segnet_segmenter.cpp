@@ -5,8 +5,8 @@
 #include <utility>
 
 #include "segmenter_segnet/class_picking.hpp"
-#include "stillpoint/model_lookup.hpp"
-#include "stillpoint/objects.hpp"
+#include "stillpoint/support/model_lookup.hpp"
+#include "stillpoint/support/objects.hpp"
 
 namespace stillpoint {
 namespace {

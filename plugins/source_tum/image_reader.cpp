@@ -10,7 +10,7 @@
 
 #include "source_tum/image_size.hpp"
 #include "stillpoint/error.hpp"
-#include "stillpoint/size_text.hpp"
+#include "stillpoint/support/size_text.hpp"
 
 namespace stillpoint {
 namespace {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <opencv2/core.hpp>
+#include "stillpoint/support/size_text.hpp"
 
 namespace stillpoint {
 namespace {

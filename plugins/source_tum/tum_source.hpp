@@ -8,6 +8,7 @@
 #include "source_tum/image_reader.hpp"
 #include "source_tum/recording.hpp"
 #include "stillpoint/sdk.hpp"
+#include "stillpoint/support/rectifier.hpp"
 
 namespace stillpoint {
 

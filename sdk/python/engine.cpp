@@ -1,4 +1,6 @@
 #include "stillpoint/engine/engine.hpp"
+#include "stillpoint/support/option_check.hpp"
+#include "stillpoint/support/rectifier.hpp"
 
 #include <pybind11/numpy.h>
 #include <pybind11/stl.h>

@@ -14,7 +14,7 @@
 #include "map_octomap/class_belief.hpp"
 #include "map_octomap/scan_bricks.hpp"
 #include "segmenter_label_images/label_image_segmenter.hpp"
-#include "stillpoint/majority_vote.hpp"
+#include "stillpoint/support/majority_vote.hpp"
 
 namespace stillpoint {
 namespace {

@@ -14,7 +14,7 @@
 #include "evaluation/trajectory.hpp"
 #include "stillpoint/contracts/frame.hpp"
 #include "stillpoint/engine/pipeline_config.hpp"
-#include "stillpoint/rectifier.hpp"
+#include "stillpoint/support/rectifier.hpp"
 
 namespace stillpoint {
 

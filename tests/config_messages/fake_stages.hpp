@@ -114,7 +114,6 @@ inline constexpr PluginEntry kEntries[] = {
     provide<Decision, FakeDecision>("object_vote", "votes of moving points"),
     provide<Output, FakeOutput>("trajectory", "poses"),
 };
-inline constexpr PluginDescriptor kFakePlugin = {"fake",
-                                                 "1.0",      kEntries, std::size(kEntries)};
+inline constexpr PluginDescriptor kFakePlugin = {"fake", "1.0", kEntries, std::size(kEntries)};
 
 }  // namespace stillpoint::test

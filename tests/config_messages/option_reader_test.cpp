@@ -4,10 +4,10 @@
 #include <cstdlib>
 
 #include "fake_stages.hpp"
-#include "stillpoint/did_you_mean.hpp"
 #include "stillpoint/runtime/option_describer.hpp"
 #include "stillpoint/runtime/yaml_loader.hpp"
 #include "stillpoint/runtime/yaml_option_reader.hpp"
+#include "stillpoint/support/did_you_mean.hpp"
 
 namespace stillpoint::test {
 namespace {

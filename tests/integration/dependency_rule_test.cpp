@@ -75,13 +75,20 @@ std::vector<std::string> prefixes_of(const fs::path& parent) {
 TEST(DependencyRule, OptionsKnowNothingAndContractsOnlyThem) {
   expect_none_begins(kPublic / "options.hpp", {"stillpoint/contracts", "stillpoint/plugin"});
   for (const fs::path& folder : {kPublic / "contracts", kRoot / "core/src/contracts"})
-    expect_none_begins(folder, {"stillpoint/plugin", "stillpoint/engine", "stillpoint/runtime"});
+    expect_none_begins(folder, {"stillpoint/plugin", "stillpoint/support", "stillpoint/engine",
+                                "stillpoint/runtime"});
 }
 
-TEST(DependencyRule, SdkHeadersDoNotKnowTheEngine) {
+TEST(DependencyRule, WhatIsPromisedDoesWithoutHelpers) {
   for (const fs::directory_entry& entry : fs::directory_iterator(kPublic))
     if (entry.is_regular_file())
-      expect_none_begins(entry.path(), {"stillpoint/engine", "stillpoint/runtime"});
+      expect_none_begins(entry.path(),
+                         {"stillpoint/support", "stillpoint/engine", "stillpoint/runtime"});
+}
+
+TEST(DependencyRule, HelpersDoNotKnowTheEngine) {
+  for (const fs::path& folder : {kPublic / "support", kRoot / "core/src/support"})
+    expect_none_begins(folder, {"stillpoint/engine", "stillpoint/runtime"});
 }
 
 // The runtime's headers are not installed.

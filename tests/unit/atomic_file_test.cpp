@@ -1,4 +1,4 @@
-#include "stillpoint/atomic_file.hpp"
+#include "stillpoint/support/atomic_file.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "stillpoint/model_lookup.hpp"
+#include "stillpoint/support/model_lookup.hpp"
 
 #include <gmock/gmock.h>
 

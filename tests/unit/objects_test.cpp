@@ -1,5 +1,5 @@
 // From labels to objects.
-#include "stillpoint/objects.hpp"
+#include "stillpoint/support/objects.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "stillpoint/rectifier.hpp"
+#include "stillpoint/support/rectifier.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "stillpoint/rigid_motion.hpp"
+#include "stillpoint/support/rigid_motion.hpp"
 
 #include <gtest/gtest.h>
 

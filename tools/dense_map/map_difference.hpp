@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "map_octomap/octree_reader.hpp"
-#include "stillpoint/point_cloud_file.hpp"
+#include "stillpoint/support/point_cloud_file.hpp"
 
 namespace stillpoint::dense_map {
 

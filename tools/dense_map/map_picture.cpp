@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "map_octomap/cost_map.hpp"
-#include "stillpoint/atomic_file.hpp"
 #include "stillpoint/error.hpp"
+#include "stillpoint/support/atomic_file.hpp"
 
 namespace stillpoint::dense_map {
 namespace {

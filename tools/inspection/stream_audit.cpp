@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "stillpoint/median.hpp"
+#include "stillpoint/support/median.hpp"
 
 namespace stillpoint::inspection {
 

@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "commands.hpp"
-#include "stillpoint/did_you_mean.hpp"
 #include "stillpoint/error.hpp"
 #include "stillpoint/runtime/freed_memory.hpp"
+#include "stillpoint/support/did_you_mean.hpp"
 
 namespace {
 

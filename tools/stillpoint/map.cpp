@@ -17,6 +17,7 @@
 #include "dense_map/map_summary.hpp"
 #include "map_octomap/cost_map.hpp"
 #include "stillpoint/error.hpp"
+#include "stillpoint/support/point_cloud_file.hpp"
 
 namespace stillpoint {
 namespace {

@@ -7,8 +7,8 @@
 #include <tuple>
 
 #include "commands.hpp"
-#include "stillpoint/did_you_mean.hpp"
 #include "stillpoint/runtime/option_describer.hpp"
+#include "stillpoint/support/did_you_mean.hpp"
 
 namespace stillpoint {
 namespace {

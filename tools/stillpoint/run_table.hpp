@@ -5,7 +5,7 @@
 #include <ostream>
 #include <string>
 
-#include "stillpoint/run_statistics.hpp"
+#include "stillpoint/support/run_statistics.hpp"
 
 namespace stillpoint {
 

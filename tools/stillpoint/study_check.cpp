@@ -9,9 +9,9 @@
 #include <string_view>
 #include <vector>
 
-#include "stillpoint/did_you_mean.hpp"
 #include "stillpoint/engine/config_lookup.hpp"
 #include "stillpoint/error.hpp"
+#include "stillpoint/support/did_you_mean.hpp"
 #include "study/matrix.hpp"
 #include "study_file.hpp"
 

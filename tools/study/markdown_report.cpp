@@ -3,7 +3,7 @@
 #include <functional>
 
 #include "evaluation/format.hpp"
-#include "stillpoint/did_you_mean.hpp"
+#include "stillpoint/support/did_you_mean.hpp"
 #include "study/markdown_table.hpp"
 
 namespace stillpoint::study {

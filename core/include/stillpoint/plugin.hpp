@@ -21,9 +21,10 @@
 
 namespace stillpoint {
 
-/// Of what all kinds share: this header, options.hpp, frames, cameras and class names. Each contract
-/// has a number of its own besides, kApi, for its functions and what they take and give. A number
-/// goes up with any change after which libraries have to be built anew (docs/writing_a_plugin.md).
+/// Of what all kinds share: this header, options.hpp, frames, cameras and class names. Each
+/// contract has a number of its own besides, kApi, for its functions and what they take and give. A
+/// number goes up with any change after which libraries have to be built anew
+/// (docs/writing_a_plugin.md).
 inline constexpr std::uint32_t kPluginApi = 10;
 
 #define STILLPOINT_TEXT_(x) #x
@@ -42,12 +43,12 @@ inline constexpr std::uint32_t kPluginApi = 10;
 
 /// What must be equal for C++ objects to cross the border: compiler, language, standard library and
 /// its debug mode, Eigen with its alignment (it changes with -mavx) and order, OpenCV.
-inline constexpr const char* kAbiTag =
-    "gcc" STILLPOINT_TEXT(__GNUC__) "-c++" STILLPOINT_TEXT(__cplusplus) "-cxx11abi"
-    STILLPOINT_TEXT(_GLIBCXX_USE_CXX11_ABI) STILLPOINT_STD_DEBUG_ "-eigen" STILLPOINT_TEXT(EIGEN_WORLD_VERSION) "."
-    STILLPOINT_TEXT(EIGEN_MAJOR_VERSION) "." STILLPOINT_TEXT(EIGEN_MINOR_VERSION) "-align"
-    STILLPOINT_TEXT(EIGEN_MAX_ALIGN_BYTES) STILLPOINT_EIGEN_ORDER_ "-opencv" STILLPOINT_TEXT(CV_VERSION_MAJOR) "."
-    STILLPOINT_TEXT(CV_VERSION_MINOR);
+inline constexpr const char* kAbiTag = "gcc" STILLPOINT_TEXT(__GNUC__) "-c++" STILLPOINT_TEXT(
+    __cplusplus) "-cxx11abi" STILLPOINT_TEXT(_GLIBCXX_USE_CXX11_ABI) STILLPOINT_STD_DEBUG_
+    "-eigen" STILLPOINT_TEXT(EIGEN_WORLD_VERSION) "." STILLPOINT_TEXT(
+        EIGEN_MAJOR_VERSION) "." STILLPOINT_TEXT(EIGEN_MINOR_VERSION) "-align" STILLPOINT_TEXT(EIGEN_MAX_ALIGN_BYTES)
+        STILLPOINT_EIGEN_ORDER_
+    "-opencv" STILLPOINT_TEXT(CV_VERSION_MAJOR) "." STILLPOINT_TEXT(CV_VERSION_MINOR);
 
 enum class LogLevel { kDebug, kInfo, kWarning, kError };
 
@@ -82,8 +83,8 @@ struct PluginDescriptor {
 
 inline constexpr const char* kPluginSymbol = "stillpoint_plugin";
 
-/// Lines of text, the rest zero: `stillpoint plugin`, `api N`, `abi TAG`, and `KIND N` for each kind
-/// provided, N its kind_api.
+/// Lines of text, the rest zero: `stillpoint plugin`, `api N`, `abi TAG`, and `KIND N` for each
+/// kind provided, N its kind_api.
 using PluginStamp = std::array<char, 512>;
 inline constexpr const char* kPluginStampSymbol = "stillpoint_plugin_stamp";
 
@@ -162,13 +163,17 @@ constexpr PluginEntry provide(const char* type, const char* summary) {
                     std::is_constructible_v<Implementation, Options>,
                 "a class with Options needs a constructor that takes them, (Options) or (Options, "
                 "const StageContext&): what users write in the pipeline file would be lost");
-  return {Interface::kKind, Interface::kApi, type, summary, &detail::describe<Implementation>,
+  return {Interface::kKind,
+          Interface::kApi,
+          type,
+          summary,
+          &detail::describe<Implementation>,
           &detail::create<Interface, Implementation>};
 }
 
 /// At compile time; too many kinds do not compile.
-constexpr PluginStamp stamp_of(std::span<const PluginEntry> entries,
-                               std::uint32_t api = kPluginApi, std::string_view abi = kAbiTag) {
+constexpr PluginStamp stamp_of(std::span<const PluginEntry> entries, std::uint32_t api = kPluginApi,
+                               std::string_view abi = kAbiTag) {
   detail::StampWriter writer;
   writer.line("stillpoint", "plugin");
   writer.line("api", api);
@@ -185,17 +190,17 @@ constexpr PluginStamp stamp_of(std::span<const PluginEntry> entries,
 }  // namespace stillpoint
 
 /// Once per library, at namespace scope: STILLPOINT_PLUGIN(name, "version", provide<…>(…), …);
-#define STILLPOINT_PLUGIN(plugin_name, plugin_version, ...)                              \
-  namespace {                                                                            \
-  constexpr stillpoint::PluginEntry stillpoint_entries[] = {__VA_ARGS__};                \
-  }                                                                                      \
-  STILLPOINT_PLUGIN_STAMP(stillpoint::stamp_of(stillpoint_entries));                     \
-  extern "C" STILLPOINT_EXPORT const stillpoint::PluginDescriptor stillpoint_plugin;     \
-  const stillpoint::PluginDescriptor stillpoint_plugin = {                               \
-      #plugin_name, plugin_version, stillpoint_entries,                                  \
+#define STILLPOINT_PLUGIN(plugin_name, plugin_version, ...)                          \
+  namespace {                                                                        \
+  constexpr stillpoint::PluginEntry stillpoint_entries[] = {__VA_ARGS__};            \
+  }                                                                                  \
+  STILLPOINT_PLUGIN_STAMP(stillpoint::stamp_of(stillpoint_entries));                 \
+  extern "C" STILLPOINT_EXPORT const stillpoint::PluginDescriptor stillpoint_plugin; \
+  const stillpoint::PluginDescriptor stillpoint_plugin = {                           \
+      #plugin_name, plugin_version, stillpoint_entries,                              \
       sizeof(stillpoint_entries) / sizeof(stillpoint_entries[0])}
 
 /// Part of STILLPOINT_PLUGIN.
-#define STILLPOINT_PLUGIN_STAMP(...)                                                     \
+#define STILLPOINT_PLUGIN_STAMP(...)                                                             \
   extern "C" STILLPOINT_EXPORT constinit const stillpoint::PluginStamp stillpoint_plugin_stamp = \
       __VA_ARGS__

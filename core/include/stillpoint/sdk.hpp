@@ -1,7 +1,7 @@
-// Everything a plugin author includes.
+// What is promised to plugins: contracts, options, the descriptor. Helpers without a promise are in
+// stillpoint/support, each to be included by its name.
 #pragma once
 
-#include "stillpoint/atomic_file.hpp"
 #include "stillpoint/class_names.hpp"
 #include "stillpoint/contracts/decision.hpp"
 #include "stillpoint/contracts/local_mapper.hpp"
@@ -14,17 +14,7 @@
 #include "stillpoint/contracts/segmenter.hpp"
 #include "stillpoint/contracts/source.hpp"
 #include "stillpoint/contracts/tracker.hpp"
-#include "stillpoint/did_you_mean.hpp"
 #include "stillpoint/error.hpp"
-#include "stillpoint/majority_vote.hpp"
-#include "stillpoint/model_lookup.hpp"
-#include "stillpoint/objects.hpp"
-#include "stillpoint/option_check.hpp"
 #include "stillpoint/options.hpp"
 #include "stillpoint/plugin.hpp"
-#include "stillpoint/point_cloud_file.hpp"
 #include "stillpoint/pose_math.hpp"
-#include "stillpoint/rectifier.hpp"
-#include "stillpoint/rigid_motion.hpp"
-#include "stillpoint/size_text.hpp"
-#include "stillpoint/trajectory.hpp"

@@ -3,9 +3,9 @@
 #include <set>
 #include <vector>
 
-#include "stillpoint/did_you_mean.hpp"
 #include "stillpoint/engine/install_layout.hpp"
 #include "stillpoint/error.hpp"
+#include "stillpoint/support/did_you_mean.hpp"
 
 namespace stillpoint {
 namespace {

@@ -44,7 +44,8 @@ class ElfFile {
       const auto text = read<char>(names.sh_offset, names.sh_size);
       for (const auto& entry :
            read<Elf64_Sym>(section.sh_offset, section.sh_size / sizeof(Elf64_Sym)))
-        if (entry.st_shndx != SHN_UNDEF && name_at(text, entry.st_name) == symbol) return bytes_of(entry);
+        if (entry.st_shndx != SHN_UNDEF && name_at(text, entry.st_name) == symbol)
+          return bytes_of(entry);
     }
     return std::nullopt;
   }

@@ -7,6 +7,7 @@
 #include "stillpoint/engine/registry.hpp"
 #include "stillpoint/runtime/folder_lock.hpp"
 #include "stillpoint/runtime/pipeline.hpp"
+#include "stillpoint/support/trajectory.hpp"
 
 namespace stillpoint {
 namespace {

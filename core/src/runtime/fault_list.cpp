@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <tuple>
 
-#include "stillpoint/did_you_mean.hpp"
 #include "stillpoint/engine/pipeline_config.hpp"
+#include "stillpoint/support/did_you_mean.hpp"
 
 namespace stillpoint {
 

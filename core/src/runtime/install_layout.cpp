@@ -4,7 +4,7 @@
 #include <cstdlib>
 #include <sstream>
 
-#include "stillpoint/model_lookup.hpp"
+#include "stillpoint/support/model_lookup.hpp"
 
 namespace stillpoint {
 namespace {

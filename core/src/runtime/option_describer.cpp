@@ -2,8 +2,8 @@
 
 #include <set>
 
-#include "stillpoint/did_you_mean.hpp"
 #include "stillpoint/runtime/option_record.hpp"
+#include "stillpoint/support/did_you_mean.hpp"
 
 namespace stillpoint {
 

@@ -4,8 +4,8 @@
 #include <charconv>
 #include <cmath>
 
-#include "stillpoint/did_you_mean.hpp"
 #include "stillpoint/runtime/option_record.hpp"
+#include "stillpoint/support/did_you_mean.hpp"
 
 namespace stillpoint {
 namespace {

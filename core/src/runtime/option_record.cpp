@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "stillpoint/did_you_mean.hpp"
+#include "stillpoint/support/did_you_mean.hpp"
 
 namespace stillpoint {
 namespace {

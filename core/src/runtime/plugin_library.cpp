@@ -32,7 +32,7 @@ std::shared_ptr<const void> keep_loaded(const boost::dll::shared_library& librar
 
 PluginLibrary load_plugin_library(const std::filesystem::path& file) {
   PluginLibrary result;
-  result.reason = why_not_fitting(file);
+  result.reason = why_library_does_not_fit(file);
   if (!result.reason.empty()) return result;
   try {
     namespace mode = boost::dll::load_mode;

@@ -58,7 +58,7 @@ Stamp parse(const std::string& bytes) {
   return stamp;
 }
 
-Stamp stamp_of(const std::filesystem::path& file) {
+Stamp read_stamp(const std::filesystem::path& file) {
   if (const auto bytes = exported_object(file, kPluginStampSymbol)) return parse(*bytes);
   if (exported_object(file, kPluginSymbol))
     throw UnusableFile("built for a plugin API before 10, this program has API " +
@@ -67,7 +67,7 @@ Stamp stamp_of(const std::filesystem::path& file) {
                      "'; a plugin needs STILLPOINT_PLUGIN(…) once");
 }
 
-std::string why_not_fitting(const Stamp& stamp) {
+std::string why_stamp_does_not_fit(const Stamp& stamp) {
   if (stamp.api != kPluginApi)
     return "built for plugin API " + std::to_string(stamp.api) + ", this program has API " +
            std::to_string(kPluginApi) + kRebuild;
@@ -77,7 +77,7 @@ std::string why_not_fitting(const Stamp& stamp) {
            "; rebuild it with the same compiler, Eigen, OpenCV and processor flags";
   std::string reason;
   for (const auto& [kind, api] : stamp.kinds) {
-    reason = why_not_fitting(kind, api);
+    reason = why_kind_does_not_fit(kind, api);
     if (reason.empty()) return {};  // the others are refused one by one
   }
   return reason;
@@ -85,15 +85,15 @@ std::string why_not_fitting(const Stamp& stamp) {
 
 }  // namespace
 
-std::string why_not_fitting(const std::filesystem::path& file) {
+std::string why_library_does_not_fit(const std::filesystem::path& file) {
   try {
-    return why_not_fitting(stamp_of(file));
+    return why_stamp_does_not_fit(read_stamp(file));
   } catch (const UnusableFile& fault) {
     return fault.what();
   }
 }
 
-std::string why_not_fitting(std::string_view kind, std::uint32_t kind_api) {
+std::string why_kind_does_not_fit(std::string_view kind, std::uint32_t kind_api) {
   const auto known = std::ranges::find(kKinds, kind, &KindApi::kind);
   if (known == kKinds.end()) return "there is no kind '" + std::string(kind) + "'";
   if (known->api == kind_api) return {};

@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <span>
 
-#include "stillpoint/did_you_mean.hpp"
 #include "stillpoint/error.hpp"
 #include "stillpoint/runtime/option_describer.hpp"
 #include "stillpoint/runtime/plugin_library.hpp"
 #include "stillpoint/runtime/plugin_stamp.hpp"
+#include "stillpoint/support/did_you_mean.hpp"
 
 namespace stillpoint {
 namespace {
@@ -43,7 +43,7 @@ std::string fault_of(const PluginEntry& entry) {
   if (!entry.kind || !entry.type || !entry.summary || !entry.describe || !entry.create)
     return "its descriptor has an incomplete entry";
   const std::string name = std::string(entry.kind) + " '" + entry.type + "'";
-  if (const std::string fault = why_not_fitting(entry.kind, entry.kind_api); !fault.empty())
+  if (const std::string fault = why_kind_does_not_fit(entry.kind, entry.kind_api); !fault.empty())
     return name + ": " + fault;
   const std::string fault = fault_of_options(entry);
   return fault.empty() ? fault : "the options of " + name + ": " + fault;

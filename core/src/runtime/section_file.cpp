@@ -2,11 +2,11 @@
 
 #include <utility>
 
-#include "stillpoint/did_you_mean.hpp"
 #include "stillpoint/engine/config_lookup.hpp"
 #include "stillpoint/engine/pipeline_config.hpp"
 #include "stillpoint/runtime/yaml_loader.hpp"
 #include "stillpoint/runtime/yaml_option_reader.hpp"
+#include "stillpoint/support/did_you_mean.hpp"
 
 namespace stillpoint {
 

@@ -4,8 +4,8 @@
 #include <array>
 #include <utility>
 
-#include "stillpoint/objects.hpp"
 #include "stillpoint/runtime/stage_results.hpp"
+#include "stillpoint/support/objects.hpp"
 
 namespace stillpoint {
 namespace {

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "stillpoint/error.hpp"
-#include "stillpoint/size_text.hpp"
+#include "stillpoint/support/size_text.hpp"
 
 namespace stillpoint {
 namespace {

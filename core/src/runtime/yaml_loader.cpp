@@ -12,9 +12,9 @@
 #include <utility>
 #include <vector>
 
-#include "stillpoint/did_you_mean.hpp"
 #include "stillpoint/engine/config_lookup.hpp"
 #include "stillpoint/error.hpp"
+#include "stillpoint/support/did_you_mean.hpp"
 
 namespace stillpoint {
 namespace {

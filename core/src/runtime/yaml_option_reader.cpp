@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "stillpoint/did_you_mean.hpp"
 #include "stillpoint/runtime/option_parsing.hpp"
+#include "stillpoint/support/did_you_mean.hpp"
 
 namespace stillpoint {
 namespace {

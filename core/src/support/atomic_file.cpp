@@ -1,4 +1,4 @@
-#include "stillpoint/atomic_file.hpp"
+#include "stillpoint/support/atomic_file.hpp"
 
 #include <cerrno>
 #include <cstring>

@@ -1,4 +1,4 @@
-#include "stillpoint/did_you_mean.hpp"
+#include "stillpoint/support/did_you_mean.hpp"
 
 #include <algorithm>
 

@@ -1,12 +1,12 @@
-#include "stillpoint/model_lookup.hpp"
+#include "stillpoint/support/model_lookup.hpp"
 
 #include <dlfcn.h>
 
 #include <cstdlib>
 #include <sstream>
 
-#include "stillpoint/did_you_mean.hpp"
 #include "stillpoint/error.hpp"
+#include "stillpoint/support/did_you_mean.hpp"
 
 namespace stillpoint {
 namespace {

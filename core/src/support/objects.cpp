@@ -1,4 +1,4 @@
-#include "stillpoint/objects.hpp"
+#include "stillpoint/support/objects.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,4 +1,4 @@
-#include "stillpoint/option_check.hpp"
+#include "stillpoint/support/option_check.hpp"
 
 #include <cmath>
 #include <sstream>

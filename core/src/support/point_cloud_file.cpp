@@ -1,8 +1,8 @@
-#include "stillpoint/point_cloud_file.hpp"
+#include "stillpoint/support/point_cloud_file.hpp"
 
 #include <string>
 
-#include "stillpoint/atomic_file.hpp"
+#include "stillpoint/support/atomic_file.hpp"
 
 namespace stillpoint {
 

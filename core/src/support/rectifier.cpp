@@ -1,4 +1,4 @@
-#include "stillpoint/rectifier.hpp"
+#include "stillpoint/support/rectifier.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,8 +7,8 @@
 #include <string>
 
 #include "stillpoint/error.hpp"
-#include "stillpoint/option_check.hpp"
-#include "stillpoint/size_text.hpp"
+#include "stillpoint/support/option_check.hpp"
+#include "stillpoint/support/size_text.hpp"
 
 namespace stillpoint {
 namespace {

@@ -1,4 +1,4 @@
-#include "stillpoint/run_statistics.hpp"
+#include "stillpoint/support/run_statistics.hpp"
 
 #include <algorithm>
 #include <array>

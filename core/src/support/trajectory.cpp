@@ -1,4 +1,4 @@
-#include "stillpoint/trajectory.hpp"
+#include "stillpoint/support/trajectory.hpp"
 
 namespace stillpoint {
 

@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <opencv2/imgproc.hpp>
 #include <stillpoint/engine/engine.hpp>
+#include <stillpoint/support/rectifier.hpp>
 
 using namespace stillpoint;
 

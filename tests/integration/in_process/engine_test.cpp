@@ -15,6 +15,7 @@
 
 #include "stillpoint/engine/engine.hpp"
 #include "stillpoint/engine/map_file.hpp"
+#include "stillpoint/support/rectifier.hpp"
 #include "support/simulated_recording.hpp"
 
 namespace stillpoint::testing {

@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "engine_fixture.hpp"
-#include "stillpoint/trajectory.hpp"
+#include "stillpoint/support/trajectory.hpp"
 
 namespace stillpoint {
 namespace {

@@ -19,7 +19,7 @@ class STILLPOINT_EXPORT Segmenter {
   virtual ClassNames classes() const = 0;
 
   /// Labels of the frame's size, or empty labels when this segmenter has none for it. Objects may
-  /// be left out: the runtime finds them then (stillpoint/objects.hpp).
+  /// be left out: the runtime finds them then (stillpoint/support/objects.hpp).
   virtual Segmentation segment(const Frame& frame) = 0;
 };
 

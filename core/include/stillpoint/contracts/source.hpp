@@ -1,8 +1,8 @@
 // Contract: where frames come from. A thread of its own when threaded.
 #pragma once
 
-#include <cstdint>
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <optional>

@@ -15,8 +15,8 @@ struct UnusableFile : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// The bytes of an object that a shared library exports, as they lie in the file, before relocation;
-/// nothing when it exports none of that name. Throws UnusableFile.
+/// The bytes of an object that a shared library exports, as they lie in the file, before
+/// relocation; nothing when it exports none of that name. Throws UnusableFile.
 ///
 /// boost::dll::library_info is not used for this: it trusts every offset in the file, and it reads
 /// the table of debugging symbols, which `strip` and packaging remove.
