@@ -43,11 +43,12 @@ inline constexpr std::uint32_t kPluginApi = 10;
 
 /// What must be equal for C++ objects to cross the border: compiler, language, standard library and
 /// its debug mode, Eigen with its alignment (it changes with -mavx) and order, OpenCV.
-inline constexpr const char* kAbiTag = "gcc" STILLPOINT_TEXT(__GNUC__) "-c++" STILLPOINT_TEXT(
-    __cplusplus) "-cxx11abi" STILLPOINT_TEXT(_GLIBCXX_USE_CXX11_ABI) STILLPOINT_STD_DEBUG_
-    "-eigen" STILLPOINT_TEXT(EIGEN_WORLD_VERSION) "." STILLPOINT_TEXT(
-        EIGEN_MAJOR_VERSION) "." STILLPOINT_TEXT(EIGEN_MINOR_VERSION) "-align" STILLPOINT_TEXT(EIGEN_MAX_ALIGN_BYTES)
-        STILLPOINT_EIGEN_ORDER_
+inline constexpr const char* kAbiTag = "gcc" STILLPOINT_TEXT(__GNUC__)             //
+    "-c++" STILLPOINT_TEXT(__cplusplus)                                            //
+    "-cxx11abi" STILLPOINT_TEXT(_GLIBCXX_USE_CXX11_ABI) STILLPOINT_STD_DEBUG_      //
+    "-eigen" STILLPOINT_TEXT(EIGEN_WORLD_VERSION) "."                              //
+    STILLPOINT_TEXT(EIGEN_MAJOR_VERSION) "." STILLPOINT_TEXT(EIGEN_MINOR_VERSION)  //
+    "-align" STILLPOINT_TEXT(EIGEN_MAX_ALIGN_BYTES) STILLPOINT_EIGEN_ORDER_        //
     "-opencv" STILLPOINT_TEXT(CV_VERSION_MAJOR) "." STILLPOINT_TEXT(CV_VERSION_MINOR);
 
 enum class LogLevel { kDebug, kInfo, kWarning, kError };
