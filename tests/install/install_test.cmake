@@ -57,6 +57,27 @@ if(NOT output MATCHES "after 1.97 s at 0.29[0-9] -?0.00[0-4] -?0.00[0-4] m")
   message(FATAL_ERROR "the camera went 0.295 m to the right, but:\n${output}")
 endif()
 
+# A tracker of another kind than the project's: no features, no landmarks.
+run(${CMAKE_COMMAND} -S ${SOURCE_DIR}/sdk/examples/icp_tracker -B ${work}/icp_tracker
+  -G ${GENERATOR} -D CMAKE_CXX_COMPILER=${CXX_COMPILER} -D CMAKE_BUILD_TYPE=Release
+  -D CMAKE_PREFIX_PATH=${prefix})
+run(${CMAKE_COMMAND} --build ${work}/icp_tracker)
+run(${program} simulate fr3_walking_xyz_empty --frames 60 -o ${work}/recording
+  --set camera.width=320 --set camera.height=240 --set camera.fx=267.7 --set camera.fy=269.6
+  --set camera.cx=159.8 --set camera.cy=123.6)
+run(${CMAKE_COMMAND} -E env STILLPOINT_PLUGIN_PATH=${work}/icp_tracker
+  ${program} run ${SOURCE_DIR}/sdk/examples/icp_tracker/icp_odometry.yaml
+  --dataset ${work}/recording -o ${work}/run)
+run(${program} evaluate --json --reference ${work}/recording/groundtruth.txt
+  --estimate ${work}/run/trajectory.txt)
+string(JSON error GET "${output}" ate se3_m rmse)
+if(NOT error LESS 0.02)
+  message(FATAL_ERROR "ICP has an error of ${error} m")
+endif()
+if(NOT EXISTS ${work}/run/map/map.ot)
+  message(FATAL_ERROR "ICP's key frames gave no dense map")
+endif()
+
 if(PYTHON)
   run(${CMAKE_COMMAND} -E env PYTHONPATH=${prefix}/lib/python3/dist-packages
     ${PYTHON} ${SOURCE_DIR}/sdk/examples/push_arrays/push_arrays.py)

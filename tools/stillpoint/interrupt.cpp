@@ -56,7 +56,8 @@ Interrupt::Interrupt(std::function<void(const std::string& line)> say) {
   count = 0;
   wake_up = ::eventfd(0, EFD_CLOEXEC);
   if (wake_up < 0) throw Error(Fault::kStage, "the system gives no eventfd to wait for Ctrl-C");
-  watcher_ = std::jthread([this, say = std::move(say)] { watch(say); });
+  watcher_ =
+      std::jthread([this, say = std::move(say)](const std::stop_token& end) { watch(end, say); });
   struct sigaction action {};
   action.sa_handler = on_signal;
   action.sa_flags = SA_RESTART;
@@ -75,8 +76,8 @@ Interrupt::~Interrupt() {
 
 int Interrupt::signal() { return received; }
 
-void Interrupt::watch(const std::function<void(const std::string& line)>& say) {
-  const std::stop_token end = watcher_.get_stop_token();
+void Interrupt::watch(const std::stop_token& end,
+                      const std::function<void(const std::string& line)>& say) {
   wait_for_wake_up(-1);
   if (end.stop_requested()) return;
   stop_.request_stop();

@@ -23,7 +23,7 @@ class Interrupt {
   static int signal();
 
  private:
-  void watch(const std::function<void(const std::string& line)>& say);
+  void watch(const std::stop_token& end, const std::function<void(const std::string& line)>& say);
 
   std::stop_source stop_;
   std::jthread watcher_;

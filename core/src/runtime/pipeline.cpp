@@ -171,7 +171,8 @@ void Pipeline::record(const FrameReportPtr& report) {
                     .reference_from_camera = result.reference_from_camera,
                     .held_by_depth = result.held_by_depth,
                     .poorly_constrained = result.state == TrackState::kTracking &&
-                                          result.uncertainty.poorly_constrained()});
+                                          result.uncertainty &&
+                                          result.uncertainty->poorly_constrained()});
   for (OutputStage& output : outputs_) output.frame(report);
 }
 

@@ -32,14 +32,14 @@ struct TrackResult {
   TrackState state = TrackState::kWaiting;
   KeyFrameId reference = kNoId;  ///< valid only while tracking
   Pose reference_from_camera = Pose::Identity();
-  Pose world_from_camera = Pose::Identity();  ///< at the time of tracking
-  int features = 0;                           ///< extracted
-  int matches = 0;                            ///< with a landmark
-  int inliers = 0;                            ///< of those, fitting the pose
-  PoseUncertainty uncertainty;                ///< of the pose; while tracking
-  bool held_by_depth = false;                 ///< landmarks alone would not have been enough
-  std::vector<TrackedFeature> tracked;        ///< per feature
-  std::optional<KeyFrame> keyframe;           ///< to be inserted
+  Pose world_from_camera = Pose::Identity();   ///< at the time of tracking
+  int features = 0;                            ///< extracted
+  int matches = 0;                             ///< with a landmark
+  int inliers = 0;                             ///< of those, fitting the pose
+  std::optional<PoseUncertainty> uncertainty;  ///< of the pose; nothing: not known
+  bool held_by_depth = false;                  ///< landmarks alone would not have been enough
+  std::vector<TrackedFeature> tracked;         ///< per feature
+  std::optional<KeyFrame> keyframe;            ///< to be inserted
 };
 
 /// What a tracker has found in a frame before it knows weights and map, features for instance. Each
