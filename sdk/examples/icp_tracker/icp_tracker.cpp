@@ -25,7 +25,7 @@ class IcpTracker final : public Tracker {
     double reach = 0.1;
     double keyframe_distance = 0.15;
     double keyframe_angle = 10.0;
-    double keyframe_share = 0.7;
+    double keyframe_share = 0.4;
 
     void visit(OptionVisitor& v) {
       v("step", step, {.min = 1, .max = 32, .unit = "px", .help = "between pixels that are used"});
