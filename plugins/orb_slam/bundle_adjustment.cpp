@@ -106,19 +106,6 @@ std::vector<LandmarkId> seen_by(const SparseMap& map, const std::vector<KeyFrame
   return {ids.begin(), ids.end()};
 }
 
-void drop_outliers(MapEdit& edit, LandmarkId id) {
-  const std::vector<Observation> observations = edit.map().landmark(id)->observations;
-  for (const Observation& o : observations) {
-    const Landmark* landmark = edit.map().landmark(id);
-    if (!landmark) return;
-    const KeyFrame& keyframe = *edit.map().keyframe(o.keyframe);
-    if (!observation_error(landmark->position_in_world, keyframe.world_from_camera.inverse(),
-                           keyframe, o.feature)
-             .fits())
-      edit.remove_observation(id, o.keyframe);
-  }
-}
-
 }  // namespace
 
 std::vector<LandmarkId> adjust_locally(MapEdit& edit, KeyFrameId centre,
@@ -131,7 +118,7 @@ std::vector<LandmarkId> adjust_locally(MapEdit& edit, KeyFrameId centre,
     edit.keyframe(moved.keyframe).world_from_camera = moved.world_from_camera;
   for (const auto& [id, position] : problem.landmarks())
     edit.landmark(id).position_in_world = position;
-  for (const LandmarkId id : points) drop_outliers(edit, id);
+  for (const LandmarkId id : points) drop_misfits(edit, id);
   return points;
 }
 

@@ -1,6 +1,8 @@
 #include "orb_slam/landmark_fusion.hpp"
 
 #include <algorithm>
+#include <cstddef>
+#include <utility>
 
 #include "orb_slam/landmark_geometry.hpp"
 #include "orb_slam/matcher.hpp"
@@ -10,11 +12,24 @@ namespace {
 
 constexpr double kFusionWindow = 3.0;  // px at the predicted level
 
+/// Observations of both that fit the place of `landmark`.
+std::ptrdiff_t fitting(const SparseMap& map, const Landmark& landmark, const Landmark& other) {
+  const auto fits = [&](const Observation& o) {
+    return observation_fits(map, landmark.position_in_world, o);
+  };
+  return std::ranges::count_if(landmark.observations, fits) +
+         std::ranges::count_if(other.observations, fits);
+}
+
+/// The better known one is kept: a triangulation that is wrong fits what it was made from and
+/// nothing else, and what is seen of it from elsewhere would draw whole key frames away.
 void join(MapEdit& edit, LandmarkId a, LandmarkId b) {
-  const bool a_known_better =
-      edit.map().landmark(a)->observations.size() >= edit.map().landmark(b)->observations.size();
-  const LandmarkId kept = a_known_better ? a : b;
-  edit.fuse_landmarks(kept, a_known_better ? b : a);
+  const Landmark &first = *edit.map().landmark(a), &second = *edit.map().landmark(b);
+  const bool keep_a = std::pair(fitting(edit.map(), first, second), first.observations.size()) >=
+                      std::pair(fitting(edit.map(), second, first), second.observations.size());
+  const LandmarkId kept = keep_a ? a : b;
+  edit.fuse_landmarks(kept, keep_a ? b : a);
+  drop_misfits(edit, kept);
   refresh_landmark(edit, kept);
 }
 

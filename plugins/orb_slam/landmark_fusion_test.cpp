@@ -63,6 +63,42 @@ TEST_F(LandmarkFusionTest, DuplicatesBecomeOne) {
   expect_true_observations();
 }
 
+// A triangulation at the wrong depth lies on the ray of one key frame. What another one sees of the
+// point must not become an observation of it, however many there are already.
+TEST(LandmarkFusion, TheOneAtTheWrongPlaceGoes) {
+  TestWorld world;
+  const std::vector<View> views{world.see(walk(0)), world.see(walk(2)), world.see(walk(4))};
+  const KnownMap known = known_map(world, views);
+  MapEdit edit(known.map);
+  std::vector<std::pair<LandmarkId, LandmarkId>> split;
+  for (LandmarkId id = 0; id < known.map.landmark_id_end(); ++id) {
+    const Landmark* seen = known.map.landmark(id);
+    if (!seen || seen->observations.size() != 3) continue;
+    const Landmark old = *seen;
+    edit.remove_observation(id, 2);
+    const LandmarkId right = edit.add_landmark(
+        {.position_in_world = old.position_in_world, .reference = 2, .created_by = 2});
+    edit.add_observation(right, old.observations[2]);
+    refresh_landmark(edit, right);
+    const Eigen::Vector3d eye = views[0].world_from_camera.translation();
+    edit.landmark(id).position_in_world = eye + 0.1 * (old.position_in_world - eye);
+    refresh_landmark(edit, id);
+    split.emplace_back(id, right);
+  }
+  ASSERT_GT(split.size(), 50u);
+  fuse_with_neighbours(edit, 2, 10);
+  EXPECT_EQ(edit.map().check(), std::nullopt);
+  std::size_t joined = 0;
+  for (const auto& [wrong, right] : split) {
+    const Observation& seen = known.map.landmark(wrong)->observations[2];
+    const LandmarkId now = edit.map().keyframe(2)->landmarks[seen.feature];
+    ASSERT_NE(now, kNoId);
+    EXPECT_EQ(now, right);
+    joined += edit.map().landmark(now)->observations.size() == 3;
+  }
+  EXPECT_GT(joined, split.size() * 9 / 10);
+}
+
 TEST_F(LandmarkFusionTest, MissingObservationsAreAdded) {
   const auto ids = shared();
   for (std::size_t i = 0; i < ids.size(); ++i) {

@@ -73,4 +73,22 @@ ObservationError observation_error(const Eigen::Vector3d& point_in_world,
   return error;
 }
 
+bool observation_fits(const SparseMap& map, const Eigen::Vector3d& point_in_world,
+                      const Observation& observation) {
+  const KeyFrame& keyframe = *map.keyframe(observation.keyframe);
+  return observation_error(point_in_world, keyframe.world_from_camera.inverse(), keyframe,
+                           observation.feature)
+      .fits();
+}
+
+void drop_misfits(MapEdit& edit, LandmarkId id) {
+  const std::vector<Observation> observations = edit.map().landmark(id)->observations;
+  for (const Observation& o : observations) {
+    const Landmark* landmark = edit.map().landmark(id);
+    if (!landmark) return;
+    if (!observation_fits(edit.map(), landmark->position_in_world, o))
+      edit.remove_observation(id, o.keyframe);
+  }
+}
+
 }  // namespace stillpoint::orb

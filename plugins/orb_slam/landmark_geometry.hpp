@@ -20,6 +20,12 @@ ObservationError observation_error(const Eigen::Vector3d& point_in_world,
                                    const Pose& camera_from_world, const KeyFrame& keyframe,
                                    std::uint32_t feature);
 
+/// The same for the observation of a key frame of the map.
+bool observation_fits(const SparseMap& map, const Eigen::Vector3d& point_in_world,
+                      const Observation& observation);
+/// Removes observations that do not fit; with the last one the landmark goes.
+void drop_misfits(MapEdit& edit, LandmarkId id);
+
 /// Features with less weight than this do not become landmarks.
 inline constexpr std::uint8_t kMinMapWeight = 128;
 
