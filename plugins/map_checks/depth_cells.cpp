@@ -15,7 +15,8 @@ CellCamera::CellCamera(const Camera& camera)
     : fx(static_cast<float>(camera.fx / kCell)),
       fy(static_cast<float>(camera.fy / kCell)),
       cx(static_cast<float>((camera.cx - kCell / 2) / kCell)),
-      cy(static_cast<float>((camera.cy - kCell / 2) / kCell)) {}
+      cy(static_cast<float>((camera.cy - kCell / 2) / kCell)),
+      surface_noise(static_cast<float>(camera.surface_noise)) {}
 
 cv::Mat sample_depth(const cv::Mat& depth) {
   cv::Mat cells(depth.rows / kCell, depth.cols / kCell, CV_32F);

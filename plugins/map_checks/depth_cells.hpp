@@ -10,6 +10,7 @@ inline constexpr int kCell = 4;  // px, the side of a cell
 /// Pinhole camera whose pixels are cells.
 struct CellCamera {
   float fx = 0, fy = 0, cx = 0, cy = 0;  ///< cells
+  float surface_noise = 0;               ///< as in Camera
 
   explicit CellCamera(const Camera& camera);
   Eigen::Vector3f unproject(float x, float y, float z) const {

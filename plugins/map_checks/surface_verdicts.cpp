@@ -15,6 +15,7 @@ constexpr int kLanes = cv::v_float32::nlanes;
 constexpr float kMinDepth = 0.1F;  // m before a view
 // Nearest and farthest of the neighbours this many tolerances apart: an edge, between two surfaces.
 constexpr float kTolerancesAtEdge = 5.0F;
+constexpr float kSigmas = 5.0F;        // of the depth, by which both margin and tolerance are wider
 constexpr float kSameSurface = 0.03F;  // of the depth, between neighbouring cells
 
 // What has been said of the cells of a row.
@@ -132,7 +133,7 @@ class Judge {
       cv::v_float32 near, far;
       cv::v_lut_deinterleave(view.bounds.ptr<float>(), place + place, near, far);
       const cv::v_float32 measured = known & (far > zero);
-      const cv::v_float32 noise = all(options_.noise) * z * z;
+      const cv::v_float32 noise = all(kSigmas * camera_.surface_noise) * z * z;
       const cv::v_float32 tolerance = all(options_.tolerance) + noise;
 
       const cv::v_float32 resting = cv::vx_load(&verdicts_.resting[x]);
@@ -228,14 +229,15 @@ void grow(cv::Mat& log_odds, const cv::Mat& depth, const CellCamera& camera, flo
 
 void VerdictOptions::visit(OptionVisitor& v) {
   v("margin", margin,
-    {.min = 0, .max = 10, .unit = "m", .help = "before what was seen there: it has come in"});
-  v("tolerance", tolerance,
-    {.min = 0, .max = 10, .unit = "m", .help = "from what was seen there: it stands there still"});
-  v("noise", noise,
     {.min = 0,
-     .max = 1,
+     .max = 10,
      .unit = "m",
-     .help = "at 1 m that margin and tolerance grow by, with the square of the depth"});
+     .help = "before what was seen there, besides noise: it has come in"});
+  v("tolerance", tolerance,
+    {.min = 0,
+     .max = 10,
+     .unit = "m",
+     .help = "from what was seen there, besides noise: it stands there still"});
   v("rest_time", rest_time,
     {.min = 0, .max = 600, .unit = "s", .help = "until what has come in counts as resting"});
   v("min_age", min_age,

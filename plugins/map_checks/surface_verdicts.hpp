@@ -8,9 +8,8 @@
 namespace stillpoint {
 
 struct VerdictOptions {
-  double margin = 0.04;         ///< m at 0 m, by which something must stand before what was seen
-  double tolerance = 0.015;     ///< m at 0 m, within which it stands where it stood
-  double noise = 0.01;          ///< m at 1 m that both grow by, with the square of the depth
+  double margin = 0.04;         ///< m, by which something must stand before what was seen
+  double tolerance = 0.015;     ///< m, within which it stands where it stood
   double rest_time = 5.0;       ///< s, after which what has come in and stays counts as staying
   double min_age = 1.0;         ///< s; younger views from the same place do not tell who rests
   double min_parallax = 0.1;    ///< m between the viewpoints; then younger ones do

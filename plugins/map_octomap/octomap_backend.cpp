@@ -27,7 +27,7 @@ ScanOptions scan_options_of(const OctomapBackend::Options& options) {
   return {.resolution = options.resolution,
           .range = options.range,
           .carve = options.model == OctomapBackend::Options::Model::kRays,
-          .noise = options.noise,
+          .sigmas_before_surface = OctomapBackend::kSigmasBeforeSurface,
           .min_weight = static_cast<std::uint8_t>(options.min_weight),
           .margin = static_cast<int>(
               std::min(std::lround(options.margin / options.resolution), kWidestMargin))};
@@ -61,11 +61,6 @@ void OctomapBackend::Options::visit(OptionVisitor& v) {
   v("most", most, {.min = 0.7, .max = 0.999, .help = "probability, however often hit"});
   v("occupied_above", occupied_above,
     {.min = 0.01, .max = 0.99, .help = "probability from which a voxel is occupied"});
-  v("noise", noise,
-    {.min = 0,
-     .max = 0.1,
-     .unit = "m",
-     .help = "standard deviation of depth at 1 m; it grows with the square of the depth"});
   v("tolerance", tolerance,
     {.min = 0,
      .max = 10,

@@ -20,6 +20,10 @@ namespace stillpoint {
 /// that was ever seen there is fused again, and the rest stays as it is.
 class OctomapBackend final : public MapBackend {
  public:
+  /// Of the depth: so much of a ray's end is no free space. At 2 cm more voxels of surfaces would
+  /// be carved away than noise leaves in free space (docs/dense_maps.md).
+  static constexpr double kSigmasBeforeSurface = 2.0;
+
   struct Options {
     enum class Model {
       kRays,  ///< free space is carved along every ray
@@ -34,7 +38,6 @@ class OctomapBackend final : public MapBackend {
     double most = 0.97;           ///< and disappear again
     double occupied_above = 0.5;  ///< probability
     double tolerance = 0.5;       ///< voxels that key frames may move before they are fused again
-    double noise = 0.002;         ///< metres at 1 m; of depth
     int stride = 0;               ///< px; 0 = by resolution and range
     int min_weight = 128;         ///< of StaticWeights::map
     /// Metres around such pixels in which one look does not make a voxel occupied; in whole voxels,

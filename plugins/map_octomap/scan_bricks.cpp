@@ -135,7 +135,8 @@ void ScanBricks::find_voxels(const Pose& world_from_camera, const Frame& frame, 
   const Eigen::Vector3f right = turn.col(0);
   const Eigen::Vector3f origin = origin_;
   const auto range = static_cast<float>(options_.range);
-  const auto margin = static_cast<float>(2 * options_.noise);
+  const auto margin =
+      static_cast<float>(options_.sigmas_before_surface * frame.camera->surface_noise);
   const float rest = down * down + 1;
   const int edge = ended_.edge();
   const auto* depth = frame.depth.ptr<float>(v);

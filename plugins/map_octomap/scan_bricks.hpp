@@ -43,9 +43,9 @@ struct ScanOptions {
   double resolution = 0.05;  ///< metres, edge of a voxel
   double range = 4.0;        ///< metres; farther, only free space is believed
   bool carve = true;         ///< whether rays are cast
-  /// Standard deviation of depth at 1 m, in metres; it grows with the square of the depth. Free
-  /// space ends two of them before what was measured.
-  double noise = 0.0;
+  /// Free space ends so many standard deviations of the depth (Camera::surface_noise) before what
+  /// was measured.
+  double sigmas_before_surface = 0.0;
   /// Pixels of a lower map weight hit nothing; what is before them is free all the same.
   std::uint8_t min_weight = 128;
   /// Voxels to each side of such a pixel's that are beside something moving: what is found of a

@@ -66,7 +66,7 @@ TEST_P(AnyChecker, TurningCameraFindsNothingMoving) {
   const TestScene scene = TestScene::room();
   const Frame previous = scene.see(camera_at(0, 0, 0), 0);
   const Frame current = scene.see(camera_at(0, 0, 0, 0.02, 0.01), 1);
-  const MovingPoints result = checker_->check(previous, current);
+  const MovingPoints result = checker_->check(previous, current, {});
   EXPECT_GT(result.points.size(), 60u);
   EXPECT_TRUE(!result.reliable || everywhere(result).share() < 0.03);
 }
@@ -76,9 +76,9 @@ TEST_P(AnyChecker, TwiceTheSameIsTwiceTheSame) {
   const Frame previous = scene.see(camera_at(0, 0, 0), 0);
   scene.boards[3].centre.x() += 0.05;
   const Frame current = scene.see(camera_at(0.05, 0, 0.01), 1);
-  const MovingPoints first = checker_->check(previous, current);
-  const MovingPoints again = checker_->check(previous, current);
-  const MovingPoints other = make(GetParam())->check(previous, current);
+  const MovingPoints first = checker_->check(previous, current, {});
+  const MovingPoints again = checker_->check(previous, current, {});
+  const MovingPoints other = make(GetParam())->check(previous, current, {});
   for (const MovingPoints* result : {&again, &other}) {
     EXPECT_EQ(result->reliable, first.reliable);
     ASSERT_EQ(result->points.size(), first.points.size());
@@ -106,18 +106,18 @@ TEST_P(AnyChecker, ImagesThatShowNothingDecideNothing) {
   const Frame none;
   for (const Frame* a : {&good, &black, &dot, &narrow, &none})
     for (const Frame* b : {&black, &dot, &narrow, &none}) {
-      const MovingPoints result = checker_->check(*a, *b);
+      const MovingPoints result = checker_->check(*a, *b, {});
       EXPECT_FALSE(result.reliable);
       EXPECT_EQ(everywhere(result).moving, 0);
     }
-  EXPECT_NO_THROW(checker_->check(black, good));
+  EXPECT_NO_THROW(checker_->check(black, good, {}));
 }
 
 TEST_P(AnyChecker, PointsStayInsideTheImage) {
   const TestScene scene = TestScene::room();
   const Frame previous = scene.see(camera_at(0, 0, 0), 0);
   const Frame current = scene.see(camera_at(0.2, 0.1, 0, 0.1), 3);
-  for (const PointMotion& point : checker_->check(previous, current).points)
+  for (const PointMotion& point : checker_->check(previous, current, {}).points)
     for (const cv::Point2f& p : {point.previous, point.current})
       EXPECT_TRUE(scene.camera().contains(p.x, p.y, 5)) << p;
 }
@@ -134,7 +134,7 @@ TEST_P(FundamentalChecker, FindsTheBoardThatMovesAcrossItsEpipolarLines) {
   const cv::Rect2f area = seen(scene.boards[3], scene.camera(), before);
   scene.boards[3].centre.y() -= 0.06;
   const Frame current = scene.see(camera_at(0.12, 0, 0), 1);
-  const MovingPoints result = checker_->check(previous, current);
+  const MovingPoints result = checker_->check(previous, current, {});
   ASSERT_TRUE(result.reliable);
   EXPECT_GT(share_of(result, area, true).points, 5);
   EXPECT_GT(share_of(result, area, true).share(), 0.5);
@@ -146,10 +146,11 @@ TEST_P(FundamentalChecker, DecidesNothingWithoutParallax) {
   TestScene wall = room;
   wall.boards.resize(1);
   const Frame start = room.see(camera_at(0, 0, 0), 0);
-  EXPECT_FALSE(checker_->check(start, room.see(camera_at(0, 0, 0), 1)).reliable);
-  EXPECT_FALSE(checker_->check(start, room.see(camera_at(0, 0, 0, 0.02, 0.01), 2)).reliable);
+  EXPECT_FALSE(checker_->check(start, room.see(camera_at(0, 0, 0), 1), {}).reliable);
+  EXPECT_FALSE(checker_->check(start, room.see(camera_at(0, 0, 0, 0.02, 0.01), 2), {}).reliable);
   EXPECT_FALSE(
-      checker_->check(wall.see(camera_at(0, 0, 0), 3), wall.see(camera_at(0.1, 0, 0), 4)).reliable);
+      checker_->check(wall.see(camera_at(0, 0, 0), 3), wall.see(camera_at(0.1, 0, 0), 4), {})
+          .reliable);
 }
 
 TEST(LkEpipolar, JudgesByTheHomographyWhereTheOptionSaysSo) {
@@ -159,7 +160,7 @@ TEST(LkEpipolar, JudgesByTheHomographyWhereTheOptionSaysSo) {
   scene.boards[3].centre.x() += 0.05;
   const Frame current = scene.see(camera_at(0, 0, 0, 0.02), 1);
   LkEpipolar checker({.when_degenerate = EpipolarChecker::Degenerate::kHomography}, {});
-  const MovingPoints result = checker.check(previous, current);
+  const MovingPoints result = checker.check(previous, current, {});
   ASSERT_TRUE(result.reliable);
   EXPECT_GT(share_of(result, area, true).share(), 0.9);
   EXPECT_LT(share_of(result, area, false).share(), 0.03);
@@ -168,8 +169,8 @@ TEST(LkEpipolar, JudgesByTheHomographyWhereTheOptionSaysSo) {
 TEST(LkEpipolar, DecidesOnParallaxItIsToldToIgnore) {
   const TestScene scene = TestScene::room();
   LkEpipolar checker({.when_degenerate = EpipolarChecker::Degenerate::kIgnore}, {});
-  EXPECT_TRUE(
-      checker.check(scene.see(camera_at(0, 0, 0), 0), scene.see(camera_at(0, 0, 0), 1)).reliable);
+  EXPECT_TRUE(checker.check(scene.see(camera_at(0, 0, 0), 0), scene.see(camera_at(0, 0, 0), 1), {})
+                  .reliable);
 }
 
 }  // namespace

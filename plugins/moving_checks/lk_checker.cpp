@@ -117,7 +117,8 @@ EpipolarChecker::EpipolarChecker(const Options& options, moving::Consensus conse
       seed_(static_cast<int>(context.seed % 0x7fffffff)),
       follower_(options.lk.follow) {}
 
-MovingPoints EpipolarChecker::check(const Frame& previous, const Frame& current) {
+MovingPoints EpipolarChecker::check(const Frame& previous, const Frame& current,
+                                    const TrackingHistory&) {
   const std::vector<Match> matches = follower_.follow(previous, current);
   if (matches.size() < static_cast<std::size_t>(options_.lk.min_matches)) return undecided(matches);
   const Pairs pairs = pairs_of(matches);
@@ -144,7 +145,8 @@ void LkHomography::Options::visit(OptionVisitor& v) {
   lk.visit(v);
 }
 
-MovingPoints LkHomography::check(const Frame& previous, const Frame& current) {
+MovingPoints LkHomography::check(const Frame& previous, const Frame& current,
+                                 const TrackingHistory&) {
   const std::vector<Match> matches = follower_.follow(previous, current);
   if (matches.size() < static_cast<std::size_t>(options_.lk.min_matches)) return undecided(matches);
   const Pairs pairs = pairs_of(matches);

@@ -36,7 +36,7 @@ class EpipolarChecker : public MovingChecker {
     void visit(OptionVisitor& v);
   };
 
-  MovingPoints check(const Frame& previous, const Frame& current) override;
+  MovingPoints check(const Frame& previous, const Frame& current, const TrackingHistory&) override;
 
  protected:
   EpipolarChecker(const Options& options, moving::Consensus consensus, const StageContext& context);
@@ -79,7 +79,7 @@ class LkHomography final : public MovingChecker {
 
   explicit LkHomography(const Options& options) : options_(options), follower_(options.lk.follow) {}
 
-  MovingPoints check(const Frame& previous, const Frame& current) override;
+  MovingPoints check(const Frame& previous, const Frame& current, const TrackingHistory&) override;
 
  private:
   Options options_;

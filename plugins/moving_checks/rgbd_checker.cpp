@@ -15,6 +15,9 @@ using moving::Surface;
 
 namespace {
 
+// Times that on a smooth surface: a followed point is known to half a pixel, on surfaces that
+// slope.
+constexpr double kFollowedNoise = 2.0;
 constexpr double kUnknownTrust = 0.5;
 constexpr double kTrustRate = 0.3;     // of the way to 0 or 1 per frame
 constexpr double kLeastWeight = 0.05;  // nothing is ruled out for good: the world may be what moved
@@ -69,12 +72,8 @@ void RgbdChecker::Options::visit(OptionVisitor& v) {
      .help = "farther from where the camera's motion puts it a point moves"});
   v("noise_multiple", noise_multiple,
     {.min = 0, .help = "epsilon is at least so many median residuals of the static points"});
-  v("pixel_noise", noise.pixel,
+  v("pixel_noise", pixel_noise,
     {.min = 0.01, .unit = "px", .help = "standard deviation of a followed point"});
-  v("depth_noise", noise.inverse_depth,
-    {.min = 1e-5,
-     .unit = "1/m",
-     .help = "standard deviation in inverse depth: z² of it in metres"});
   surface.visit(v);
   follow.visit(v);
   v("samples", samples, {.min = 1, .max = 100000, .help = "of the RANSAC, three matches each"});
@@ -90,7 +89,8 @@ void RgbdChecker::Options::visit(OptionVisitor& v) {
      .help = "a point without depth is judged when its place is known this well"});
 }
 
-MovingPoints RgbdChecker::check(const Frame& previous, const Frame& current) {
+MovingPoints RgbdChecker::check(const Frame& previous, const Frame& current,
+                                const TrackingHistory&) {
   if (memory_.frame != previous.index) memory_ = {};
   std::vector<Observation> observations = observe(previous, current);
   MovingPoints result;
@@ -107,8 +107,12 @@ MovingPoints RgbdChecker::check(const Frame& previous, const Frame& current) {
   return result;
 }
 
+RigidNoise RgbdChecker::noise_of(const Camera& camera) const {
+  return {.pixel = options_.pixel_noise, .inverse_depth = kFollowedNoise * camera.surface_noise};
+}
+
 moving::Surface RgbdChecker::surface_in(const Frame& frame, const cv::Point2f& pixel) const {
-  return surface_at(frame.depth, pixel, options_.noise.inverse_depth, options_.surface);
+  return surface_at(frame.depth, pixel, noise_of(*frame.camera).inverse_depth, options_.surface);
 }
 
 std::vector<RgbdChecker::Observation> RgbdChecker::observe(const Frame& previous,
@@ -158,7 +162,7 @@ std::optional<RigidMotion> RgbdChecker::camera_motion(const std::vector<Observat
   }
   if (matches.size() < static_cast<std::size_t>(options_.min_matches)) return std::nullopt;
   const std::array<Pose, 2> guesses = {Pose::Identity(), memory_.motion};
-  auto motion = find_rigid_motion(matches, *current.camera, options_.noise, guesses,
+  auto motion = find_rigid_motion(matches, *current.camera, noise_of(*current.camera), guesses,
                                   options_.samples, seed_ + current.index);
   if (!motion || motion->agreement < options_.min_agreement ||
       motion->inliers < options_.min_matches / 2)
@@ -169,13 +173,13 @@ std::optional<RigidMotion> RgbdChecker::camera_motion(const std::vector<Observat
 void RgbdChecker::judge(std::vector<Observation>& observations, const RigidMotion& motion,
                         const Camera& camera, MovingPoints& result) const {
   const Pose& pose = motion.target_from_source;
-  const double pixels_per_depth =
-      options_.noise.pixel / (options_.noise.inverse_depth * std::sqrt(2.0));
+  const RigidNoise noise = noise_of(camera);
+  const double pixels_per_depth = noise.pixel / (noise.inverse_depth * std::sqrt(2.0));
   std::vector<double> uncertainty;  // px, of where the camera's motion puts a point
   std::vector<double> static_residuals;
   for (std::size_t i = 0; i < observations.size(); ++i) {
     Observation& o = observations[i];
-    const double slack = 2 * options_.noise.inverse_depth;
+    const double slack = 2 * noise.inverse_depth;
     const bool known = o.from.kind != Surface::Kind::kNone;
     const double far = known ? std::max(0.0, o.from.inverse_depth - slack) : 0.0;
     const double near = known ? o.from.inverse_depth + slack : 1.0 / options_.min_depth;

@@ -20,7 +20,7 @@ class RgbdChecker final : public MovingChecker {
   struct Options {
     double epsilon = 1.0;         ///< px
     double noise_multiple = 4.0;  ///< of the median residual of inliers
-    RigidNoise noise;
+    double pixel_noise = 0.4;     ///< px
     moving::SurfaceOptions surface;
     moving::FollowOptions follow;
     int samples = 60;
@@ -35,7 +35,7 @@ class RgbdChecker final : public MovingChecker {
   RgbdChecker(const Options& options, const StageContext& context)
       : options_(options), seed_(context.seed), follower_(options.follow) {}
 
-  MovingPoints check(const Frame& previous, const Frame& current) override;
+  MovingPoints check(const Frame& previous, const Frame& current, const TrackingHistory&) override;
 
  private:
   // A match with the surfaces that it lies on.
@@ -54,6 +54,7 @@ class RgbdChecker final : public MovingChecker {
     std::vector<double> trust;
   };
 
+  RigidNoise noise_of(const Camera& camera) const;
   moving::Surface surface_in(const Frame& frame, const cv::Point2f& pixel) const;
   std::vector<Observation> observe(const Frame& previous, const Frame& current);
   void inherit_trust(std::vector<Observation>& observations) const;

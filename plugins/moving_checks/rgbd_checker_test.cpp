@@ -48,7 +48,7 @@ class RgbdCheckerTest : public ::testing::Test {
     const Frame previous = scene_.see(before, 0);
     const Board board = scene_.boards[3];
     scene_.boards[3].centre += step;
-    const MovingPoints result = checker_.check(previous, scene_.see(after, 1));
+    const MovingPoints result = checker_.check(previous, scene_.see(after, 1), {});
     EXPECT_TRUE(result.reliable);
     return count(result, board, scene_.camera(), before);
   }
@@ -88,7 +88,7 @@ TEST_F(RgbdCheckerTest, StaticWorldStaysStaticWhateverTheCameraDoes) {
   for (const Pose& pose : {camera_at(0, 0, 0), camera_at(0.03, -0.02, 0.05, 0.01),
                            camera_at(0, 0, 0, 0.08, 0.04), camera_at(0.06, 0.03, 0.05, -0.03)}) {
     RgbdChecker checker({}, {});
-    const MovingPoints result = checker.check(start, scene_.see(pose, 5));
+    const MovingPoints result = checker.check(start, scene_.see(pose, 5), {});
     EXPECT_TRUE(result.reliable);
     EXPECT_LT(std::count_if(result.points.begin(), result.points.end(),
                             [](const PointMotion& p) { return p.moving; }),
@@ -106,7 +106,7 @@ TEST_F(RgbdCheckerTest, BoardThatFillsMoreThanHalfOfThePictureIsWhatMoves) {
     const Board board = scene_.boards.back();
     scene_.boards.back().centre.x() += 0.07;
     const Frame current = frame(i);
-    const MovingPoints result = checker_.check(previous, current);
+    const MovingPoints result = checker_.check(previous, current, {});
     const Counts counts =
         count(result, board, scene_.camera(), camera_at(0.004 * (i - 1), 0, 0), 40);
     if (result.reliable) {
@@ -128,7 +128,7 @@ TEST_F(RgbdCheckerTest, FindsWhatMovesBesideAllThatIsStatic) {
     const Board passing = scene_.boards.back();
     if (i > 5) scene_.boards.back().centre.y() += 0.07;
     const Frame current = scene_.see(eye(i), i);
-    const MovingPoints result = checker_.check(previous, current);
+    const MovingPoints result = checker_.check(previous, current, {});
     EXPECT_TRUE(result.reliable) << "frame " << i;
     if (i > 5) {
       const Counts counts = count(result, passing, scene_.camera(), eye(i - 1));
@@ -144,7 +144,7 @@ TEST_F(RgbdCheckerTest, PointsAtDepthEdgesDoNotMove) {
   const Frame previous = scene_.see(before, 0);
   scene_.boards[3].centre.x() += 0.06;
   const Frame current = scene_.see(before, 1);
-  for (const PointMotion& point : checker_.check(previous, current).points) {
+  for (const PointMotion& point : checker_.check(previous, current, {}).points) {
     if (!point.moving) continue;
     const cv::Rect around(cvRound(point.previous.x) - 2, cvRound(point.previous.y) - 2, 5, 5);
     double low = 0;
@@ -158,11 +158,11 @@ TEST_F(RgbdCheckerTest, PointsWithoutDepthAreJudgedWhereTheirPlaceIsCertain) {
   scene_.boards[0].measured = false;  // the wall
   const Pose before = camera_at(0, 0, 0);
   const Frame previous = scene_.see(before, 0);
-  const MovingPoints turned = checker_.check(previous, scene_.see(camera_at(0, 0, 0, 0.02), 1));
+  const MovingPoints turned = checker_.check(previous, scene_.see(camera_at(0, 0, 0, 0.02), 1), {});
   ASSERT_TRUE(turned.reliable);
   for (const PointMotion& point : turned.points) EXPECT_FALSE(point.moving);
   scene_.boards[0].centre.x() += 0.1;
-  const MovingPoints slid = checker_.check(previous, scene_.see(before, 2));
+  const MovingPoints slid = checker_.check(previous, scene_.see(before, 2), {});
   ASSERT_TRUE(slid.reliable);
   EXPECT_TRUE(std::any_of(slid.points.begin(), slid.points.end(),
                           [](const PointMotion& point) { return point.moving; }));
@@ -172,12 +172,12 @@ TEST_F(RgbdCheckerTest, DecidesNothingWithoutDepth) {
   Frame previous = scene_.see(camera_at(0, 0, 0), 0);
   Frame current = scene_.see(camera_at(0.02, 0, 0), 1);
   current.depth = cv::Mat::zeros(current.depth.size(), CV_32FC1);
-  EXPECT_FALSE(checker_.check(previous, current).reliable);
+  EXPECT_FALSE(checker_.check(previous, current, {}).reliable);
   current.depth = cv::Mat();
-  EXPECT_FALSE(checker_.check(previous, current).reliable);
+  EXPECT_FALSE(checker_.check(previous, current, {}).reliable);
   current.depth = cv::Mat::ones(previous.depth.size(), CV_32FC1);
   current.camera = nullptr;
-  EXPECT_FALSE(checker_.check(previous, current).reliable);
+  EXPECT_FALSE(checker_.check(previous, current, {}).reliable);
 }
 
 TEST_F(RgbdCheckerTest, DecidesNothingWhenNothingAgrees) {
@@ -185,7 +185,7 @@ TEST_F(RgbdCheckerTest, DecidesNothingWhenNothingAgrees) {
   Frame current = scene_.see(camera_at(0, 0, 0), 1);
   cv::RNG random(1);
   random.fill(current.depth, cv::RNG::UNIFORM, 0.5, 5.0);
-  EXPECT_FALSE(checker_.check(previous, current).reliable);
+  EXPECT_FALSE(checker_.check(previous, current, {}).reliable);
 }
 
 }  // namespace

@@ -80,7 +80,7 @@ InversePlane fit(const std::vector<Cell>& cells, int columns, int column, int ro
 DepthView::DepthView(const Frame& frame, const StaticWeights& weights)
     : columns_(frame.depth.cols / kCell), rows_(frame.depth.rows / kCell) {
   const Camera& camera = *frame.camera;
-  noise_ = static_cast<float>(std::min(camera.depth_noise, kMostNoise));
+  noise_ = static_cast<float>(camera.surface_noise);
   focal_ = Eigen::Vector2d(camera.fx, camera.fy).cast<float>();
   centre_ = Eigen::Vector2d(camera.cx, camera.cy).cast<float>();
   std::vector<Cell> cells(static_cast<std::size_t>(columns_ * rows_));

@@ -21,11 +21,6 @@ struct PlanePatch {
 class DepthView {
  public:
   static constexpr int kCell = 8;  ///< px between patches
-  /// Most that the standard deviation of the inverse depth of a structured-light sensor can be on a
-  /// surface without edges, in 1/m: 0.002 m at 1 m (Khoshelham and Elberink, Sensors 2012).
-  /// Camera::depth_noise is larger for real recordings: it stands for edges and time offsets of
-  /// point features, too.
-  static constexpr double kMostNoise = 0.002;
 
   DepthView() = default;
   DepthView(const Frame& frame, const StaticWeights& weights);

@@ -8,8 +8,7 @@
 namespace stillpoint {
 namespace {
 
-constexpr float kNoiseAt1m = 0.002f;  // metres; grows with the square of the distance
-constexpr float kNoiseSigmas = 3.0f;
+constexpr double kNoiseSigmas = 3.0;
 constexpr float kClusterWidth = 1.15f;   // farthest over nearest depth of one surface
 constexpr double kLeastMeasured = 0.05;  // of the box's middle, for its depth to be known
 constexpr int kGap = 7;                  // px, of missing depth that is closed
@@ -43,11 +42,12 @@ float near_surface(std::vector<float> values, double share) {
 /// visit.
 class Growth {
  public:
-  Growth(const cv::Mat& depth, float middle, const BoxMaskOptions& options)
+  Growth(const cv::Mat& depth, double noise, float middle, const BoxMaskOptions& options)
       : depth_(depth),
         nearest_(middle - static_cast<float>(options.depth_extent)),
         farthest_(middle + static_cast<float>(options.depth_extent)),
         step_(static_cast<float>(options.depth_step)),
+        step_by_noise_(static_cast<float>(kNoiseSigmas * noise)),
         mask_(depth.size(), CV_8UC1, cv::Scalar(0)) {}
 
   void seed(const cv::Point& pixel) {
@@ -70,20 +70,22 @@ class Growth {
     if (!cv::Rect({}, mask_.size()).contains(pixel) || mask_.at<std::uint8_t>(pixel)) return;
     const float z = depth_.at<float>(pixel);
     if (!(z > 0) || z < nearest_ || z > farthest_) return;
-    if (std::abs(z - from) > step_ + kNoiseSigmas * kNoiseAt1m * from * from) return;
+    if (std::abs(z - from) > step_ + step_by_noise_ * from * from) return;
     seed(pixel);
   }
 
   const cv::Mat& depth_;
-  float nearest_;   // metres
-  float farthest_;  // metres
-  float step_;      // metres
+  float nearest_;        // metres
+  float farthest_;       // metres
+  float step_;           // metres, besides noise
+  float step_by_noise_;  // metres at 1 m
   cv::Mat mask_;
   std::vector<cv::Point> open_;
 };
 
-cv::Mat grow_surface(const cv::Mat& depth, float middle, const BoxMaskOptions& options) {
-  Growth growth(depth, middle, options);
+cv::Mat grow_surface(const cv::Mat& depth, double noise, float middle,
+                     const BoxMaskOptions& options) {
+  Growth growth(depth, noise, middle, options);
   for (int v = depth.rows / 4; v < depth.rows - depth.rows / 4; ++v)
     for (int u = depth.cols / 4; u < depth.cols - depth.cols / 4; ++u) {
       const float z = depth.at<float>(v, u);
@@ -123,11 +125,12 @@ void BoxMaskOptions::visit(OptionVisitor& v) {
      .help = "of the middle of a box that the nearest surface in it covers at least"});
 }
 
-cv::Mat box_mask(const cv::Mat& depth, const cv::Rect& box, const BoxMaskOptions& options) {
+cv::Mat box_mask(const cv::Mat& depth, double noise, const cv::Rect& box,
+                 const BoxMaskOptions& options) {
   if (!depth.empty()) {
     const cv::Mat inside = depth(box);
     const float middle = near_surface(measured_in_middle(inside), options.near_share);
-    if (middle > 0) return grow_surface(inside, middle, options);
+    if (middle > 0) return grow_surface(inside, noise, middle, options);
   }
   return ellipse(box.size());
 }

@@ -21,6 +21,8 @@ struct BoxMaskOptions {
 /// middle of the box (half its width and height), grown over neighbours of similar depth inside the
 /// box; small gaps in the depth image are closed. Where the middle has next to no depth, or there
 /// is no depth image: the ellipse in the box. `box` lies inside the image; `depth` may be empty.
-cv::Mat box_mask(const cv::Mat& depth, const cv::Rect& box, const BoxMaskOptions& options);
+/// `noise` is its standard deviation at 1 m in metres, Camera::surface_noise.
+cv::Mat box_mask(const cv::Mat& depth, double noise, const cv::Rect& box,
+                 const BoxMaskOptions& options);
 
 }  // namespace stillpoint

@@ -7,8 +7,9 @@
 namespace stillpoint {
 namespace {
 
-constexpr float kWall = 4.0f;    // metres
-constexpr float kPerson = 2.0f;  // metres
+constexpr float kWall = 4.0f;     // metres
+constexpr float kPerson = 2.0f;   // metres
+constexpr double kNoise = 0.002;  // metres at 1 m
 const cv::Rect kBox(80, 40, 80, 160);
 
 /// A person (head and body) before a wall; returns the person's mask.
@@ -27,7 +28,7 @@ double intersection_over_union(const cv::Mat& a, const cv::Mat& b) {
 TEST(BoxMask, IsTheNearSurface) {
   cv::Mat depth(240, 320, CV_32FC1, cv::Scalar(kWall));
   const cv::Mat person = draw_person(depth, {120, 190});
-  const cv::Mat found = box_mask(depth, kBox, {});
+  const cv::Mat found = box_mask(depth, kNoise, kBox, {});
   EXPECT_EQ(cv::countNonZero(found != person(kBox)), 0);
 }
 
@@ -38,14 +39,14 @@ TEST(BoxMask, NoiseAndSmallGapsDoNotMatter) {
   cv::RNG(3).fill(noise, cv::RNG::NORMAL, 0.0, 0.008);
   depth += noise;
   depth(cv::Rect(100, 100, 40, 4)).setTo(0);  // a gap across the body
-  EXPECT_GT(intersection_over_union(box_mask(depth, kBox, {}), person(kBox)), 0.97);
+  EXPECT_GT(intersection_over_union(box_mask(depth, kNoise, kBox, {}), person(kBox)), 0.97);
 }
 
 // The middle of the box is wall for the most part: bow legs, or an arm to the side.
 TEST(BoxMask, PrefersTheNearerSurface) {
   cv::Mat depth(240, 320, CV_32FC1, cv::Scalar(kWall));
   depth(cv::Rect(105, 40, 12, 160)).setTo(kPerson);
-  const cv::Mat found = box_mask(depth, kBox, {});
+  const cv::Mat found = box_mask(depth, kNoise, kBox, {});
   EXPECT_EQ(cv::countNonZero(found), 12 * 160);
 }
 
@@ -55,12 +56,12 @@ TEST(BoxMask, DoesNotRunAlongTheFloor) {
     depth.row(v).setTo(kPerson * 40.0f / static_cast<float>(v - 150 + 1));
   depth.setTo(kWall, depth > kWall);
   const cv::Mat person = draw_person(depth, {120, 190});
-  EXPECT_GT(intersection_over_union(box_mask(depth, kBox, {}), person(kBox)), 0.8);
+  EXPECT_GT(intersection_over_union(box_mask(depth, kNoise, kBox, {}), person(kBox)), 0.8);
 }
 
 TEST(BoxMask, WithoutDepthIsTheEllipseInTheBox) {
   for (const cv::Mat& depth : {cv::Mat(), cv::Mat(240, 320, CV_32FC1, cv::Scalar(0))}) {
-    const cv::Mat found = box_mask(depth, kBox, {});
+    const cv::Mat found = box_mask(depth, kNoise, kBox, {});
     ASSERT_EQ(found.size(), kBox.size());
     EXPECT_NEAR(cv::countNonZero(found), CV_PI / 4 * kBox.area(), 0.03 * kBox.area());
     EXPECT_EQ(found.at<std::uint8_t>(0, 0), 0);
@@ -70,8 +71,8 @@ TEST(BoxMask, WithoutDepthIsTheEllipseInTheBox) {
 
 TEST(BoxMask, BoxesOfOnePixelWork) {
   const cv::Mat depth(4, 4, CV_32FC1, cv::Scalar(kPerson));
-  EXPECT_EQ(cv::countNonZero(box_mask(depth, {3, 3, 1, 1}, {})), 1);
-  EXPECT_EQ(cv::countNonZero(box_mask(cv::Mat(), {3, 3, 1, 1}, {})), 1);
+  EXPECT_EQ(cv::countNonZero(box_mask(depth, kNoise, {3, 3, 1, 1}, {})), 1);
+  EXPECT_EQ(cv::countNonZero(box_mask(cv::Mat(), kNoise, {3, 3, 1, 1}, {})), 1);
 }
 
 }  // namespace

@@ -198,11 +198,12 @@ Segmentation OpenCvDnnSegmenter::from_boxes(std::vector<Detection> found,
   Segmentation result;
   result.labels = cv::Mat(frame.bgr.size(), CV_8UC1, cv::Scalar(0));
   result.instances = cv::Mat(frame.bgr.size(), CV_8UC1, cv::Scalar(0));
+  const double noise = (frame.camera ? *frame.camera : Camera()).surface_noise;
   // The best one last: where two boxes share a surface, it is the better one's.
   for (const Detection& detection : found | std::views::reverse) {
     const cv::Rect box = pixels_of(detection.box, frame.bgr.size());
     if (box.empty()) continue;
-    const cv::Mat mask = box_mask(frame.depth, box, options_.boxes);
+    const cv::Mat mask = box_mask(frame.depth, noise, box, options_.boxes);
     result.objects.push_back({.label = detection.label, .box = box, .score = detection.score});
     result.labels(box).setTo(detection.label, mask);
     result.instances(box).setTo(static_cast<double>(result.objects.size()), mask);

@@ -126,7 +126,7 @@ void check(benchmark::State& state, const fs::path& folder, std::size_t stride,
   Counts counts;
   std::size_t i = stride;
   for ([[maybe_unused]] auto _ : state) {
-    const MovingPoints result = checker->check(frames.at(i - stride).frame, frames.at(i).frame);
+    const MovingPoints result = checker->check(frames.at(i - stride).frame, frames.at(i).frame, {});
     state.PauseTiming();
     counts.add(result, frames[i - stride], frames[i]);
     i = i + stride < frames.size() ? i + stride : stride;

@@ -29,12 +29,14 @@ std::vector<DenseKeyFrame> keyframes_of(const std::filesystem::path& folder, int
 }
 
 void ours(benchmark::State& state, const std::filesystem::path& folder, double resolution,
-          double noise) {
+          double sigmas_before_surface) {
   const auto keyframes = keyframes_of(folder);
   std::size_t nodes = 0, bytes = 0;
   for (auto _ : state) {
     SemanticOctree tree(resolution);
-    ScanBricks scan({.resolution = resolution, .range = kRange, .noise = noise});
+    ScanBricks scan({.resolution = resolution,
+                     .range = kRange,
+                     .sigmas_before_surface = sigmas_before_surface});
     for (const DenseKeyFrame& keyframe : keyframes) {
       scan.scan(keyframe);
       tree.add(scan, scan.bricks(), {});
@@ -59,7 +61,7 @@ void ours_plain(benchmark::State& state, const std::filesystem::path& folder, do
 
 // What the back end does.
 void ours_as_used(benchmark::State& state, const std::filesystem::path& folder, double resolution) {
-  ours(state, folder, resolution, OctomapBackend::Options{}.noise);
+  ours(state, folder, resolution, OctomapBackend::kSigmasBeforeSurface);
 }
 
 void scans_only(benchmark::State& state, const std::filesystem::path& folder, double resolution) {

@@ -39,7 +39,7 @@ struct FakeChecker final : MovingChecker {
     }
   };
   explicit FakeChecker(const Options&) {}
-  MovingPoints check(const Frame&, const Frame&) override { return {}; }
+  MovingPoints check(const Frame&, const Frame&, const TrackingHistory&) override { return {}; }
 };
 
 struct FakeDecision final : Decision {

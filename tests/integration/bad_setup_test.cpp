@@ -17,6 +17,7 @@ using ::testing::HasSubstr;
 
 constexpr int kStageFailed = 1;
 constexpr int kWrongUsage = 2;
+const fs::path kBuilt = fs::path(STILLPOINT_BINARY_DIR) / "tests/plugins_bad/plugins";
 
 class BadSetup : public ::testing::Test {
  protected:
@@ -116,7 +117,8 @@ class BadPlugins : public BadSetup {
  protected:
   BadPlugins() {
     for (const auto& file : fs::directory_iterator(kBuilt))
-      fs::copy_file(file.path(), folder_.path() / file.path().filename());
+      if (file.is_regular_file())
+        fs::copy_file(file.path(), folder_.path() / file.path().filename());
     folder_.write("libstillpoint_text.so", "this is a letter, not a library\n");
     fs::copy_file(kBuilt / "libstillpoint_good.so", truncated());
     truncate_file(truncated(), 0.5);
@@ -125,8 +127,6 @@ class BadPlugins : public BadSetup {
   Surroundings with_plugins() const {
     return {.environment = {{"STILLPOINT_PLUGIN_PATH", folder_.path().string()}}};
   }
-
-  const fs::path kBuilt = fs::path(STILLPOINT_BINARY_DIR) / "tests/plugins_bad/plugins";
 };
 
 TEST_F(BadPlugins, AreListedWithTheirReasonsBesideTheGoodOnes) {
@@ -179,6 +179,50 @@ TEST_F(BadPlugins, ThrowingConstructorIsNamed) {
               HasSubstr("error: moving_checker (throws_in_constructor): no such model file"));
 }
 
+struct MisdeedWhenLoaded {
+  const char* plugin;
+  const char* reason;  // empty: an exception leaves dlopen() or ends in std::terminate()
+};
+
+/// Static constructors that do what no exception tells of.
+class LibraryThatMisbehaves : public BadSetup {
+ protected:
+  static fs::path folder_of(const std::string& plugin) { return kBuilt / plugin; }
+  static Surroundings with_it(const std::string& plugin) {
+    return {.environment = {{"STILLPOINT_PLUGIN_PATH", folder_of(plugin).string()}}};
+  }
+};
+
+class LibraryThatEndsTheProcess : public LibraryThatMisbehaves,
+                                  public ::testing::WithParamInterface<MisdeedWhenLoaded> {};
+
+INSTANTIATE_TEST_SUITE_P(
+    Ways, LibraryThatEndsTheProcess,
+    ::testing::Values(MisdeedWhenLoaded{"crashes_when_loaded",
+                                        "it crashed: SIGSEGV, Segmentation fault"},
+                      MisdeedWhenLoaded{"throws_when_loaded", ""},
+                      MisdeedWhenLoaded{"exits_when_loaded", "it called std::exit()"}),
+    [](const auto& test) { return std::string(test.param.plugin); });
+
+TEST_P(LibraryThatEndsTheProcess, IsNamed) {
+  const std::string plugin = GetParam().plugin;
+  for (const auto& arguments :
+       {std::vector<std::string>{"plugins", "list"}, {"check", "orb_baseline"}}) {
+    const Outcome outcome = call(arguments, with_it(plugin));
+    EXPECT_EQ(outcome.exit_code, kStageFailed) << outcome.signal;
+    EXPECT_THAT(outcome.err, HasSubstr("error: loading " + folder_of(plugin).string() +
+                                       "/libstillpoint_" + plugin + ".so: " + GetParam().reason));
+    EXPECT_THAT(outcome.err, HasSubstr("; its static constructors did that"));
+  }
+}
+
+TEST_F(LibraryThatMisbehaves, IsNamedWhileItHangs) {
+  Program program({"plugins", "list"}, with_it("hangs_when_loaded"));
+  EXPECT_TRUE(program.wait_for("libstillpoint_hangs_when_loaded.so has not returned for "));
+  program.send(SIGINT);
+  EXPECT_EQ(program.finish().signal, SIGINT);
+}
+
 TEST_F(BadPlugins, FailingStageIsNamedAndResultsAreSaved) {
   for (const char* mode : {"inline", "threaded"}) {
     const Outcome outcome = run("orb_baseline",
@@ -212,6 +256,11 @@ class StageThatMisbehaves : public BadPlugins,
                          std::string("moving_checker.how=") + misdeed().how, "--set",
                          "runtime.mode=" + mode(), "--set", "runtime.stage_timeout=0.1"});
   }
+  std::vector<std::string> in_the_constructor() const {
+    std::vector<std::string> all = arguments();
+    all.insert(all.end(), {"--set", "moving_checker.at_once=true"});
+    return all;
+  }
   void expect_saved(const Outcome& outcome) const {
     const std::string message =
         std::string("moving check (misbehaves) failed on frame 3: ") + misdeed().reason;
@@ -222,7 +271,7 @@ class StageThatMisbehaves : public BadPlugins,
     EXPECT_GE(count_poses(out() / "trajectory.txt"), mode() == "inline" ? 3u : 2u);
     const auto summary = json_file(out() / "summary.json");
     EXPECT_FALSE(summary["complete"]);
-    EXPECT_EQ(summary["failure"], message);
+    EXPECT_THAT(summary["failure"].get<std::string>(), ::testing::StartsWith(message));
   }
 };
 
@@ -243,6 +292,27 @@ TEST_P(StageThatEndsTheProcess, IsNamedAndResultsAreSaved) {
   expect_saved(run("orb_baseline", arguments(), with_plugins()));
 }
 
+TEST_P(StageThatEndsTheProcess, IsNamedInItsConstructor) {
+  const Outcome outcome = run("orb_baseline", in_the_constructor(), with_plugins());
+  EXPECT_EQ(outcome.exit_code, kStageFailed) << outcome.signal;
+  EXPECT_THAT(outcome.err,
+              HasSubstr(std::string("error: moving_checker (misbehaves): ") + misdeed().reason));
+}
+
+using StageThatWritesToImages = StageThatMisbehaves;
+INSTANTIATE_TEST_SUITE_P(
+    Modes, StageThatWritesToImages,
+    ::testing::Combine(::testing::Values("inline", "threaded"),
+                       ::testing::Values(Misdeed{
+                           "write", "it wrote to an image of a frame, which all stages share"})),
+    [](const auto& test) { return std::string(std::get<0>(test.param)); });
+
+TEST_P(StageThatWritesToImages, IsNamedWhenValidationIsFull) {
+  std::vector<std::string> thorough = arguments();
+  thorough.insert(thorough.end(), {"--set", "runtime.validate=full"});
+  expect_saved(run("orb_baseline", thorough, with_plugins()));
+}
+
 using StageThatHangs = StageThatMisbehaves;
 INSTANTIATE_TEST_SUITE_P(Modes, StageThatHangs,
                          ::testing::Combine(::testing::Values("inline", "threaded"),
@@ -257,6 +327,13 @@ TEST_P(StageThatHangs, IsNamedAndGivenUpByTheSecondCtrlC) {
   ASSERT_TRUE(program.wait_for("frame 3; Ctrl-C again gives it up"));
   program.send(SIGINT);
   expect_saved(program.finish());
+}
+
+TEST_P(StageThatHangs, IsNamedInItsConstructor) {
+  Program program(command("orb_baseline", in_the_constructor()), with_plugins());
+  EXPECT_TRUE(program.wait_for("the constructor of moving_checker (misbehaves) has not returned"));
+  program.send(SIGINT);
+  EXPECT_EQ(program.finish().signal, SIGINT);
 }
 
 }  // namespace

@@ -6,7 +6,8 @@ struct Checker final : stillpoint::MovingChecker {
     int points = 0;
     void visit(stillpoint::OptionVisitor& v) { v("points", points, {.help = "points"}); }
   };
-  stillpoint::MovingPoints check(const stillpoint::Frame&, const stillpoint::Frame&) override {
+  stillpoint::MovingPoints check(const stillpoint::Frame&, const stillpoint::Frame&,
+                                 const stillpoint::TrackingHistory&) override {
     return {};
   }
 };

@@ -71,7 +71,7 @@ TEST_F(RegistryTest, GoodPluginOutlivesTheRegistry) {
     EXPECT_TRUE(registry.unusable().empty());
     checker = make(registry, "good");
   }
-  EXPECT_TRUE(checker->check({}, {}).reliable);
+  EXPECT_TRUE(checker->check({}, {}, {}).reliable);
 }
 
 TEST_F(RegistryTest, NoSymbol) {
@@ -121,7 +121,7 @@ TEST_F(RegistryTest, OlderContractLeavesTheOtherKindsUsable) {
   Registry registry;
   registry.search(folder_);
   EXPECT_EQ(registry.find("output", "viewer"), nullptr);
-  EXPECT_TRUE(make(registry, "current")->check({}, {}).reliable);
+  EXPECT_TRUE(make(registry, "current")->check({}, {}, {}).reliable);
 }
 TEST_F(RegistryTest, NewerApi) {
   use("newer_api");
@@ -218,7 +218,7 @@ TEST_F(RegistryTest, ExceptionsOutliveObjectAndRegistry) {
   try {
     Registry registry;
     registry.search(folder_);
-    make(registry, "throws_later")->check({}, {});
+    make(registry, "throws_later")->check({}, {}, {});
     FAIL();
   } catch (const std::exception& error) {
     EXPECT_STREQ(error.what(), "text inside the plugin");

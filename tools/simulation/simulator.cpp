@@ -28,7 +28,8 @@ CameraModel default_camera() {
           .fy = 539.2,
           .cx = 320.1,
           .cy = 247.6,
-          .depth_noise = 0.0016};
+          .depth_noise = 0.0016,
+          .surface_noise = 0.0016};
 }
 
 Simulator::Simulator(const SceneOptions& scene, const CameraModel& camera, int threads)

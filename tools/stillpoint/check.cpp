@@ -17,6 +17,7 @@ void add_check(CLI::App& app) {
   command->add_flag("--print", arguments->print,
                     "Write the complete effective file: every option, explained");
   command->callback([arguments] {
+    const LateCalls late = watch_loading();
     Registry registry;
     const PipelineConfig config = load_pipeline(arguments->request, registry);
     if (arguments->print)

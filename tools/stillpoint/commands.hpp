@@ -6,6 +6,7 @@
 #include <initializer_list>
 
 #include "stillpoint/engine/pipeline_config.hpp"
+#include "stillpoint/runtime/stage_guard.hpp"
 
 namespace stillpoint {
 
@@ -20,6 +21,9 @@ void add_simulate(CLI::App& app);
 
 /// PIPELINE, --dataset, --camera and --set, for every subcommand that reads a pipeline file.
 void add_pipeline_options(CLI::App& command, PipelineRequest& request);
+
+/// While the result lives, stderr is told of a plugin that holds up loading.
+LateCalls watch_loading();
 
 /// For values with a range, through which CLI11 lets "nan". Throws Error(kUsage).
 void require_numbers(std::initializer_list<double> values);

@@ -1,6 +1,7 @@
 // The command line. Exit codes: 0 done, 1 a stage failed, 2 wrong usage or configuration,
 // 3 unusable data.
 #include <csignal>
+#include <cstdlib>
 #include <exception>
 #include <iostream>
 #include <span>
@@ -10,6 +11,7 @@
 #include "commands.hpp"
 #include "stillpoint/error.hpp"
 #include "stillpoint/runtime/freed_memory.hpp"
+#include "stillpoint/runtime/stage_guard.hpp"
 #include "stillpoint/support/did_you_mean.hpp"
 
 namespace {
@@ -59,11 +61,7 @@ int run(int argc, char** argv) {
   return 0;
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
-  stillpoint::keep_freed_memory();
-  std::signal(SIGPIPE, SIG_IGN);  // a reader such as `head` that goes early must cost no results
+int run_and_say_why_not(int argc, char** argv) {
   try {
     return run(argc, argv);
   } catch (const stillpoint::ConfigError& error) {  // each of its lines says "error:" already
@@ -76,4 +74,16 @@ int main(int argc, char** argv) {
     std::cerr << "error: " << error.what() << '\n';
     return static_cast<int>(Fault::kStage);
   }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  stillpoint::keep_freed_memory();
+  std::signal(SIGPIPE, SIG_IGN);  // a reader such as `head` that goes early must cost no results
+  const stillpoint::StageGuard guard;
+  const int exit_code = run_and_say_why_not(argc, argv);
+  if (!stillpoint::StageGuard::has_ended_one()) return exit_code;
+  std::cout << std::flush;
+  std::_Exit(exit_code);  // nothing more of that plugin is to be run
 }

@@ -1,6 +1,19 @@
+#include <iostream>
+
 #include "commands.hpp"
 
 namespace stillpoint {
+namespace {
+
+constexpr double kLoadingPatience = 5.0;  // s
+
+}  // namespace
+
+LateCalls watch_loading() {
+  return {kLoadingPatience, [](const std::string& text) {
+            std::cerr << "warning: " + text + '\n' << std::flush;
+          }};
+}
 
 void add_pipeline_options(CLI::App& command, PipelineRequest& request) {
   command

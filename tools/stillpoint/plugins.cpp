@@ -30,6 +30,7 @@ void print_table(const std::vector<Row>& rows) {
 }
 
 Registry search_plugins(const std::vector<std::string>& first) {
+  const LateCalls late = watch_loading();
   Registry registry;
   for (const std::string& folder : first) registry.search(folder);
   for (const auto& folder : default_plugin_folders()) registry.search(folder);

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <iostream>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -87,6 +88,7 @@ void warn_of_labels(const PipelineConfig& config, const RunFolder& folder) {
 }
 
 void run(const RunArguments& arguments) {
+  std::optional<LateCalls> late(watch_loading());
   Registry registry;
   const PipelineConfig config = load_pipeline(arguments.request, registry);
   SparseMap known_map = arguments.load_map.empty() ? SparseMap() : load_map(arguments.load_map);
@@ -96,6 +98,10 @@ void run(const RunArguments& arguments) {
   RunFolder folder(
       arguments.output.empty() ? fs::path("out") / config.file.stem() : arguments.output, console);
   folder.log(LogLevel::kInfo, "stillpoint " STILLPOINT_VERSION ", " + config.file.string());
+  late.reset();
+  late.emplace(config.runtime.stage_timeout, [&folder](const std::string& text) {
+    folder.log(LogLevel::kWarning, text + "; Ctrl-C stops the run");
+  });
   warn_of_labels(config, folder);
   Stages stages =
       make_stages(config, folder.path(),
@@ -108,9 +114,6 @@ void run(const RunArguments& arguments) {
   if (saver) stages.outputs.push_back({{std::move(saver), "map saver"}});
   int signal = 0;
   {
-    const StageGuard guard(config.runtime.stage_timeout, [&folder](const std::string& text) {
-      folder.log(LogLevel::kWarning, text + "; Ctrl-C twice gives it up");
-    });
     const Interrupt interrupt([&console](const std::string& line) { console.line(line); });
     run_and_print(std::move(stages), config, folder, interrupt.token());
     signal = Interrupt::signal();

@@ -53,6 +53,7 @@ StudyFile load_study(const std::string& name_or_file, Registry& registry) {
     resolve(sequence.camera, folder);
   }
   for (Variant& variant : result.study.variants) resolve(variant.pipeline, folder);
+  const LateCalls late = watch_loading();
   check_study(tree, result.study, registry, std::move(faults));
   result.effective_yaml = "version: 1\n" + print_yaml(reader.record());
   return result;

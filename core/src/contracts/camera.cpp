@@ -19,7 +19,11 @@ void CameraModel::visit(OptionVisitor& v) {
   v("min_depth", min_depth, {.min = 0, .unit = "m", .help = "nearer measurements are dropped"});
   v("max_depth", max_depth, {.min = 0.01, .unit = "m", .help = "farther ones are dropped"});
   v("depth_noise", depth_noise,
-    {.min = 1e-6, .unit = "m", .help = "standard deviation at 1 m; grows with the square"});
+    {.min = 1e-6,
+     .unit = "m",
+     .help = "standard deviation of a point feature's depth at 1 m; grows with the square"});
+  v("surface_noise", surface_noise,
+    {.min = 1e-6, .unit = "m", .help = "the same on a smooth surface: the sensor's own"});
   v("crop", crop, {.unit = "px", .help = "x, y, width, height of the part to use; empty for all"});
   v.require(distortion.empty() || distortion.size() == 4 || distortion.size() == 5,
             "distortion takes 4 or 5 numbers: k1, k2, p1, p2[, k3]");
@@ -37,7 +41,8 @@ Camera CameraModel::undistorted() const {
                 .fy = fy,
                 .cx = cx,
                 .cy = cy,
-                .depth_noise = depth_noise};
+                .depth_noise = depth_noise,
+                .surface_noise = surface_noise};
   if (crop.size() == 4) {
     camera.cx -= crop[0];
     camera.cy -= crop[1];

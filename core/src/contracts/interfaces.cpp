@@ -8,6 +8,7 @@ Source::~Source() = default;
 Segmenter::~Segmenter() = default;
 Propagator::~Propagator() = default;
 MovingChecker::~MovingChecker() = default;
+std::size_t MovingChecker::wanted_keyframes() const { return 0; }
 MapChecker::~MapChecker() = default;
 Decision::~Decision() = default;
 PreparedFrame::~PreparedFrame() = default;

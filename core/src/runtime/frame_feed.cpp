@@ -5,17 +5,23 @@
 #include <mutex>
 #include <utility>
 
+#include "stillpoint/runtime/read_only_images.hpp"
 #include "stillpoint/runtime/stage_results.hpp"
+#include "stillpoint/runtime/thorough_checks.hpp"
 
 namespace stillpoint {
 namespace {
 
 constexpr std::size_t kFramesAhead = 2;
 
-std::optional<Frame> next_of(Source& source, std::uint32_t index, const Frame* previous) {
+std::optional<Frame> next_of(Source& source, std::uint32_t index, const Frame* previous,
+                             bool thorough) {
   std::optional<Frame> frame = source.next();
-  if (frame) check_frame(*frame, index, previous);
-  return frame;
+  if (!frame) return frame;
+  check_frame(*frame, index, previous);
+  if (!thorough) return frame;
+  check_thoroughly(*frame);
+  return with_read_only_images(std::move(*frame));
 }
 
 }  // namespace
@@ -37,6 +43,7 @@ void SteadyClock::wait_until(double time, std::stop_token stop) {
 FrameFeed::FrameFeed(Stage<Source> source, const RuntimeOptions& options, PaceClock& clock,
                      StopSignal& stop, TimeLog& times)
     : pace_(options.pace),
+      thorough_(options.validate == RuntimeOptions::Validate::kFull),
       clock_(clock),
       stop_(stop),
       times_(times),
@@ -65,7 +72,7 @@ FramePtr FrameFeed::next() {
 FramePtr FrameFeed::read() {
   ScopedTime time(times_, "source", frames_read_);
   std::optional<Frame> frame =
-      source_.call_unmeasured(frames_read_, next_of, frames_read_, previous_.get());
+      source_.call_unmeasured(frames_read_, next_of, frames_read_, previous_.get(), thorough_);
   if (!frame) {
     time.discard();  // the end is no frame
     return nullptr;

@@ -3,14 +3,16 @@
 #include <utility>
 
 #include "stillpoint/runtime/stage_results.hpp"
+#include "stillpoint/runtime/thorough_checks.hpp"
 
 namespace stillpoint {
 namespace {
 
 MapEvidence compare(MapChecker& checker, const Frame& frame, std::span<const Pose> guesses,
-                    const SparseMap& map) {
+                    const SparseMap& map, bool thorough) {
   MapEvidence found = checker.check(frame, guesses, map);
   check_evidence(found);
+  if (thorough) check_thoroughly(found);
   return found;
 }
 
@@ -23,16 +25,12 @@ MapEvidence MapCheck::at(const Frame& frame, const MovingPoints& moving, const S
     checker_.call("map_check", frame.index, &MapChecker::remember, *tracked);
   const std::vector<Pose> guesses = prediction_.guesses(frame.time, moving, map);
   if (guesses.empty()) return {};
-  return checker_.call("map_check", frame.index, compare, frame, guesses, map);
+  return checker_.call("map_check", frame.index, compare, frame, guesses, map, thorough_);
 }
 
-void MapCheck::tracked(const FramePtr& frame, std::shared_ptr<const StaticWeights> weights,
-                       const TrackResult& result, const SparseMap& map) {
+void MapCheck::tracked(const std::optional<TrackedFrame>& frame, const SparseMap& map) {
   if (!checker_.present()) return;
-  to_remember_.reset();
-  if (result.state == TrackState::kTracking)
-    to_remember_ = {frame, std::move(weights), result.reference, result.reference_from_camera,
-                    result.world_from_camera};
+  to_remember_ = frame;
   prediction_.tracked(to_remember_, map);
 }
 

@@ -2,6 +2,9 @@
 
 #include <utility>
 
+#include "stillpoint/runtime/stage_results.hpp"
+#include "stillpoint/runtime/thorough_checks.hpp"
+
 namespace stillpoint {
 namespace {
 
@@ -20,12 +23,42 @@ std::vector<MovedKeyFrame> moved_keyframes(const SparseMap& before, const Sparse
   return moved;
 }
 
+SparseMap insert(LocalMapper& mapper, const SparseMap& before, KeyFrame keyframe, bool thorough) {
+  SparseMap map = mapper.insert(before, std::move(keyframe));
+  check_inserted(map, before);
+  if (thorough) check_thoroughly(map);
+  return map;
+}
+
+SparseMap refine(LocalMapper& mapper, const SparseMap& before, KeyFrameId keyframe,
+                 std::stop_token hurry, bool thorough) {
+  SparseMap map = mapper.refine(before, keyframe, std::move(hurry));
+  check_refined(map, before);
+  if (thorough) check_thoroughly(map);
+  return map;
+}
+
+std::optional<MapCorrection> closure(LoopCloser& closer, const SparseMap& map, KeyFrameId latest,
+                                     std::stop_token stop) {
+  auto correction = closer.close(map, latest, std::move(stop));
+  if (correction) check_correction(*correction, map);
+  return correction;
+}
+
+std::optional<MapCorrection> adjustment(LoopCloser& closer, const SparseMap& map,
+                                        std::stop_token hurry) {
+  auto correction = closer.adjust(map, std::move(hurry));
+  if (correction) check_correction(*correction, map);
+  return correction;
+}
+
 }  // namespace
 
 MappingSystem::MappingSystem(Stage<LocalMapper> local_mapper, Stage<LoopCloser> loop_closer,
-                             Stage<MapBackend> map_backend, SparseMap known_map, Mode mode,
-                             StopSignal& stop, TimeLog& times)
-    : threaded_(mode == Mode::kThreaded),
+                             Stage<MapBackend> map_backend, SparseMap known_map,
+                             const RuntimeOptions& options, StopSignal& stop, TimeLog& times)
+    : threaded_(options.mode == Mode::kThreaded),
+      thorough_(options.validate == RuntimeOptions::Validate::kFull),
       stop_(stop),
       local_mapper_(std::move(local_mapper), "local mapping", times),
       loop_closer_(std::move(loop_closer), "loop closing", times),
@@ -33,7 +66,7 @@ MappingSystem::MappingSystem(Stage<LocalMapper> local_mapper, Stage<LoopCloser> 
       map_(std::move(known_map)),
       next_keyframe_(static_cast<KeyFrameId>(snapshot()->keyframe_id_end())),
       local_mapping_(
-          mode, kKeyFramesWaiting, stop,
+          options.mode, kKeyFramesWaiting, stop,
           [this](MappingItem item) {
             if (auto* keyframe = std::get_if<NewKeyFrame>(&item))
               map(std::move(*keyframe));
@@ -42,7 +75,7 @@ MappingSystem::MappingSystem(Stage<LocalMapper> local_mapper, Stage<LoopCloser> 
           },
           ThreadPriority::kMapping),
       loop_closing_(
-          loop_closer_.present() ? mode : Mode::kInline, kQueriesWaiting, stop,
+          loop_closer_.present() ? options.mode : Mode::kInline, kQueriesWaiting, stop,
           [this](const LoopItem& item) {
             if (const auto* query = std::get_if<LoopQuery>(&item))
               close_loop(*query);
@@ -51,7 +84,7 @@ MappingSystem::MappingSystem(Stage<LocalMapper> local_mapper, Stage<LoopCloser> 
           },
           ThreadPriority::kBackground),
       dense_mapping_(
-          map_backend_.present() ? mode : Mode::kInline, kDenseWaiting, stop,
+          map_backend_.present() ? options.mode : Mode::kInline, kDenseWaiting, stop,
           [this](const DenseItem& item) { map_densely(item); }, ThreadPriority::kBackground),
       hurry_on_stop_(stop.token(), [this] {
         if (!threaded_) return;
@@ -101,11 +134,11 @@ void MappingSystem::map(NewKeyFrame item) {
   const KeyFrameId id = item.keyframe.id;
   const std::uint32_t frame = item.keyframe.frame;
   const MapStore::Snapshot before = map_.snapshot();
-  map_.publish(local_mapper_.call("map_insert", frame, &LocalMapper::insert, *before,
-                                  std::move(item.keyframe)));
-  map_.publish(
-      local_mapper_.call("map_refine", frame, &LocalMapper::refine, *map_.snapshot(), id,
-                         mapping_hurry_.begin(threaded_ && (waiting() || stop_.requested()))));
+  map_.publish(local_mapper_.call("map_insert", frame, insert, *before, std::move(item.keyframe),
+                                  thorough_));
+  map_.publish(local_mapper_.call(
+      "map_refine", frame, refine, *map_.snapshot(), id,
+      mapping_hurry_.begin(threaded_ && (waiting() || stop_.requested())), thorough_));
   const MapStore::Snapshot after = map_.snapshot();
   send_moved(*before, *after);
   if (map_backend_.present() && id < after->keyframe_id_end()) {
@@ -129,7 +162,7 @@ void MappingSystem::correct(const Correction& item) {
 
 void MappingSystem::close_loop(const LoopQuery& query) {
   if (correction_pending_) return;
-  auto correction = loop_closer_.call("loop", query.frame, &LoopCloser::close, *map_.snapshot(),
+  auto correction = loop_closer_.call("loop", query.frame, closure, *map_.snapshot(),
                                       query.keyframe, stop_.token());
   if (!correction) return;
   correction_pending_ = true;
@@ -138,9 +171,8 @@ void MappingSystem::close_loop(const LoopQuery& query) {
 
 void MappingSystem::adjust(const AdjustRequest& request) {
   correction_pending_ = false;
-  auto correction =
-      loop_closer_.call("loop_adjust", request.frame, &LoopCloser::adjust, *map_.snapshot(),
-                        adjustment_hurry_.begin(threaded_ && stop_.requested()));
+  auto correction = loop_closer_.call("loop_adjust", request.frame, adjustment, *map_.snapshot(),
+                                      adjustment_hurry_.begin(threaded_ && stop_.requested()));
   if (correction) local_mapping_.push_past_limit(Correction{std::move(*correction), request.frame});
 }
 

@@ -22,7 +22,7 @@ class NullPropagator final : public Propagator {
 
 class NullMovingChecker final : public MovingChecker {
  public:
-  MovingPoints check(const Frame&, const Frame&) override { return {}; }
+  MovingPoints check(const Frame&, const Frame&, const TrackingHistory&) override { return {}; }
 };
 
 class NullMapChecker final : public MapChecker {

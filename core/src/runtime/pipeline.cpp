@@ -5,7 +5,9 @@
 #include <string>
 #include <utility>
 
+#include "stillpoint/runtime/read_only_images.hpp"
 #include "stillpoint/runtime/stage_results.hpp"
+#include "stillpoint/runtime/thorough_checks.hpp"
 
 namespace stillpoint {
 namespace {
@@ -33,16 +35,18 @@ PreparedFramePtr prepare(Tracker& tracker, const FramePtr& frame) {
 }
 
 TrackResult track(Tracker& tracker, PreparedFramePtr prepared, const StaticWeights& weights,
-                  const SparseMap& map, TrackHints hints) {
+                  const SparseMap& map, TrackHints hints, bool thorough) {
   const FramePtr frame = prepared->frame;
   TrackResult result = tracker.track(std::move(prepared), weights, map, hints);
   check_tracking(result, *frame, map, hints.next_keyframe);
+  if (thorough) check_thoroughly(result, *frame);
   return result;
 }
 
-void check_pushed(const Frame& frame, const Frame* previous) {
+void check_pushed(const Frame& frame, const Frame* previous, bool thorough) {
   try {
     check_frame(frame, frame.index, previous);
+    if (thorough) check_thoroughly(frame);
   } catch (const Error& error) {
     throw Error(Fault::kData, error.what(), "frame " + std::to_string(frame.index));
   }
@@ -52,6 +56,14 @@ NewKeyFrame new_keyframe(const KeyFrame& keyframe, const FramePtr& frame,
                          const SegmentationPtr& labels,
                          const std::shared_ptr<const StaticWeights>& weights) {
   return {keyframe, {keyframe.id, frame, labels, weights, keyframe.world_from_camera}};
+}
+
+std::optional<TrackedFrame> tracked_frame(const FramePtr& frame,
+                                          const std::shared_ptr<const StaticWeights>& weights,
+                                          const TrackResult& result) {
+  if (result.state != TrackState::kTracking) return std::nullopt;
+  return TrackedFrame{frame, weights, result.reference, result.reference_from_camera,
+                      result.world_from_camera};
 }
 
 }  // namespace
@@ -70,13 +82,12 @@ Pipeline::Pipeline(Stages stages, const RuntimeOptions& runtime,
       tracker_(std::move(stages.tracker), "tracking", times_),
       segmentation_(std::move(stages.segmenter), std::move(stages.propagator), segmentation,
                     runtime.mode, stop_, times_),
-      moving_check_(std::move(stages.moving_checker), times_),
-      map_check_(std::move(stages.map_checker), times_),
+      moving_check_(std::move(stages.moving_checker), runtime.validate, times_),
+      map_check_(std::move(stages.map_checker), runtime.validate, times_),
       beside_(moving_check_.present() || map_check_.present() ? runtime.mode : Mode::kInline, stop_,
               times_),
       mapping_(std::move(stages.local_mapper), std::move(stages.loop_closer),
-               std::move(stages.map_backend), std::move(stages.known_map), runtime.mode, stop_,
-               times_) {
+               std::move(stages.map_backend), std::move(stages.known_map), runtime, stop_, times_) {
   add_outputs(std::move(stages.outputs));
 }
 
@@ -108,7 +119,8 @@ FrameReportPtr Pipeline::push(Frame frame) {
   frame.index = pushed_ ? pushed_->index + 1 : 0;
   if (frame.gray.empty() && !frame.bgr.empty() && frame.bgr.type() == CV_8UC3)
     cv::cvtColor(frame.bgr, frame.gray, cv::COLOR_BGR2GRAY);
-  check_pushed(frame, pushed_.get());
+  check_pushed(frame, pushed_.get(), thorough());
+  if (thorough()) frame = with_read_only_images(std::move(frame));
   pushed_ = std::make_shared<const Frame>(std::move(frame));
   FrameReportPtr report;
   keep_failure_of([&] { report = process(pushed_); });
@@ -141,9 +153,9 @@ FrameReportPtr Pipeline::process(const FramePtr& frame) {
   const std::uint32_t index = frame->index;
   const ScopedTime time(times_, "track_thread", index);
   segmentation_.offer(frame);  // thread 2
-  const auto moving = beside_.start([=, this] { return moving_check_.at(frame); });
-  const auto evidence = beside_.start(
-      [=, this, map = mapping_.snapshot()] { return map_check_.at(*frame, *moving, *map); });
+  const auto map = mapping_.snapshot();
+  const auto moving = beside_.start([=, this] { return moving_check_.at(frame, *map); });
+  const auto evidence = beside_.start([=, this] { return map_check_.at(*frame, *moving, *map); });
   const auto labels = beside_.start([=, this] { return segmentation_.at(frame); });
   auto prepared = tracker_.call("prepare", index, prepare, frame);  // meanwhile
   if (!beside_.wait(index) || !*labels) return nullptr;             // stopped
@@ -153,13 +165,21 @@ FrameReportPtr Pipeline::process(const FramePtr& frame) {
       tracker_.call("track", index, track, std::move(prepared), *weights, *mapping_.snapshot(),
                     TrackHints{.next_keyframe = mapping_.next_keyframe(),
                                .mapping_waiting = mapping_.waiting(),
-                               .localise_only = localise_only_});
-  if (result.keyframe) mapping_.push(new_keyframe(*result.keyframe, frame, *labels, weights));
-  map_check_.tracked(frame, weights, result, *mapping_.snapshot());
+                               .localise_only = localise_only_},
+                    thorough());
+  const auto tracked = tracked_frame(frame, weights, result);
+  moving_check_.tracked(tracked);
+  if (result.keyframe) add(new_keyframe(*result.keyframe, frame, *labels, weights));
+  map_check_.tracked(tracked, *mapping_.snapshot());
   const auto report = std::make_shared<const FrameReport>(
       FrameReport{frame, *labels, *moving, *evidence, weights, std::move(result), times_.take()});
   record(report);
   return report;
+}
+
+void Pipeline::add(NewKeyFrame keyframe) {
+  moving_check_.keyframe(keyframe.images);
+  mapping_.push(std::move(keyframe));
 }
 
 void Pipeline::record(const FrameReportPtr& report) {

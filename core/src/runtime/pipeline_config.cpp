@@ -214,6 +214,8 @@ void RuntimeOptions::visit(OptionVisitor& v) {
   v("threads", threads, {.min = 1, .max = 256, .help = "of each solver; inline uses 1"});
   v("stage_timeout", stage_timeout,
     {.min = 0, .max = 1e6, .unit = "s", .help = "a stage that takes longer is named; 0: none"});
+  v.choice("validate", validate, {{"cheap", Validate::kCheap}, {"full", Validate::kFull}},
+           {.help = "how thoroughly what stages give is checked; full is for authors of plugins"});
 }
 
 void SegmentationOptions::visit(OptionVisitor& v) {

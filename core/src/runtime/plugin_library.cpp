@@ -1,23 +1,48 @@
 #include "stillpoint/runtime/plugin_library.hpp"
 
+#include <dlfcn.h>
+
 #define BOOST_DLL_USE_STD_FS
 #include <boost/dll/shared_library.hpp>
 #include <deque>
+#include <string_view>
+#include <system_error>
 
+#include "stillpoint/error.hpp"
 #include "stillpoint/runtime/plugin_stamp.hpp"
+#include "stillpoint/runtime/stage_guard.hpp"
 
 namespace stillpoint {
 namespace {
 
-/// What dlopen said: Boost writes "… (dlerror system message: PATH: TEXT): ERRNO", where errno is
-/// not dlopen's and the path is known to the reader.
-std::string loader_message(std::string text, const std::string& file) {
-  const std::string before = file + ": ";
-  const auto start = text.find(before);
-  const auto end = text.rfind("): ");
-  if (start != std::string::npos && end != std::string::npos && end > start)
-    text = text.substr(start + before.size(), end - start - before.size());
-  return "cannot be loaded: " + text;
+namespace fs = std::filesystem;
+
+/// What dlopen() said, "PATH: TEXT", without the path, which is known to the reader.
+std::string loader_message(const std::string& file) {
+  const char* said = ::dlerror();
+  std::string_view text = said ? said : "for no known reason";
+  if (text.starts_with(file + ": ")) text.remove_prefix(file.size() + 2);
+  return std::string(text);
+}
+
+/// Runs the library's static constructors; empty with a reason when it cannot be loaded.
+boost::dll::shared_library load(const fs::path& file, std::string& reason) {
+  boost::dll::shared_library library;
+  auto open = [&] {
+    namespace mode = boost::dll::load_mode;
+    std::error_code error;
+    library.load(file, mode::rtld_now | mode::rtld_local, error);
+    if (error) reason = "cannot be loaded: " + loader_message(file.string());
+  };
+  const std::string name = "loading " + file.string();
+  try {
+    call_guarded(name, std::nullopt, open);
+  } catch (const std::exception& error) {  // dlopen() still holds its lock
+    throw Error(Fault::kStage, error.what(), name,
+                "its static constructors did that; mend it, or take it out of the folder");
+  }
+  StageGuard::library_was_loaded();
+  return library;
 }
 
 /// Holds libraries until the process ends: exceptions, control blocks and registered prototypes
@@ -30,22 +55,22 @@ std::shared_ptr<const void> keep_loaded(const boost::dll::shared_library& librar
 
 }  // namespace
 
-PluginLibrary load_plugin_library(const std::filesystem::path& file) {
+PluginLibrary load_plugin_library(const fs::path& file) {
   PluginLibrary result;
   result.reason = why_library_does_not_fit(file);
   if (!result.reason.empty()) return result;
-  try {
-    namespace mode = boost::dll::load_mode;
-    const boost::dll::shared_library library(file, mode::rtld_now | mode::rtld_local);
-    result.handle = keep_loaded(library);
-    const auto& descriptor = library.get<const PluginDescriptor>(kPluginSymbol);
-    if (descriptor.name && descriptor.version && descriptor.entries)
-      result.descriptor = &descriptor;
-    else
-      result.reason = "its descriptor is incomplete";
-  } catch (const std::exception& error) {
-    result.reason = loader_message(error.what(), file.string());
+  const boost::dll::shared_library library = load(file, result.reason);
+  if (!result.reason.empty()) return result;
+  result.handle = keep_loaded(library);
+  if (!library.has(kPluginSymbol)) {
+    result.reason = std::string("does not export '") + kPluginSymbol + "'";
+    return result;
   }
+  const auto& descriptor = library.get<const PluginDescriptor>(kPluginSymbol);
+  if (descriptor.name && descriptor.version && descriptor.entries)
+    result.descriptor = &descriptor;
+  else
+    result.reason = "its descriptor is incomplete";
   return result;
 }
 

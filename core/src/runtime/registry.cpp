@@ -7,6 +7,7 @@
 #include "stillpoint/runtime/option_describer.hpp"
 #include "stillpoint/runtime/plugin_library.hpp"
 #include "stillpoint/runtime/plugin_stamp.hpp"
+#include "stillpoint/runtime/stage_guard.hpp"
 #include "stillpoint/support/did_you_mean.hpp"
 
 namespace stillpoint {
@@ -29,7 +30,9 @@ std::vector<fs::path> plugin_files(const fs::path& folder) {
 std::string fault_of_options(const PluginEntry& entry) {
   try {
     OptionDescriber describer;
-    entry.describe(describer);
+    auto describe = [&] { entry.describe(describer); };
+    call_guarded(std::string("options of ") + entry.kind + " '" + entry.type + "'", std::nullopt,
+                 describe);
     return join(describer.faults());
   } catch (const std::exception& error) {
     return error.what();
@@ -125,7 +128,8 @@ std::shared_ptr<void> create_object(const PluginType& type, std::string_view kin
   const std::string name = type.kind + " (" + type.type + ")";
   if (type.kind != kind) throw Error(Fault::kStage, "asked for as a " + std::string(kind), name);
   try {
-    void* object = type.entry->create(options, context);
+    auto create = [&] { return type.entry->create(options, context); };
+    void* object = call_guarded("the constructor of " + name, std::nullopt, create);
     return {object, [destroy, library = type.handle](void* p) { destroy(p); }};
   } catch (const Error& error) {
     throw Error(error.fault(), error.what(), name);

@@ -19,6 +19,8 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "stillpoint/runtime/read_only_images.hpp"
+
 namespace stillpoint {
 namespace {
 
@@ -26,7 +28,8 @@ using Clock = std::chrono::steady_clock;
 
 constexpr std::array kCrashes = {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT};
 constexpr int kGiveUp = SIGUSR2;
-constexpr int kExited = 1000;  // beyond all signals
+constexpr int kExited = 1000;  // beyond all signals, like the next
+constexpr int kWroteToImage = 1001;
 constexpr unsigned kSecondsToSave = 30;
 constexpr std::size_t kStackOfHandlers = 64 * 1024;  // bytes
 
@@ -99,8 +102,10 @@ class StackOfHandlers {
   std::unique_ptr<char[]> memory_;
 };
 
-extern "C" void on_crash(int signal) {
-  if (current && !bookkeeping) siglongjmp(current->way_out, signal);
+extern "C" void on_crash(int signal, siginfo_t* info, void*) {
+  const bool wrote_to_image = signal == SIGSEGV && in_read_only_image(info->si_addr);
+  if (current && !bookkeeping)
+    siglongjmp(current->way_out, wrote_to_image ? kWroteToImage : signal);
   ::signal(signal, SIG_DFL);
   ::raise(signal);
 }
@@ -121,6 +126,8 @@ extern "C" void on_saving_hangs(int) {
 
 std::string reason_of(int what) {
   if (what == kExited) return "it called std::exit()";
+  if (what == kWroteToImage)
+    return "it wrote to an image of a frame, which all stages share; work on a copy of it";
   if (what == kGiveUp) return "it did not return and was given up";
   return std::string("it crashed: SIG") + sigabbrev_np(what) + ", " + sigdescr_np(what);
 }
@@ -147,7 +154,7 @@ std::string text_of(const Call& call) {
   return text.str();
 }
 
-void watch(const std::stop_token& stop, double patience, const StageGuard::Late& late) {
+void watch(const std::stop_token& stop, double patience, const LateCalls::Late& late) {
   std::mutex mutex;
   std::condition_variable_any stopped;
   std::unique_lock lock(mutex);
@@ -166,6 +173,13 @@ void watch(const std::stop_token& stop, double patience, const StageGuard::Late&
   }
 }
 
+void handle_crash(int signal) {
+  struct sigaction action {};
+  action.sa_sigaction = on_crash;
+  action.sa_flags = SA_ONSTACK | SA_SIGINFO;
+  sigaction(signal, &action, nullptr);
+}
+
 void handle(int signal, void (*handler)(int)) {
   struct sigaction action {};
   action.sa_handler = handler;
@@ -175,18 +189,13 @@ void handle(int signal, void (*handler)(int)) {
 
 }  // namespace
 
-StageGuard::StageGuard(double patience_seconds, Late late) {
-  for (const int signal : kCrashes) handle(signal, on_crash);
+StageGuard::StageGuard() {
+  for (const int signal : kCrashes) handle_crash(signal);
   handle(kGiveUp, on_give_up);
   handle(SIGALRM, on_saving_hangs);
   std::atexit(on_exit_of_process);
   ended_one = false;
   guarded = true;
-  if (patience_seconds > 0)
-    watcher_ =
-        std::jthread([patience_seconds, late = std::move(late)](const std::stop_token& stop) {
-          watch(stop, patience_seconds, late);
-        });
 }
 
 StageGuard::~StageGuard() {
@@ -195,6 +204,10 @@ StageGuard::~StageGuard() {
   for (const int signal : kCrashes) ::signal(signal, SIG_DFL);
   ::signal(kGiveUp, SIG_IGN);
   ::signal(SIGALRM, SIG_DFL);
+}
+
+void StageGuard::library_was_loaded() {
+  if (guarded) std::atexit(on_exit_of_process);
 }
 
 std::vector<std::string> StageGuard::calls_longer_than(double seconds) {
@@ -212,6 +225,14 @@ std::size_t StageGuard::give_up() {
 }
 
 bool StageGuard::has_ended_one() { return ended_one; }
+
+LateCalls::LateCalls(double patience_seconds, Late late) {
+  if (patience_seconds > 0)
+    watcher_ =
+        std::jthread([patience_seconds, late = std::move(late)](const std::stop_token& stop) {
+          watch(stop, patience_seconds, late);
+        });
+}
 
 void call_guarded(const std::string& stage, std::optional<std::uint32_t> frame,
                   void (*function)(void*), void* argument) {

@@ -6,16 +6,13 @@
 #include <string>
 
 #include "stillpoint/error.hpp"
+#include "stillpoint/runtime/stage_requirement.hpp"
 #include "stillpoint/support/size_text.hpp"
 
 namespace stillpoint {
 namespace {
 
 constexpr double kLargestSkew = 1e-3;  // of a rotation matrix from an orthonormal one
-
-void require(bool right, const std::string& problem, const std::string& remedy) {
-  if (!right) throw Error(Fault::kStage, problem, "", remedy);
-}
 
 /// `what` is in the plural: "the labels".
 void check_image(const cv::Mat& image, int type, cv::Size frame, const std::string& what,
@@ -29,8 +26,8 @@ void check_image(const cv::Mat& image, int type, cv::Size frame, const std::stri
 }
 
 void check_type(const cv::Mat& image, int type, const std::string& what) {
-  require(image.type() == type, what + " is of " + cv::typeToString(image.type()),
-          "it must be of " + cv::typeToString(type));
+  require_of_stage(image.type() == type, what + " is of " + cv::typeToString(image.type()),
+                   "it must be of " + cv::typeToString(type));
 }
 
 bool is_pose(const Pose& pose) {
@@ -48,39 +45,42 @@ int highest(const cv::Mat& image) {
 void check_objects(const Segmentation& segmentation, std::size_t classes) {
   const cv::Rect image({}, segmentation.labels.size());
   for (const SegmentedObject& object : segmentation.objects) {
-    require(object.label > 0 && object.label < static_cast<int>(classes),
-            "an object has label " + std::to_string(object.label) + " of " +
-                std::to_string(classes) + " classes",
-            "labels of objects count from 1 to classes() - 1");
-    require(object.box.empty() || (object.box & image) == object.box,
-            "the box of an object is not in the image", "boxes are in pixels of the frame");
+    require_of_stage(object.label > 0 && object.label < static_cast<int>(classes),
+                     "an object has label " + std::to_string(object.label) + " of " +
+                         std::to_string(classes) + " classes",
+                     "labels of objects count from 1 to classes() - 1");
+    require_of_stage(object.box.empty() || (object.box & image) == object.box,
+                     "the box of an object is not in the image",
+                     "boxes are in pixels of the frame");
   }
 }
 
 void check_keyframe(const KeyFrame& keyframe, const Frame& frame, const SparseMap& map,
                     KeyFrameId next) {
-  require(keyframe.id == next,
-          "the key frame has id " + std::to_string(keyframe.id) + ", but the next one is " +
-              std::to_string(next),
-          "take TrackHints::next_keyframe");
-  require(keyframe.frame == frame.index,
-          "the key frame is of frame " + std::to_string(keyframe.frame),
-          "KeyFrame::frame must be the index of the frame that was tracked");
-  require(keyframe.camera != nullptr, "the key frame has no camera", "give it that of the frame");
-  require(keyframe.features != nullptr, "the key frame has no features",
-          "a tracker without point features gives an empty Features");
-  require(is_pose(keyframe.world_from_camera), "the pose of the key frame is no rigid motion",
-          "it must be finite, with an orthonormal rotation");
+  require_of_stage(keyframe.id == next,
+                   "the key frame has id " + std::to_string(keyframe.id) +
+                       ", but the next one is " + std::to_string(next),
+                   "take TrackHints::next_keyframe");
+  require_of_stage(keyframe.frame == frame.index,
+                   "the key frame is of frame " + std::to_string(keyframe.frame),
+                   "KeyFrame::frame must be the index of the frame that was tracked");
+  require_of_stage(keyframe.camera != nullptr, "the key frame has no camera",
+                   "give it that of the frame");
+  require_of_stage(keyframe.features != nullptr, "the key frame has no features",
+                   "a tracker without point features gives an empty Features");
+  require_of_stage(is_pose(keyframe.world_from_camera),
+                   "the pose of the key frame is no rigid motion",
+                   "it must be finite, with an orthonormal rotation");
   const Features& features = *keyframe.features;
   const std::size_t count = features.size();
   for (const std::size_t size :
        {features.descriptors.size(), features.depth.size(), keyframe.track_weights.size(),
         keyframe.map_weights.size(), keyframe.landmarks.size()})
-    require(size == count,
-            "the key frame has " + std::to_string(count) + " keypoints, but " +
-                std::to_string(size) + " descriptors, depths, weights or landmarks",
-            "give one of each per keypoint");
-  require(
+    require_of_stage(size == count,
+                     "the key frame has " + std::to_string(count) + " keypoints, but " +
+                         std::to_string(size) + " descriptors, depths, weights or landmarks",
+                     "give one of each per keypoint");
+  require_of_stage(
       std::ranges::all_of(keyframe.landmarks,
                           [&](LandmarkId id) { return id == kNoId || id < map.landmark_id_end(); }),
       "the key frame sees a landmark that is not in the map",
@@ -90,28 +90,30 @@ void check_keyframe(const KeyFrame& keyframe, const Frame& frame, const SparseMa
 }  // namespace
 
 void check_frame(const Frame& frame, std::uint32_t index, const Frame* previous) {
-  require(frame.index == index, "the frame has index " + std::to_string(frame.index),
-          "indices count from 0 without gaps");
-  require(std::isfinite(frame.time), "the time of the frame is not finite",
-          "give the time of the colour image in seconds");
-  require(!previous || frame.time >= previous->time,
-          "the frame is " + std::to_string(previous ? previous->time - frame.time : 0) +
-              " s older than the one before",
-          "give frames in order of time");
-  require(!frame.gray.empty(), "the frame has no image", "leave out images that cannot be read");
-  require(frame.bgr.size() == frame.gray.size() && frame.depth.size() == frame.gray.size(),
-          "the colour, grey and depth images of a frame differ in size",
-          "all three are needed, of the camera's size");
+  require_of_stage(frame.index == index, "the frame has index " + std::to_string(frame.index),
+                   "indices count from 0 without gaps");
+  require_of_stage(std::isfinite(frame.time), "the time of the frame is not finite",
+                   "give the time of the colour image in seconds");
+  require_of_stage(!previous || frame.time >= previous->time,
+                   "the frame is " + std::to_string(previous ? previous->time - frame.time : 0) +
+                       " s older than the one before",
+                   "give frames in order of time");
+  require_of_stage(!frame.gray.empty(), "the frame has no image",
+                   "leave out images that cannot be read");
+  require_of_stage(frame.bgr.size() == frame.gray.size() && frame.depth.size() == frame.gray.size(),
+                   "the colour, grey and depth images of a frame differ in size",
+                   "all three are needed, of the camera's size");
   check_type(frame.bgr, CV_8UC3, "the colour image");
   check_type(frame.gray, CV_8UC1, "the grey image");
   check_type(frame.depth, CV_32FC1, "the depth image");
-  require(frame.camera != nullptr, "the frame has no camera", "set Frame::camera");
-  require(frame.gray.size() == cv::Size(frame.camera->width, frame.camera->height),
-          "the images have " + size_text(frame.gray.size()) + " pixels, the camera " +
-              size_text({frame.camera->width, frame.camera->height}),
-          "give images of the camera's size");
-  require(!previous || previous->gray.size() == frame.gray.size(),
-          "the images have another size than those before", "all images of a run have one size");
+  require_of_stage(frame.camera != nullptr, "the frame has no camera", "set Frame::camera");
+  require_of_stage(frame.gray.size() == cv::Size(frame.camera->width, frame.camera->height),
+                   "the images have " + size_text(frame.gray.size()) + " pixels, the camera " +
+                       size_text({frame.camera->width, frame.camera->height}),
+                   "give images of the camera's size");
+  require_of_stage(!previous || previous->gray.size() == frame.gray.size(),
+                   "the images have another size than those before",
+                   "all images of a run have one size");
 }
 
 void check_segmentation(const Segmentation& segmentation, cv::Size frame, std::size_t classes) {
@@ -119,31 +121,31 @@ void check_segmentation(const Segmentation& segmentation, cv::Size frame, std::s
   check_image(segmentation.labels, CV_8UC1, frame, "the labels",
               "the segmenter must give one byte per pixel of the frame");
   const int label = highest(segmentation.labels);
-  require(label < std::max(1, static_cast<int>(classes)),
-          "a pixel has label " + std::to_string(label) + ", but there are " +
-              std::to_string(classes) + " classes",
-          "labels count from 0, the background, to classes() - 1");
+  require_of_stage(label < std::max(1, static_cast<int>(classes)),
+                   "a pixel has label " + std::to_string(label) + ", but there are " +
+                       std::to_string(classes) + " classes",
+                   "labels count from 0, the background, to classes() - 1");
   check_objects(segmentation, classes);
   if (segmentation.instances.empty()) return;
   check_image(segmentation.instances, CV_8UC1, frame, "the instances",
               "the segmenter must give one byte per pixel of the frame");
   const int instance = highest(segmentation.instances);
-  require(instance <= static_cast<int>(segmentation.objects.size()),
-          "a pixel belongs to object " + std::to_string(instance) + " of " +
-              std::to_string(segmentation.objects.size()),
-          "the segmenter must number its instances from 1, as in its list of objects");
+  require_of_stage(instance <= static_cast<int>(segmentation.objects.size()),
+                   "a pixel belongs to object " + std::to_string(instance) + " of " +
+                       std::to_string(segmentation.objects.size()),
+                   "the segmenter must number its instances from 1, as in its list of objects");
 }
 
 void check_moving_points(const MovingPoints& moving) {
-  require(std::ranges::all_of(moving.points,
-                              [](const PointMotion& point) {
-                                return std::isfinite(point.previous.x + point.previous.y +
-                                                     point.current.x + point.current.y);
-                              }),
-          "a point is not finite", "leave out points that were not found again");
-  require(!moving.camera_motion || is_pose(*moving.camera_motion),
-          "the camera's motion is no rigid motion",
-          "leave camera_motion empty where it was not found");
+  require_of_stage(std::ranges::all_of(moving.points,
+                                       [](const PointMotion& point) {
+                                         return std::isfinite(point.previous.x + point.previous.y +
+                                                              point.current.x + point.current.y);
+                                       }),
+                   "a point is not finite", "leave out points that were not found again");
+  require_of_stage(!moving.camera_motion || is_pose(*moving.camera_motion),
+                   "the camera's motion is no rigid motion",
+                   "leave camera_motion empty where it was not found");
 }
 
 void check_evidence(const MapEvidence& evidence) {
@@ -155,7 +157,7 @@ void check_weights(const StaticWeights& weights, const Segmentation& segmentatio
     if (!image->empty())
       check_image(*image, CV_8UC1, frame, "the weights",
                   "the decision must give one byte per pixel of the frame, or nothing");
-  require(
+  require_of_stage(
       weights.object_moves.empty() || weights.object_moves.size() == segmentation.objects.size(),
       std::to_string(weights.object_moves.size()) + " objects are judged, but there are " +
           std::to_string(segmentation.objects.size()),
@@ -163,25 +165,56 @@ void check_weights(const StaticWeights& weights, const Segmentation& segmentatio
 }
 
 void check_prepared(const PreparedFrame* prepared, const Frame& frame) {
-  require(prepared != nullptr, "prepare() gave nothing",
-          "give a PreparedFrame with the frame, of your own type or not");
-  require(prepared->frame.get() == &frame, "prepare() gave another frame",
-          "make it with the frame that prepare() was given");
+  require_of_stage(prepared != nullptr, "prepare() gave nothing",
+                   "give a PreparedFrame with the frame, of your own type or not");
+  require_of_stage(prepared->frame.get() == &frame, "prepare() gave another frame",
+                   "make it with the frame that prepare() was given");
 }
 
 void check_tracking(const TrackResult& result, const Frame& frame, const SparseMap& map,
                     KeyFrameId next) {
   if (result.keyframe) check_keyframe(*result.keyframe, frame, map, next);
   if (result.state != TrackState::kTracking) return;
-  require(is_pose(result.world_from_camera) && is_pose(result.reference_from_camera),
-          "the pose is no rigid motion",
-          "it must be finite, with an orthonormal rotation; say kLost where there is none");
+  require_of_stage(
+      is_pose(result.world_from_camera) && is_pose(result.reference_from_camera),
+      "the pose is no rigid motion",
+      "it must be finite, with an orthonormal rotation; say kLost where there is none");
   const KeyFrameId end = next + (result.keyframe ? 1 : 0);
-  require(result.reference < end,
-          "the reference is key frame " +
-              (result.reference == kNoId ? "kNoId" : std::to_string(result.reference)) + " of " +
-              std::to_string(end),
-          "TrackResult::reference must be a key frame of the map, or the one just made");
+  require_of_stage(result.reference < end,
+                   "the reference is key frame " +
+                       (result.reference == kNoId ? "kNoId" : std::to_string(result.reference)) +
+                       " of " + std::to_string(end),
+                   "TrackResult::reference must be a key frame of the map, or the one just made");
+}
+
+void check_inserted(const SparseMap& map, const SparseMap& before) {
+  const std::size_t end = before.keyframe_id_end();
+  require_of_stage(map.keyframe_id_end() == end + 1 && map.keyframe(static_cast<KeyFrameId>(end)),
+                   "key frame " + std::to_string(end) + " was not added to the map",
+                   "insert() adds it, under its own id; refine() may remove it");
+  check_refined(map, before);
+}
+
+void check_refined(const SparseMap& map, const SparseMap& before) {
+  require_of_stage(map.keyframe_id_end() >= before.keyframe_id_end() &&
+                       map.landmark_id_end() >= before.landmark_id_end(),
+                   "ids of the map are gone", "give the next version of the map it was given");
+}
+
+void check_correction(const MapCorrection& correction, const SparseMap& map) {
+  require_of_stage(correction.keyframe_id_end <= map.keyframe_id_end(),
+                   "the correction is of a map with more key frames",
+                   "keyframe_id_end is that of the map it was computed on");
+  for (const MovedKeyFrame& moved : correction.moved)
+    require_of_stage(
+        moved.keyframe < map.keyframe_id_end() && is_pose(moved.world_from_camera),
+        "a key frame that is not there or whose pose is no rigid motion is to be moved",
+        "poses must be finite, with an orthonormal rotation");
+  for (const auto& [landmark, position] : correction.landmarks)
+    require_of_stage(
+        landmark < map.landmark_id_end() && position.allFinite(),
+        "a landmark that is not there is to be moved, or one to a place that is not finite",
+        "use ids of the map that close() was given");
 }
 
 }  // namespace stillpoint

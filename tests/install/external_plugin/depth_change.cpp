@@ -17,7 +17,8 @@ class DepthChange final : public stillpoint::MovingChecker {
   explicit DepthChange(Options options) : options_(options) {}
 
   stillpoint::MovingPoints check(const stillpoint::Frame& previous,
-                                 const stillpoint::Frame& current) override {
+                                 const stillpoint::Frame& current,
+                                 const stillpoint::TrackingHistory&) override {
     stillpoint::MovingPoints result;
     for (int y = 0; y < current.depth.rows; y += options_.spacing) {
       for (int x = 0; x < current.depth.cols; x += options_.spacing) {

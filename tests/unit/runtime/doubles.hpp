@@ -119,10 +119,16 @@ class FakePropagator final : public Propagator {
 class FakeChecker final : public MovingChecker {
  public:
   explicit FakeChecker(Journal& journal) : journal_(journal) {}
-  MovingPoints check(const Frame& previous, const Frame& current) override {
+  MovingPoints check(const Frame& previous, const Frame& current,
+                     const TrackingHistory& known) override {
     journal_.write(std::string("check ").append(std::to_string(previous.index)), current.index);
+    history = known;
     return {.reliable = true};
   }
+  std::size_t wanted_keyframes() const override { return wanted; }
+
+  std::size_t wanted = 0;   // set before the run
+  TrackingHistory history;  // of the last call
 
  private:
   Journal& journal_;

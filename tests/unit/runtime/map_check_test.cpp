@@ -16,17 +16,17 @@ struct MapCheckFixture {
   SparseMap map;
   std::shared_ptr<testing::FakeMapChecker> checker =
       std::make_shared<testing::FakeMapChecker>(journal);
-  MapCheck check{{checker, "depth"}, times};
+  MapCheck check{{checker, "depth"}, RuntimeOptions::Validate::kCheap, times};
 
   MapEvidence at(std::uint32_t index) {
     frame = std::make_shared<const Frame>(testing::make_frame(index));
     return check.at(*frame, {}, map);
   }
   /// The camera is one metre farther along x in every frame.
-  void tracked(TrackState state = TrackState::kTracking) {
-    TrackResult result{.state = state};
+  void tracked() {
+    TrackedFrame result{.frame = frame, .weights = std::make_shared<const StaticWeights>()};
     result.world_from_camera = Pose(Eigen::Translation3d(frame->index, 0.0, 0.0));
-    check.tracked(frame, std::make_shared<const StaticWeights>(), result, map);
+    check.tracked(result, map);
   }
 
   FramePtr frame;
@@ -52,7 +52,7 @@ TEST(MapCheck, ALostCameraIsComparedWithNothing) {
   f.at(0);
   f.tracked();
   f.at(1);
-  f.tracked(TrackState::kLost);
+  f.check.tracked(std::nullopt, f.map);
   EXPECT_TRUE(f.at(2).log_odds.empty());
   EXPECT_EQ(f.journal.entries("remember"), (Strings{"remember 0"}));
 }
@@ -72,7 +72,7 @@ TEST(MapCheck, AFailureIsNamed) {
 
 TEST(MapCheck, WithoutACheckerNothingIsKnown) {
   TimeLog times;
-  MapCheck check({}, times);
+  MapCheck check({}, RuntimeOptions::Validate::kCheap, times);
   EXPECT_FALSE(check.present());
   EXPECT_TRUE(check.at(testing::make_frame(0), {}, {}).log_odds.empty());
   EXPECT_TRUE(times.take().empty());

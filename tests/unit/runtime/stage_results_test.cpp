@@ -217,6 +217,39 @@ TEST(StageResults, WhatIsPreparedIsTheFrame) {
   EXPECT_THAT(message(nullptr), HasSubstr("prepare() gave nothing"));
 }
 
+SparseMap map_with_keyframes(KeyFrameId count) {
+  MapEdit map{SparseMap()};
+  for (KeyFrameId id = 0; id < count; ++id) {
+    KeyFrame keyframe{.id = id};
+    keyframe.features = std::make_shared<const Features>();
+    map.add_keyframe(std::move(keyframe));
+  }
+  return map.map();
+}
+
+TEST(StageResults, AMapThatIsNoNextVersionIsRefused) {
+  const SparseMap before = map_with_keyframes(2), after = map_with_keyframes(3);
+  EXPECT_EQ(message_of([&] { check_inserted(after, before); }), "");
+  EXPECT_EQ(message_of([&] { check_refined(after, after); }), "");
+  EXPECT_THAT(message_of([&] { check_inserted(before, before); }),
+              HasSubstr("key frame 2 was not added to the map"));
+  EXPECT_THAT(message_of([&] { check_refined(before, after); }),
+              HasSubstr("ids of the map are gone"));
+  EXPECT_THAT(message_of([&] { check_inserted({}, before); }), HasSubstr("key frame 2"));
+}
+
+TEST(StageResults, WrongCorrectionsAreRefused) {
+  const SparseMap map = map_with_keyframes(2);
+  const auto message = [&](const MapCorrection& correction) {
+    return message_of([&] { check_correction(correction, map); });
+  };
+  EXPECT_EQ(message({.keyframe_id_end = 2, .moved = {{1, Pose::Identity()}}}), "");
+  EXPECT_THAT(message({.keyframe_id_end = 3}), HasSubstr("of a map with more key frames"));
+  EXPECT_THAT(message({.moved = {{2, Pose::Identity()}}}), HasSubstr("not there"));
+  EXPECT_THAT(message({.moved = {{1, Pose(Eigen::Scaling(2.0))}}}), HasSubstr("no rigid motion"));
+  EXPECT_THAT(message({.landmarks = {{0, Eigen::Vector3d::Zero()}}}), HasSubstr("a landmark"));
+}
+
 TEST(StageResults, WhoIsLostNeedsNoPose) {
   TrackResult result{.state = TrackState::kLost};
   result.world_from_camera.translation().x() = kNan;

@@ -19,11 +19,13 @@ struct STILLPOINT_EXPORT Camera {
   double fy = 525.0;  ///< px
   double cx = 319.5;  ///< px
   double cy = 239.5;  ///< px
-  /// Standard deviation of a depth measurement at 1 m, in metres. That of a structured-light
-  /// sensor grows with the square of the distance (Khoshelham and Elberink, Sensors 2012). Besides
-  /// the sensor's own noise (0.002) it stands for what a point feature suffers in a real recording:
-  /// depth edges, registration, and depth images taken some milliseconds off the colour images.
+  /// Standard deviations of depth at 1 m, in metres. That of a structured-light sensor grows with
+  /// the square of the distance, which is a constant one of the inverse depth, in 1/m (Khoshelham
+  /// and Elberink, Sensors 2012). `surface_noise` is the sensor's own, on a smooth surface.
+  /// `depth_noise` is what a point feature suffers in a recording: besides that, depth edges,
+  /// registration, and depth images taken some milliseconds off the colour images.
   double depth_noise = 0.02;
+  double surface_noise = 0.002;
 
   /// Pixel of a point in the camera frame; z must be positive.
   Eigen::Vector2d project(const Eigen::Vector3d& point_in_camera) const {
@@ -48,8 +50,6 @@ struct STILLPOINT_EXPORT Camera {
   bool contains(double u, double v, double border = 0.0) const {
     return u >= border && v >= border && u <= width - 1 - border && v <= height - 1 - border;
   }
-  /// Standard deviation in metres of a depth measurement of `z` metres.
-  double depth_sigma(double z) const { return depth_noise * z * z; }
 };
 
 /// A sensor as it records: the `camera:` section of a pipeline file and the files in
@@ -67,7 +67,8 @@ struct STILLPOINT_EXPORT CameraModel {
   double depth_factor = 5000.0;  ///< depth image value of one metre
   double min_depth = 0.3;        ///< metres; nearer measurements are dropped
   double max_depth = 10.0;       ///< metres; farther measurements are dropped
-  double depth_noise = 0.02;     ///< metres at 1 m, see Camera::depth_noise
+  double depth_noise = 0.02;     ///< metres at 1 m, see Camera
+  double surface_noise = 0.002;  ///< metres at 1 m, see Camera
   /// x, y, width, height in px of the part of the undistorted image that is used; empty: all of it.
   std::vector<double> crop;
 

@@ -3,32 +3,15 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <memory>
 #include <span>
 #include <vector>
 
-#include "stillpoint/contracts/frame.hpp"
+#include "stillpoint/contracts/dense_keyframe.hpp"
 #include "stillpoint/contracts/labelled_point.hpp"
 #include "stillpoint/contracts/map_correction.hpp"
-#include "stillpoint/contracts/segmentation.hpp"
-#include "stillpoint/contracts/static_weights.hpp"
 #include "stillpoint/export.hpp"
 
 namespace stillpoint {
-
-/// A key frame with its images.
-struct DenseKeyFrame {
-  KeyFrameId id = kNoId;
-  FramePtr frame;
-  SegmentationPtr segmentation;
-  std::shared_ptr<const StaticWeights> weights;
-  Pose world_from_camera = Pose::Identity();
-
-  /// CV_8UC1, class id per pixel; empty when nothing is known.
-  cv::Mat labels() const { return segmentation ? segmentation->labels : cv::Mat(); }
-  /// CV_8UC1, how far each pixel may be mapped; empty: 255 everywhere.
-  cv::Mat map_weights() const { return weights ? weights->map : cv::Mat(); }
-};
 
 class STILLPOINT_EXPORT MapBackend {
  public:

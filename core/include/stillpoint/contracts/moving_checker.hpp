@@ -1,12 +1,24 @@
 // Contract: which points move by themselves (paper III-C, Algorithm 1). Beside thread 1.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "stillpoint/contracts/dense_keyframe.hpp"
 #include "stillpoint/contracts/frame.hpp"
 #include "stillpoint/contracts/moving_points.hpp"
 #include "stillpoint/export.hpp"
 
 namespace stillpoint {
+
+/// What is known before a frame is checked, for checks that look further back than one frame. Poses
+/// are those of the map as it is now.
+struct TrackingHistory {
+  std::optional<Pose> world_from_previous;  ///< of the frame before; nothing: it was not tracked
+  std::vector<DenseKeyFrame> keyframes;     ///< newest first
+};
 
 class STILLPOINT_EXPORT MovingChecker {
  public:
@@ -14,8 +26,13 @@ class STILLPOINT_EXPORT MovingChecker {
   static constexpr std::uint32_t kApi = 1;  ///< see kPluginApi
   virtual ~MovingChecker();
 
-  /// Both frames have the same size.
-  virtual MovingPoints check(const Frame& previous, const Frame& current) = 0;
+  /// For each frame but the first, in order. Both frames have the same size.
+  virtual MovingPoints check(const Frame& previous, const Frame& current,
+                             const TrackingHistory& history) = 0;
+
+  /// How many key frames of the history check() looks at, at most; asked once. Their images stay in
+  /// memory, 2.4 MB each of 640 × 480 pixels.
+  virtual std::size_t wanted_keyframes() const;
 };
 
 }  // namespace stillpoint

@@ -40,6 +40,8 @@ struct STILLPOINT_EXPORT RuntimeOptions {
   int seed = 1;
   int threads = 1;            ///< of each solver; always 1 inline
   double stage_timeout = 60;  ///< seconds after which the program names a stage; 0: never
+  /// Of what stages give; full: all of it, and images of frames cannot be written to.
+  enum class Validate { kCheap, kFull } validate = Validate::kCheap;
 
   void visit(OptionVisitor& visitor);
 };

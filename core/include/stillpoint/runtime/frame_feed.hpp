@@ -38,6 +38,7 @@ class FrameFeed {
   void deliver(FramePtr frame);
 
   const RuntimeOptions::Pace pace_;
+  const bool thorough_;
   PaceClock& clock_;
   StopSignal& stop_;
   TimeLog& times_;

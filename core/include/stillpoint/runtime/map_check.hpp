@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 
+#include "stillpoint/engine/pipeline_config.hpp"
 #include "stillpoint/runtime/pose_prediction.hpp"
 #include "stillpoint/runtime/stage.hpp"
 
@@ -11,18 +12,20 @@ namespace stillpoint {
 
 class MapCheck {
  public:
-  MapCheck(Stage<MapChecker> checker, TimeLog& times)
-      : checker_(std::move(checker), "map check", times) {}
+  MapCheck(Stage<MapChecker> checker, RuntimeOptions::Validate validate, TimeLog& times)
+      : checker_(std::move(checker), "map check", times),
+        thorough_(validate == RuntimeOptions::Validate::kFull) {}
 
   bool present() const { return checker_.present(); }
   /// Once per frame, in order. Nothing is known while nothing has been tracked.
   MapEvidence at(const Frame& frame, const MovingPoints& moving, const SparseMap& map);
-  /// What became of the frame that at() was asked for last; before it is asked for the next one.
-  void tracked(const FramePtr& frame, std::shared_ptr<const StaticWeights> weights,
-               const TrackResult& result, const SparseMap& map);
+  /// What became of the frame that at() was asked for last, nothing: not tracked; before it is
+  /// asked for the next one.
+  void tracked(const std::optional<TrackedFrame>& frame, const SparseMap& map);
 
  private:
   StageCaller<MapChecker> checker_;
+  const bool thorough_;
   PosePrediction prediction_;
   std::optional<TrackedFrame> to_remember_;
 };

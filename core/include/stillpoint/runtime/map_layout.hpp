@@ -2,7 +2,8 @@
 //
 // Tables: camera, keyframe, landmark, numbered from 0. What there is once per feature lies in blobs
 // of the key frame, in the machine's byte order (little-endian wherever Stillpoint runs). The last
-// column of every table is a CRC-32 over the others.
+// column of every table is a CRC-32 over the others. Camera::surface_noise is left out: it belongs
+// to depth images, which are not kept.
 #pragma once
 
 #include <cstdint>

@@ -27,8 +27,8 @@ struct NewKeyFrame {
 class MappingSystem {
  public:
   MappingSystem(Stage<LocalMapper> local_mapper, Stage<LoopCloser> loop_closer,
-                Stage<MapBackend> map_backend, SparseMap known_map, Mode mode, StopSignal& stop,
-                TimeLog& times);
+                Stage<MapBackend> map_backend, SparseMap known_map, const RuntimeOptions& options,
+                StopSignal& stop, TimeLog& times);
   ~MappingSystem() { end(); }
 
   MapStore::Snapshot snapshot() const { return map_.snapshot(); }
@@ -74,6 +74,7 @@ class MappingSystem {
   void send_moved(const SparseMap& before, const SparseMap& after);
 
   const bool threaded_;
+  const bool thorough_;
   StopSignal& stop_;
   StageCaller<LocalMapper> local_mapper_;
   StageCaller<LoopCloser> loop_closer_;

@@ -1,22 +1,40 @@
 // The moving check of each frame against the one before (paper III-C).
 #pragma once
 
+#include <cstddef>
+#include <deque>
+#include <memory>
+#include <optional>
+
+#include "stillpoint/engine/pipeline_config.hpp"
 #include "stillpoint/runtime/stage.hpp"
 
 namespace stillpoint {
 
 class MovingCheck {
  public:
-  MovingCheck(Stage<MovingChecker> checker, TimeLog& times)
-      : checker_(std::move(checker), "moving check", times) {}
+  MovingCheck(Stage<MovingChecker> checker, RuntimeOptions::Validate validate, TimeLog& times)
+      : checker_(std::move(checker), "moving check", times),
+        thorough_(validate == RuntimeOptions::Validate::kFull),
+        wanted_keyframes_(checker_.object().wanted_keyframes()) {}
 
   bool present() const { return checker_.present(); }
   /// Once per frame, in order. Nothing is known of the first, which has none before it.
-  MovingPoints at(const FramePtr& frame);
+  MovingPoints at(const FramePtr& frame, const SparseMap& map);
+  /// What became of the frame that at() was asked for last; before it is asked for the next one.
+  void tracked(const std::optional<TrackedFrame>& frame) { previous_tracked_ = frame; }
+  /// That it became a key frame.
+  void keyframe(const DenseKeyFrame& keyframe);
 
  private:
+  TrackingHistory history(const SparseMap& map) const;
+
   StageCaller<MovingChecker> checker_;
+  const bool thorough_;
+  const std::size_t wanted_keyframes_;
   FramePtr previous_;
+  std::optional<TrackedFrame> previous_tracked_;
+  std::deque<DenseKeyFrame> keyframes_;  // newest first, poses at the time of tracking
 };
 
 }  // namespace stillpoint

@@ -41,6 +41,7 @@ class Pipeline {
  private:
   void add_outputs(std::vector<OutputSetup> setups);
   FrameReportPtr process(const FramePtr& frame);
+  void add(NewKeyFrame keyframe);
   void record(const FrameReportPtr& report);
   void end_threads();
   void finish_outputs();
@@ -49,6 +50,8 @@ class Pipeline {
   int dropped_reports() const;
   void keep_failure_of(const std::function<void()>& step);
   void throw_failure() const;
+
+  bool thorough() const { return options_.validate == RuntimeOptions::Validate::kFull; }
 
   const RuntimeOptions options_;
   const std::filesystem::path map_directory_;

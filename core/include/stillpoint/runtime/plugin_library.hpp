@@ -16,7 +16,9 @@ struct PluginLibrary {
   std::string reason;
 };
 
-/// Throws nothing. The library stays loaded until the process ends.
+/// The library stays loaded until the process ends. Throws Error(kStage) when its static
+/// constructors throw, or a StageGuard had to end them: nothing more can be loaded into such a
+/// process.
 PluginLibrary load_plugin_library(const std::filesystem::path& file);
 
 }  // namespace stillpoint

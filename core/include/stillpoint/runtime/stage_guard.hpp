@@ -1,4 +1,4 @@
-// Stages that crash, end the process or never return: named, and what was computed is saved.
+// Plugins that crash, end the process or never return: named, and what was computed is saved.
 #pragma once
 
 #include <cstddef>
@@ -15,37 +15,45 @@
 
 namespace stillpoint {
 
-/// While it lives, a stage that SIGSEGV, SIGBUS, SIGFPE, SIGILL or SIGABRT hits, or that calls
-/// std::exit(), fails as if it had thrown. Only for programs whose signal handlers are their own;
-/// one at a time; make it after plugins have been loaded, since std::exit() destroys first what
-/// came last.
+/// While it lives, a plugin that SIGSEGV, SIGBUS, SIGFPE, SIGILL or SIGABRT hits, or that calls
+/// std::exit(), fails as if it had thrown: in a stage, in a constructor, or while it is loaded.
+/// Only for programs whose signal handlers are their own; one at a time.
 ///
-/// What the stage held stays as it was, locks and memory included: that is enough to save what was
+/// What the plugin held stays as it was, locks and memory included: that is enough to save what was
 /// computed, not to go on. Should saving hang, too, the process ends after half a minute.
 class STILLPOINT_EXPORT StageGuard {
  public:
-  /// Called on a thread of the guard's, once for each call of a stage that takes longer than
-  /// `patience_seconds`; 0: never.
-  using Late = std::function<void(const std::string& what)>;
-  StageGuard(double patience_seconds, Late late);
+  StageGuard();
   ~StageGuard();
   StageGuard(const StageGuard&) = delete;
   StageGuard& operator=(const StageGuard&) = delete;
 
-  /// The calls of stages that take longer than that: "tracking (orb) has not returned for 12 s,
+  /// After each library: std::exit() destroys first what came last, and would destroy the statics
+  /// of a library that came after the guard before the guard learns of it.
+  static void library_was_loaded();
+  /// The calls of plugins that take longer than that: "tracking (orb) has not returned for 12 s,
   /// frame 3".
   static std::vector<std::string> calls_longer_than(double seconds);
   /// Ends the calls under way where they are: they fail. Gives their number.
   static std::size_t give_up();
   /// Whether it had to end one. Destructors of that plugin may do as much harm as it did.
   static bool has_ended_one();
+};
+
+/// While it lives, says which calls of plugins take long; one at a time.
+class STILLPOINT_EXPORT LateCalls {
+ public:
+  /// Called on a thread of its own, once for each call that takes longer than `patience_seconds`;
+  /// 0: never.
+  using Late = std::function<void(const std::string& what)>;
+  LateCalls(double patience_seconds, Late late);
 
  private:
   std::jthread watcher_;
 };
 
-/// Calls `function(argument)` as the stage's. Throws std::runtime_error with a reason when a guard
-/// had to end it.
+/// Calls `function(argument)`, which is the plugin's. Throws std::runtime_error with a reason when
+/// a guard had to end it.
 STILLPOINT_EXPORT void call_guarded(const std::string& stage, std::optional<std::uint32_t> frame,
                                     void (*function)(void*), void* argument);
 

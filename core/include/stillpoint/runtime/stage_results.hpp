@@ -1,11 +1,13 @@
 // What stages give, checked where it enters the runtime: a plugin's mistake ends the run with the
 // plugin's name, and never becomes a wrong result or a read out of bounds. All checks of a frame
-// together take 0.1 ms. They throw Error(kStage), to be named by the caller (in_stage).
+// together take 0.1 ms; thorough_checks.hpp has those that take longer. They throw Error(kStage),
+// to be named by the caller (in_stage).
 #pragma once
 
 #include <opencv2/core/types.hpp>
 
 #include "stillpoint/contracts/frame.hpp"
+#include "stillpoint/contracts/map_correction.hpp"
 #include "stillpoint/contracts/map_evidence.hpp"
 #include "stillpoint/contracts/moving_points.hpp"
 #include "stillpoint/contracts/segmentation.hpp"
@@ -36,5 +38,12 @@ void check_prepared(const PreparedFrame* prepared, const Frame& frame);
 /// Of a tracker, for a frame; `next` is the id of the next key frame.
 void check_tracking(const TrackResult& result, const Frame& frame, const SparseMap& map,
                     KeyFrameId next);
+
+/// Of a local mapper that has inserted a key frame, or refined around one.
+void check_inserted(const SparseMap& map, const SparseMap& before);
+void check_refined(const SparseMap& map, const SparseMap& before);
+
+/// Of a loop closer, for a map.
+void check_correction(const MapCorrection& correction, const SparseMap& map);
 
 }  // namespace stillpoint

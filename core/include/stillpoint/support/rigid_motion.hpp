@@ -20,8 +20,7 @@ struct RigidMatch {
   double weight = 1.0;        ///< 0 … 1, how far the point is known to stand still
 };
 
-/// Standard deviations of a match. Depth of a structured-light sensor is equally good everywhere in
-/// inverse depth: its deviation in metres grows with z² (Khoshelham and Elberink, Sensors 2012).
+/// Standard deviations of a match; see Camera for that of depth.
 struct RigidNoise {
   double pixel = 0.4;            ///< px
   double inverse_depth = 0.004;  ///< 1/m

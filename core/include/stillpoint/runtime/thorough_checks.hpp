@@ -1,0 +1,28 @@
+// `runtime.validate: full`: what a stage gives is looked at value by value. For authors of plugins:
+// some milliseconds per frame. They throw Error(kStage), to be named by the caller (in_stage).
+#pragma once
+
+#include "stillpoint/contracts/frame.hpp"
+#include "stillpoint/contracts/map_correction.hpp"
+#include "stillpoint/contracts/map_evidence.hpp"
+#include "stillpoint/contracts/moving_points.hpp"
+#include "stillpoint/contracts/tracker.hpp"
+
+namespace stillpoint {
+
+/// Of a source: depths.
+void check_thoroughly(const Frame& frame);
+
+/// Of a moving check.
+void check_thoroughly(const MovingPoints& moving);
+
+/// Of a map check.
+void check_thoroughly(const MapEvidence& evidence);
+
+/// Of a tracker, for a frame: features and covariances.
+void check_thoroughly(const TrackResult& result, const Frame& frame);
+
+/// Of a local mapper, or after a correction: links, poses and positions.
+void check_thoroughly(const SparseMap& map);
+
+}  // namespace stillpoint
