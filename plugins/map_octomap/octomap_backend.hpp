@@ -7,11 +7,11 @@
 #include <string_view>
 #include <vector>
 
-#include "map_octomap/cost_map.hpp"
-#include "map_octomap/map_files.hpp"
-#include "map_octomap/scan_bricks.hpp"
-#include "map_octomap/semantic_octree.hpp"
 #include "map_octomap/stored_keyframe.hpp"
+#include "semantic_octree/cost_map.hpp"
+#include "semantic_octree/map_files.hpp"
+#include "semantic_octree/scan_bricks.hpp"
+#include "semantic_octree/semantic_octree.hpp"
 #include "stillpoint/sdk.hpp"
 
 namespace stillpoint {

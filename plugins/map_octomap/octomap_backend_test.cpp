@@ -15,7 +15,7 @@
 #include <string>
 #include <vector>
 
-#include "map_octomap/test_room.hpp"
+#include "semantic_octree/test_room.hpp"
 #include "support/recording_writer.hpp"
 
 namespace stillpoint {

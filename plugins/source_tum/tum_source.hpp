@@ -5,10 +5,10 @@
 #include <optional>
 #include <string>
 
-#include "source_tum/image_reader.hpp"
-#include "source_tum/recording.hpp"
 #include "stillpoint/sdk.hpp"
 #include "stillpoint/support/rectifier.hpp"
+#include "tum_recording/image_reader.hpp"
+#include "tum_recording/recording.hpp"
 
 namespace stillpoint {
 

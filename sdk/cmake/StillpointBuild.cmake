@@ -68,24 +68,34 @@ function(stillpoint_add_tests name)
   gtest_discover_tests(${name} DISCOVERY_MODE PRE_TEST NO_PRETTY_VALUES DISCOVERY_TIMEOUT 60)
 endfunction()
 
-# stillpoint_add_project_plugin(NAME LINK libraries…): a plugin of this project from the sources in
-# the current folder: a static library with everything but plugin.cpp (for tests and tools), the
-# plugin itself, and a test program from *_test.cpp. What is in its folder `models` comes along beside
-# the plugin.
-function(stillpoint_add_project_plugin name)
-  cmake_parse_arguments(ARG "" "" "LINK" ${ARGN})
+# stillpoint_add_library(NAME [TEST name] LINK libraries…): a static library from the sources in the
+# current folder but plugin.cpp, included as "FOLDER/…", and a test program from *_test.cpp.
+function(stillpoint_add_library name)
+  cmake_parse_arguments(ARG "" "TEST" "LINK" ${ARGN})
   file(GLOB sources CONFIGURE_DEPENDS *.cpp)
   file(GLOB tests CONFIGURE_DEPENDS *_test.cpp)
-  file(GLOB entry CONFIGURE_DEPENDS plugin.cpp)
-  list(REMOVE_ITEM sources ${tests} ${entry})
+  list(REMOVE_ITEM sources ${tests} ${CMAKE_CURRENT_SOURCE_DIR}/plugin.cpp)
+  add_library(${name} STATIC ${sources})
+  target_precompile_headers(${name} REUSE_FROM stillpoint_code_headers)
+  stillpoint_compile_options(${name})
+  cmake_path(GET CMAKE_CURRENT_SOURCE_DIR PARENT_PATH parent)
+  target_include_directories(${name} PUBLIC ${parent})
+  target_link_libraries(${name} PUBLIC stillpoint::sdk ${ARG_LINK})
+  if(tests)
+    if(NOT ARG_TEST)
+      set(ARG_TEST ${name}_test)
+    endif()
+    stillpoint_add_tests(${ARG_TEST} SOURCES ${tests} LINK ${name})
+  endif()
+endfunction()
 
-  add_library(${name}_code STATIC ${sources})
-  target_precompile_headers(${name}_code REUSE_FROM stillpoint_code_headers)
-  stillpoint_compile_options(${name}_code)
-  target_include_directories(${name}_code PUBLIC ${PROJECT_SOURCE_DIR}/plugins)
-  target_link_libraries(${name}_code PUBLIC stillpoint::sdk ${ARG_LINK})
+# stillpoint_add_project_plugin(NAME LINK libraries…): a plugin of this project from the sources in
+# the current folder: a static library with everything but plugin.cpp (for tests), and the plugin
+# itself. What is in its folder `models` comes along beside the plugin.
+function(stillpoint_add_project_plugin name)
+  stillpoint_add_library(${name}_code TEST ${name}_test ${ARGN})
 
-  add_library(stillpoint_${name} MODULE ${entry})
+  add_library(stillpoint_${name} MODULE plugin.cpp)
   stillpoint_compile_options(stillpoint_${name})
   target_link_libraries(stillpoint_${name} PRIVATE ${name}_code)
   target_link_options(stillpoint_${name} PRIVATE -Wl,--no-undefined -Wl,--exclude-libs,ALL)
@@ -93,10 +103,6 @@ function(stillpoint_add_project_plugin name)
     LIBRARY_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/lib/stillpoint/plugins
     INSTALL_RPATH "$ORIGIN/../..")
   install(TARGETS stillpoint_${name} LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/stillpoint/plugins)
-
-  if(tests)
-    stillpoint_add_tests(${name}_test SOURCES ${tests} LINK ${name}_code)
-  endif()
   stillpoint_ship_models(${name})
 endfunction()
 

@@ -11,9 +11,9 @@
 #include <vector>
 
 #include "benchmarks/voxel_truth.hpp"
-#include "map_octomap/class_belief.hpp"
-#include "map_octomap/scan_bricks.hpp"
 #include "segmenter_label_images/label_image_segmenter.hpp"
+#include "semantic_octree/class_belief.hpp"
+#include "semantic_octree/scan_bricks.hpp"
 #include "stillpoint/support/majority_vote.hpp"
 
 namespace stillpoint {

@@ -17,9 +17,9 @@
 
 #include "benchmarks/voxel_truth.hpp"
 #include "evaluation/evaluation.hpp"
-#include "map_octomap/cost_map.hpp"
 #include "map_octomap/octomap_backend.hpp"
-#include "map_octomap/octree_reader.hpp"
+#include "semantic_octree/cost_map.hpp"
+#include "semantic_octree/octree_reader.hpp"
 #include "stillpoint/pose_math.hpp"
 
 namespace stillpoint {

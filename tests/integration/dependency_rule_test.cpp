@@ -1,5 +1,5 @@
-// Who may include whom: options ← contracts ← plugin ← engine ← runtime ← tools; plugins know the
-// SDK and never each other; the evaluation knows nothing of the runtime.
+// Who may include whom: options ← contracts ← plugin ← engine ← runtime ← tools; libraries know the
+// SDK; plugins and tools know the SDK and libraries, and never each other's inside.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -102,13 +102,31 @@ TEST(DependencyRule, CoreKnowsNeitherToolsNorPlugins) {
   expect_none_begins(kRoot / "core", prefixes_of(kRoot / "plugins"));
 }
 
+TEST(DependencyRule, LibrariesKnowTheSdkAndTheRestOfTheCoreNoLibraries) {
+  const fs::path libraries = kRoot / "core/libraries";
+  ASSERT_FALSE(folders_in(libraries).empty());
+  for (const std::string& library : folders_in(libraries)) {
+    std::vector<std::string> forbidden = {"stillpoint/engine", "stillpoint/runtime"};
+    for (const std::string& prefix : prefixes_of(libraries))
+      if (prefix != library + "/") forbidden.push_back(prefix);
+    expect_none_begins(libraries / library, forbidden);
+  }
+  for (const fs::path& folder : {kRoot / "core/include", kRoot / "core/src"})
+    expect_none_begins(folder, prefixes_of(libraries));
+}
+
 TEST(DependencyRule, PluginsKnowTheSdkAndNotEachOther) {
   for (const std::string& plugin : folders_in(kRoot / "plugins")) {
-    std::vector<std::string> forbidden = {"stillpoint/engine", "stillpoint/runtime"};
+    std::vector<std::string> forbidden = prefixes_of(kRoot / "tools");
+    forbidden.insert(forbidden.end(), {"stillpoint/engine", "stillpoint/runtime"});
     for (const std::string& prefix : prefixes_of(kRoot / "plugins"))
       if (prefix != plugin + "/") forbidden.push_back(prefix);
     expect_none_begins(kRoot / "plugins" / plugin, forbidden);
   }
+}
+
+TEST(DependencyRule, ToolsDoNotKnowPlugins) {
+  expect_none_begins(kRoot / "tools", prefixes_of(kRoot / "plugins"));
 }
 
 TEST(DependencyRule, LibrariesOfTheToolsDoNotKnowTheRuntime) {

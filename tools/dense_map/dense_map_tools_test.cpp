@@ -6,7 +6,7 @@
 #include "dense_map/map_difference.hpp"
 #include "dense_map/map_picture.hpp"
 #include "dense_map/map_summary.hpp"
-#include "map_octomap/test_map.hpp"
+#include "semantic_octree/test_map.hpp"
 #include "stillpoint/error.hpp"
 #include "support/recording_writer.hpp"
 
@@ -23,16 +23,15 @@ class SavedMaps : public ::testing::Test {
     TestRoom room;
     save(room, "with", {});
     save(room, "coarse", {.resolution = 0.1});
-    save(room, "hits", {.model = OctomapBackend::Options::Model::kHits});
+    save(room, "hits", {.carve = false});
     room.pillar = false;
     save(room, "without", {});
   }
   static void TearDownTestSuite() { folder_.reset(); }
 
-  static void save(const TestRoom& room, const std::string& name,
-                   const OctomapBackend::Options& options) {
+  static void save(const TestRoom& room, const std::string& name, const TestMapOptions& options) {
     fs::create_directories(folder() / name);
-    map_of(room, options)->save(folder() / name);
+    TestMap(room, options).save(folder() / name);
   }
   static SavedOctree saved(const std::string& name) {
     return read_octree(folder() / name / "map.ot");

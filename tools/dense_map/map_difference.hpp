@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "map_octomap/octree_reader.hpp"
+#include "semantic_octree/octree_reader.hpp"
 #include "stillpoint/support/point_cloud_file.hpp"
 
 namespace stillpoint::dense_map {

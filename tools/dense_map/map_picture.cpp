@@ -11,7 +11,7 @@
 #include <set>
 #include <vector>
 
-#include "map_octomap/cost_map.hpp"
+#include "semantic_octree/cost_map.hpp"
 #include "stillpoint/error.hpp"
 #include "stillpoint/support/atomic_file.hpp"
 

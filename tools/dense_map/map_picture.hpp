@@ -7,7 +7,7 @@
 #include <optional>
 #include <vector>
 
-#include "map_octomap/octree_reader.hpp"
+#include "semantic_octree/octree_reader.hpp"
 
 namespace stillpoint::dense_map {
 

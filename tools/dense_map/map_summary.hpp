@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "map_octomap/cost_map.hpp"
-#include "map_octomap/octree_reader.hpp"
+#include "semantic_octree/cost_map.hpp"
+#include "semantic_octree/octree_reader.hpp"
 
 namespace stillpoint::dense_map {
 

@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "inspection/audit_warnings.hpp"
-#include "source_tum/image_reader.hpp"
 #include "stillpoint/error.hpp"
+#include "tum_recording/image_reader.hpp"
 
 namespace stillpoint::inspection {
 namespace {

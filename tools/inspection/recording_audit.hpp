@@ -11,8 +11,8 @@
 #include "inspection/stream_audit.hpp"
 #include "inspection/time_offset.hpp"
 #include "inspection/truth_audit.hpp"
-#include "source_tum/recording.hpp"
 #include "stillpoint/contracts/camera.hpp"
+#include "tum_recording/recording.hpp"
 
 namespace stillpoint::inspection {
 

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "source_tum/stamp_list.hpp"
+#include "tum_recording/stamp_list.hpp"
 
 namespace stillpoint::inspection {
 

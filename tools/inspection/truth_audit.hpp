@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "source_tum/recording.hpp"
+#include "tum_recording/recording.hpp"
 
 namespace stillpoint::inspection {
 

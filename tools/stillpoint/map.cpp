@@ -15,7 +15,7 @@
 #include "dense_map/map_difference.hpp"
 #include "dense_map/map_picture.hpp"
 #include "dense_map/map_summary.hpp"
-#include "map_octomap/cost_map.hpp"
+#include "semantic_octree/cost_map.hpp"
 #include "stillpoint/error.hpp"
 #include "stillpoint/support/point_cloud_file.hpp"
 
