@@ -77,8 +77,8 @@ MappingSystem::MappingSystem(Stage<LocalMapper> local_mapper, Stage<LoopCloser> 
       loop_closing_(
           loop_closer_.present() ? options.mode : Mode::kInline, kQueriesWaiting, stop,
           [this](const LoopItem& item) {
-            if (const auto* query = std::get_if<LoopQuery>(&item))
-              close_loop(*query);
+            if (const auto* query = std::get_if<std::shared_ptr<const LoopQuery>>(&item))
+              close_loop(**query);
             else
               adjust(std::get<AdjustRequest>(item));
           },
@@ -147,7 +147,7 @@ void MappingSystem::map(NewKeyFrame item) {
   }
   if (loop_closing_.size() >= kQueriesWaiting / 2) adjustment_hurry_.request();
   // Last: inline, its correction is applied within.
-  loop_closing_.push(LoopQuery{id, frame});
+  loop_closing_.push(std::make_shared<const LoopQuery>(LoopQuery{after, id, frame}));
 }
 
 void MappingSystem::correct(const Correction& item) {
@@ -162,8 +162,8 @@ void MappingSystem::correct(const Correction& item) {
 
 void MappingSystem::close_loop(const LoopQuery& query) {
   if (correction_pending_) return;
-  auto correction = loop_closer_.call("loop", query.frame, closure, *map_.snapshot(),
-                                      query.keyframe, stop_.token());
+  auto correction =
+      loop_closer_.call("loop", query.frame, closure, *query.map, query.keyframe, stop_.token());
   if (!correction) return;
   correction_pending_ = true;
   local_mapping_.push_past_limit(Correction{std::move(*correction), query.frame, true});

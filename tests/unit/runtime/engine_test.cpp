@@ -94,6 +94,49 @@ TEST_P(EngineInBothModes, CorrectionsReachTheMapsAlsoAtTheEnd) {
     EXPECT_TRUE(pose.isApprox(map.world_from_keyframe(id))) << id;
 }
 
+/// Removes the key frame before the one that it refines around.
+class RemovingMapper final : public LocalMapper {
+ public:
+  explicit RemovingMapper(Journal& journal) : mapper_(journal) {}
+  SparseMap insert(SparseMap map, KeyFrame keyframe) override {
+    return mapper_.insert(std::move(map), std::move(keyframe));
+  }
+  SparseMap refine(SparseMap map, KeyFrameId id, std::stop_token hurry) override {
+    MapEdit edit(mapper_.refine(std::move(map), id, std::move(hurry)));
+    if (id >= 2) edit.remove_keyframe(id - 1);
+    return edit.map();
+  }
+
+ private:
+  testing::FakeMapper mapper_;
+};
+
+/// Looks for loops late, and finds none.
+class LateCloser final : public LoopCloser {
+ public:
+  explicit LateCloser(Journal& journal) : journal_(journal) {}
+  std::optional<MapCorrection> close(const SparseMap& map, KeyFrameId latest,
+                                     std::stop_token) override {
+    journal_.wait_for("refine 10");
+    EXPECT_TRUE(map.keyframe(latest)) << latest;
+    EXPECT_EQ(map.keyframe_id_end(), latest + 1) << "the map as it was";
+    journal_.write("close", latest);
+    return std::nullopt;
+  }
+
+ private:
+  Journal& journal_;
+};
+
+TEST(Engine, ALoopIsLookedForInTheMapAsItWasWhenTheKeyFrameCame) {
+  EngineFixture f(12);
+  Stages stages = f.stages();
+  stages.local_mapper = {std::make_shared<RemovingMapper>(f.journal), "orb"};
+  stages.loop_closer = {std::make_shared<LateCloser>(f.journal), "bits"};
+  Engine(std::move(stages), runtime(Mode::kThreaded), {}).run();
+  EXPECT_EQ(f.journal.entries("close").size(), 6u);
+}
+
 TEST_P(EngineInBothModes, AllTimesAreReportedOnceAndNameTheirFrame) {
   EngineFixture f(4);
   Engine(f.stages(), runtime(GetParam()), {}).run();

@@ -57,14 +57,16 @@ class MappingSystem {
   };
   using MappingItem = std::variant<NewKeyFrame, Correction>;
   using DenseItem = std::variant<std::shared_ptr<const DenseKeyFrame>, std::vector<MovedKeyFrame>>;
+  // With the map as it was when the key frame had come: later, the key frame may have been removed.
   struct LoopQuery {
+    MapStore::Snapshot map;
     KeyFrameId keyframe = kNoId;
     std::uint32_t frame = 0;
   };
   struct AdjustRequest {
     std::uint32_t frame = 0;
   };
-  using LoopItem = std::variant<LoopQuery, AdjustRequest>;
+  using LoopItem = std::variant<std::shared_ptr<const LoopQuery>, AdjustRequest>;
 
   void map(NewKeyFrame item);
   void correct(const Correction& item);
@@ -84,7 +86,7 @@ class MappingSystem {
   std::mutex dense_mutex_;         // held while the dense map is called: anybody may read it
   std::uint32_t dense_frame_ = 0;  // given last to the dense map, for messages and times
   int loops_ = 0;
-  // Of the loop thread: the map does not show yet what it found last, so it looks for nothing more.
+  // Of the loop thread: maps of the queries that wait do not show yet what it found last.
   bool correction_pending_ = false;
 
   Hurry mapping_hurry_;     // of the local adjustment under way
