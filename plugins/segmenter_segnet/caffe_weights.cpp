@@ -28,6 +28,7 @@ constexpr std::uint32_t kLegacyDimensions = 4;  // fields 1 … 4: num, channels
 constexpr std::uint32_t kBlobData = 5;
 constexpr std::uint32_t kBlobShape = 7;
 constexpr std::uint32_t kBlobDoubleData = 8;
+constexpr std::size_t kMostDimensions = 32;  // of a cv::Mat
 
 std::vector<std::byte> read_file(const std::filesystem::path& file) {
   std::ifstream stream(file, std::ios::binary | std::ios::ate);
@@ -51,10 +52,10 @@ void append_numbers(const WireField& field, std::vector<float>& values) {
 }
 template <>
 void append_numbers<float>(const WireField& field, std::vector<float>& values) {
-  const std::size_t old_size = values.size();
-  values.resize(old_size + field.data.size() / sizeof(float));
-  std::memcpy(values.data() + old_size, field.data.data(),
-              (values.size() - old_size) * sizeof(float));
+  const std::size_t old_size = values.size(), more = field.data.size() / sizeof(float);
+  if (more == 0) return;
+  values.resize(old_size + more);
+  std::memcpy(values.data() + old_size, field.data.data(), more * sizeof(float));
 }
 
 int dimension(std::uint64_t value) {
@@ -80,6 +81,8 @@ cv::Mat shaped(std::vector<int> shape, std::vector<float>& values) {
   if (expected != static_cast<double>(values.size()) || values.empty())
     throw Error(Fault::kData, "a blob has " + std::to_string(values.size()) +
                                   " values, but its shape is " + shape_text(shape));
+  if (shape.size() > kMostDimensions)
+    throw Error(Fault::kData, "a blob has " + std::to_string(shape.size()) + " dimensions");
   if (shape.size() < 2) shape.insert(shape.begin(), 2 - shape.size(), 1);
   return cv::Mat(static_cast<int>(shape.size()), shape.data(), CV_32F, values.data()).clone();
 }

@@ -145,6 +145,7 @@ std::optional<cv::Size> PngDecoder::stated_size(std::span<const std::uint8_t> fi
 
 /// Verifies all chunks and joins the compressed data.
 PngDecoder::Header PngDecoder::collect_chunks(std::span<const std::uint8_t> file) {
+  if (!is_png(file)) throw std::runtime_error("no PNG");
   Header header;
   compressed_.clear();
   for (std::size_t at = sizeof kSignature;;) {
