@@ -28,7 +28,7 @@ class DepthView {
   int columns() const { return columns_; }
   int rows() const { return rows_; }
   const PlanePatch& patch(int column, int row) const {
-    return patches_[static_cast<std::size_t>(row * columns_ + column)];
+    return patches_[static_cast<std::size_t>(row) * columns_ + column];
   }
   /// The patch whose cell a point in this view's camera frame falls into; null when it is outside
   /// the image or there is none.

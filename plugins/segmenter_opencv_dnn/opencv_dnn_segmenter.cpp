@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <opencv2/core/utility.hpp>
 #include <opencv2/imgproc.hpp>
-#include <ranges>
 #include "stillpoint/support/objects.hpp"
 #include "stillpoint/support/size_text.hpp"
 
@@ -200,7 +199,8 @@ Segmentation OpenCvDnnSegmenter::from_boxes(std::vector<Detection> found,
   result.instances = cv::Mat(frame.bgr.size(), CV_8UC1, cv::Scalar(0));
   const double noise = (frame.camera ? *frame.camera : Camera()).surface_noise;
   // The best one last: where two boxes share a surface, it is the better one's.
-  for (const Detection& detection : found | std::views::reverse) {
+  std::ranges::reverse(found);
+  for (const Detection& detection : found) {
     const cv::Rect box = pixels_of(detection.box, frame.bgr.size());
     if (box.empty()) continue;
     const cv::Mat mask = box_mask(frame.depth, noise, box, options_.boxes);

@@ -2,14 +2,16 @@
 
 # Warnings for a target. Designated initialisers may leave out fields that have defaults; -Wrestrict
 # is wrong about std::string in g++ 12 (GCC bug 105651), and so are three more when headers are
-# precompiled: the preset `dev`, which treats warnings as errors, does without.
+# precompiled. A unity build includes source files, whose unnamed namespaces g++ then takes for a
+# header's. The preset `dev` has neither.
 function(stillpoint_compile_options target)
+  set(strictness)
   if(STILLPOINT_WARNINGS_AS_ERRORS)
-    set(strictness -Werror)
-  else()
-    # A unity build includes source files, whose unnamed namespaces g++ then takes for a header's.
-    set(strictness -Wno-subobject-linkage
-                   -Wno-array-bounds -Wno-stringop-overflow -Wno-stringop-overread)
+    list(APPEND strictness -Werror)
+  endif()
+  if(CMAKE_UNITY_BUILD)
+    list(APPEND strictness -Wno-subobject-linkage
+                           -Wno-array-bounds -Wno-stringop-overflow -Wno-stringop-overread)
   endif()
   target_compile_options(${target} PRIVATE
     -Wall -Wextra -Wno-missing-field-initializers -Wno-restrict -Wshadow -Wnon-virtual-dtor

@@ -126,31 +126,37 @@ void bind_camera(py::module_& module) {
                           "registered to the colour image.")
       .def(py::init([](int width, int height, double fx, double fy, double cx, double cy,
                        const std::vector<double>& distortion, double depth_factor, double min_depth,
-                       double max_depth, const std::vector<double>& crop) {
-             const CameraModel model{.name = "camera",
-                                     .width = width,
-                                     .height = height,
-                                     .fx = fx,
-                                     .fy = fy,
-                                     .cx = cx,
-                                     .cy = cy,
-                                     .distortion = distortion,
-                                     .depth_factor = depth_factor,
-                                     .min_depth = min_depth,
-                                     .max_depth = max_depth,
-                                     .crop = crop};
+                       double max_depth, double depth_noise, double surface_noise,
+                       const std::vector<double>& crop) {
+             CameraModel model{.name = "camera",
+                               .width = width,
+                               .height = height,
+                               .fx = fx,
+                               .fy = fy,
+                               .cx = cx,
+                               .cy = cy,
+                               .distortion = distortion,
+                               .depth_factor = depth_factor,
+                               .min_depth = min_depth,
+                               .max_depth = max_depth,
+                               .depth_noise = depth_noise,
+                               .surface_noise = surface_noise,
+                               .crop = crop};
              check_options(model, "Camera");
              return model;
            }),
            "Pixel (0, 0) is the centre of the top left pixel. `distortion`: k1, k2, p1, p2[, k3].\n"
            "`depth_factor`: value of one metre in a depth image of uint16. Depth outside of\n"
-           "`min_depth` to `max_depth` (m) is not used. `crop`: x, y, width, height (px) of the\n"
+           "`min_depth` to `max_depth` (m) is not used. `depth_noise`, `surface_noise`: standard\n"
+           "deviations at 1 m (m), of a point feature and of the sensor itself. `crop`: x, y, "
+           "width, height (px) of the\n"
            "part of the undistorted image to use.",
            py::kw_only(), py::arg("width"), py::arg("height"), py::arg("fx"), py::arg("fy"),
            py::arg("cx"), py::arg("cy"), py::arg("distortion") = standard.distortion,
            py::arg("depth_factor") = standard.depth_factor,
            py::arg("min_depth") = standard.min_depth, py::arg("max_depth") = standard.max_depth,
-           py::arg("crop") = standard.crop);
+           py::arg("depth_noise") = standard.depth_noise,
+           py::arg("surface_noise") = standard.surface_noise, py::arg("crop") = standard.crop);
 }
 
 void bind_report(py::module_& module) {

@@ -1,5 +1,6 @@
 // The Python module `stillpoint`.
 #include <exception>
+#include <utility>
 
 #include "bindings.hpp"
 #include "stillpoint/error.hpp"
@@ -17,7 +18,7 @@ PYBIND11_MODULE(stillpoint, module) {
   error.doc() = "What went wrong, where, and what to do about it.";
   py::register_exception_translator([](std::exception_ptr thrown) {
     try {
-      if (thrown) std::rethrow_exception(thrown);
+      if (thrown) std::rethrow_exception(std::move(thrown));
     } catch (const stillpoint::Error& fault) {
       PyErr_SetString(error.ptr(), fault.what());
     }

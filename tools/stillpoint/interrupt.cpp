@@ -20,7 +20,7 @@ constexpr int kPatience = 1000;  // ms after the first signal
 
 // A signal handler may do little more than this: wake a thread that may do anything.
 std::atomic<int> received{0};
-std::atomic<int> count{0};
+std::atomic<int> signals{0};
 std::atomic<int> wake_up{-1};  // an eventfd
 static_assert(std::atomic<int>::is_always_lock_free);
 
@@ -33,7 +33,7 @@ void wake() {
 
 extern "C" void on_signal(int signal) {
   received = signal;
-  if (++count == 2) {  // the third one ends the process
+  if (++signals == 2) {  // the third one ends the process
     std::signal(SIGINT, SIG_DFL);
     std::signal(SIGTERM, SIG_DFL);
   }
@@ -53,7 +53,7 @@ bool wait_for_wake_up(int milliseconds) {
 
 Interrupt::Interrupt(std::function<void(const std::string& line)> say) {
   received = 0;
-  count = 0;
+  signals = 0;
   wake_up = ::eventfd(0, EFD_CLOEXEC);
   if (wake_up < 0) throw Error(Fault::kStage, "the system gives no eventfd to wait for Ctrl-C");
   watcher_ =
@@ -81,7 +81,7 @@ void Interrupt::watch(const std::stop_token& end,
   wait_for_wake_up(-1);
   if (end.stop_requested()) return;
   stop_.request_stop();
-  if (count < 2 && !wait_for_wake_up(kPatience)) {
+  if (signals < 2 && !wait_for_wake_up(kPatience)) {
     for (const std::string& text : StageGuard::calls_longer_than(1e-3 * kPatience))
       say(text + "; Ctrl-C again gives it up");
     wait_for_wake_up(-1);

@@ -1,5 +1,6 @@
 #include "study_file.hpp"
 
+#include "commands.hpp"
 #include "scene_file.hpp"
 #include "stillpoint/engine/config_lookup.hpp"
 #include "stillpoint/runtime/yaml_loader.hpp"

@@ -87,6 +87,7 @@ class STILLPOINT_EXPORT OptionVisitor {
   template <OptionGroup T>
   void operator()(std::string_view name, std::map<std::string, T>& groups, const OptionInfo& info) {
     std::vector<std::string> keys;
+    keys.reserve(groups.size());
     for (const auto& [key, group] : groups) keys.push_back(key);
     for (const std::string& key : enter_map(name, keys, info)) {
       if (!enter_group(key, {})) continue;

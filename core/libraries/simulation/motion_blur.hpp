@@ -28,10 +28,10 @@ class MotionMap {
       : columns_(columns), rows_(rows), tiles_(static_cast<std::size_t>(columns * rows)) {}
 
   MotionRange& at(int column, int row) {
-    return tiles_[static_cast<std::size_t>(row * columns_ + column)];
+    return tiles_[static_cast<std::size_t>(row) * columns_ + column];
   }
   const MotionRange& at(int column, int row) const {
-    return tiles_[static_cast<std::size_t>(row * columns_ + column)];
+    return tiles_[static_cast<std::size_t>(row) * columns_ + column];
   }
   /// Motion in every tile and in those near enough to come there during the exposure.
   MotionMap widened() const;

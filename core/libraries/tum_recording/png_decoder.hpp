@@ -14,7 +14,8 @@ namespace stillpoint {
 
 /// Decodes 8-bit gray, 8-bit RGB and 16-bit gray images that are not interlaced, in half the time
 /// of cv::imdecode (libpng and zlib): 2.0 and 0.8 ms for colour and depth of a simulated frame of
-/// 640 x 480, where libpng takes 4.3 and 2.3 ms and libspng 0.7 4.3 and 2.5 ms. Keeps its buffers between images; one per thread.
+/// 640 x 480, where libpng takes 4.3 and 2.3 ms and libspng 0.7 4.3 and 2.5 ms. Keeps its buffers
+/// between images; one per thread.
 class PngDecoder {
  public:
   PngDecoder();
