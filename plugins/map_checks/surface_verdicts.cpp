@@ -31,8 +31,8 @@ struct Verdicts {
   }
 };
 
-// A view that is asked.
-struct Witness {
+// An earlier view, as this frame compares itself with it.
+struct PastView {
   const View* view;
   Eigen::Matrix3f rotation;     // view_from_camera
   Eigen::Vector3f translation;  // m
@@ -56,15 +56,15 @@ class Judge {
   }
 
   cv::Mat log_odds(std::span<const View* const> views, const Pose& world_from_camera, double time) {
-    std::vector<Witness> witnesses;
-    for (const View* view : views) witnesses.push_back(witness(*view, world_from_camera, time));
+    std::vector<PastView> past_views;
+    for (const View* view : views) past_views.push_back(past_view(*view, world_from_camera, time));
     cv::Mat result(depth_.size(), CV_32F);
     const auto range = static_cast<float>(options_.range);
     for (int y = 0; y < depth_.rows; ++y) {
       verdicts_.clear(row_length_);
-      for (const Witness& witness : witnesses) {
-        project_row(y, witness);
-        ask_row(witness);
+      for (const PastView& past : past_views) {
+        project_row(y, past);
+        compare_row(past);
       }
       auto* out = result.ptr<float>(y);
       for (std::size_t x = 0; x < static_cast<std::size_t>(depth_.cols); ++x)
@@ -74,7 +74,7 @@ class Judge {
   }
 
  private:
-  Witness witness(const View& view, const Pose& world_from_camera, double time) const {
+  PastView past_view(const View& view, const Pose& world_from_camera, double time) const {
     const Pose view_from_camera = view.world_from_camera.inverse() * world_from_camera;
     const auto age = static_cast<float>(time - view.time);
     const bool apart = view_from_camera.translation().norm() >= options_.min_parallax;
@@ -83,16 +83,16 @@ class Judge {
   }
 
   // Fills cells_ and z_: where the view sees the cells of a row, and how far from it they are.
-  void project_row(int y, const Witness& witness) {
-    const View& view = *witness.view;
+  void project_row(int y, const PastView& past) {
+    const View& view = *past.view;
     // Rays of the row in cells of the view, so that (x, y) / z is a place in it; rounded below.
     Eigen::Matrix3f calibration = Eigen::Matrix3f::Identity();
     calibration << view.camera.fx, 0, view.camera.cx + 0.5F,  //
         0, view.camera.fy, view.camera.cy + 0.5F, 0, 0, 1;
     const Eigen::Vector3f first =
-        calibration * witness.rotation * camera_.unproject(0, static_cast<float>(y), 1);
-    const Eigen::Vector3f step = calibration * witness.rotation.col(0) / camera_.fx;
-    const Eigen::Vector3f offset = calibration * witness.translation;
+        calibration * past.rotation * camera_.unproject(0, static_cast<float>(y), 1);
+    const Eigen::Vector3f step = calibration * past.rotation.col(0) / camera_.fx;
+    const Eigen::Vector3f offset = calibration * past.translation;
     std::copy_n(depth_.ptr<float>(y), depth_.cols, row_.begin());
     const cv::v_float32 zero = cv::vx_setzero_f32();
     const cv::v_float32 width = cv::vx_setall_f32(static_cast<float>(view.depth.cols));
@@ -120,8 +120,8 @@ class Judge {
   }
 
   // The same for cells_ at once. What looks through comes in, unless it has been resting for long.
-  void ask_row(const Witness& witness) {
-    const View& view = *witness.view;
+  void compare_row(const PastView& past) {
+    const View& view = *past.view;
     const auto all = [](double value) { return cv::vx_setall_f32(static_cast<float>(value)); };
     const cv::v_float32 one = all(1), zero = all(0);
     for (std::size_t x = 0; x < row_length_; x += kLanes) {
@@ -151,8 +151,8 @@ class Judge {
           edge & off(near) & off(far) & off(cv::v_lut(view.depth.ptr<float>(), place));
       const cv::v_float32 same = measured & between & ~beside;
       const cv::v_float32 rests = same & (came_in == zero);
-      cv::vx_store(&verdicts_.resting[x], cv::v_max(resting, rests & all(witness.age)));
-      if (witness.tells_rest) count_same(x, same, cv::v_lut(view.trust.ptr<int>(), place));
+      cv::vx_store(&verdicts_.resting[x], cv::v_max(resting, rests & all(past.age)));
+      if (past.tells_rest) count_same(x, same, cv::v_lut(view.trust.ptr<int>(), place));
     }
   }
 

@@ -6,6 +6,7 @@
 #include "orb_slam/landmark_creation.hpp"
 #include "orb_slam/landmark_fusion.hpp"
 #include "orb_slam/landmark_geometry.hpp"
+#include "orb_slam/orb_keyframe.hpp"
 #include "orb_slam/static_evidence.hpp"
 
 namespace stillpoint::orb {
@@ -47,6 +48,7 @@ OrbLocalMapper::OrbLocalMapper(Options options, const StageContext&)
               .max_iterations = options.bundle_iterations} {}
 
 SparseMap OrbLocalMapper::insert(SparseMap map, KeyFrame keyframe) {
+  require_orb(keyframe);
   MapEdit edit(std::move(map));
   const KeyFrameId id = keyframe.id;
   add_evidence(edit, keyframe.evidence);

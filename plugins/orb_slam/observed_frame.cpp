@@ -9,7 +9,7 @@ namespace {
 
 constexpr float kMaxDepthStep = 0.04f;  // of the depth; more around a keypoint is an edge
 constexpr int kDepthWindow = 3;         // px around a keypoint
-constexpr double kMinNewWeight = 0.02;  // of a landmark younger than proving_time
+constexpr double kMinNewWeight = 0.02;  // of a landmark on probation
 
 // Depth of the surface a keypoint lies on; 0 beside a depth edge, where it may be that of the other
 // side. Such features made estimated motions 0.5 to 1 % too small, since errors of that kind go
@@ -42,14 +42,15 @@ ObservedFrame unmatched(FramePtr frame, FeaturesPtr features) {
   return observed;
 }
 
-// What a person wears becomes landmarks by the hundred in a few frames, and they agree with each
-// other.
-double proven(const Landmark& landmark, const SparseMap& map, double time, double proving_time) {
+// Weight of a landmark on probation: the clothes of a person whom no label shows yet become
+// hundreds of landmarks in a few frames, which agree with each other.
+double probation_weight(const Landmark& landmark, const SparseMap& map, double time,
+                        double probation) {
   const KeyFrame* creator = map.keyframe(landmark.created_by);
   if (!creator || time < creator->time) return 1;
   const double age = time - creator->time;
-  const double share = age / proving_time;
-  return age < proving_time ? std::max(share * share, kMinNewWeight) : 1;
+  const double share = age / probation;
+  return age < probation ? std::max(share * share, kMinNewWeight) : 1;
 }
 
 }  // namespace
@@ -117,7 +118,7 @@ int ObservedFrame::fitting() const {
   return fitting;
 }
 
-int solve_pose(ObservedFrame& observed, const SparseMap& map, double proving_time,
+int solve_pose(ObservedFrame& observed, const SparseMap& map, double probation,
                KeyFrameId first_keyframe, const PoseTerm& term) {
   const Features& features = *observed.features;
   const ScalePyramid pyramid(features);
@@ -129,7 +130,8 @@ int solve_pose(ObservedFrame& observed, const SparseMap& map, double proving_tim
     const cv::KeyPoint& k = features.keypoints[i];
     const double sigma = pyramid.pixel_sigma(k.octave);
     const bool own = landmark && landmark->created_by >= first_keyframe;
-    const double trust = own ? proven(*landmark, map, observed.frame->time, proving_time) : 1;
+    const double trust =
+        own ? probation_weight(*landmark, map, observed.frame->time, probation) : 1;
     observations.push_back(
         {.point_in_world = landmark ? landmark->position_in_world : *observed.temporary[i],
          .pixel = {k.pt.x, k.pt.y},

@@ -59,10 +59,10 @@ ObservedFrame observe_again(const KeyFrame& keyframe);
 
 /// Pose from the landmarks and temporary points assigned so far, starting from the frame's own;
 /// marks the outliers and returns the number of inliers. Landmarks count in full from an age of
-/// `proving_time` seconds on, younger ones less. Those of key frames before `first_keyframe` come
+/// `probation` seconds on, younger ones less. Those of key frames before `first_keyframe` come
 /// from another recording, with its own clock, and always count in full. `term` holds the pose as
 /// well.
-int solve_pose(ObservedFrame& frame, const SparseMap& map, double proving_time = 0.0,
+int solve_pose(ObservedFrame& frame, const SparseMap& map, double probation = 0.0,
                KeyFrameId first_keyframe = 0, const PoseTerm& term = {});
 
 }  // namespace stillpoint::orb

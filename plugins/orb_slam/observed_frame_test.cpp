@@ -129,45 +129,44 @@ TEST_F(SolvePoseTest, LandmarksThatAreGoneAreLeftOut) {
   EXPECT_LT(metres_between(frame_.world_from_camera, walk(2)), 0.004);
 }
 
-// The left half of the image is somebody whom a key frame took for a wall, and who has gone on by
+// The left half of the image is a person whose landmarks a key frame created, and who has moved by
 // 3 cm since.
-class NewcomersTest : public SolvePoseTest {
+class ProbationTest : public SolvePoseTest {
  protected:
-  NewcomersTest() {
+  ProbationTest() {
     match_truth();
     MapEdit edit(known_.map);
     edit.keyframe(0).time = edit.map().keyframe(1)->time - 10;
     for (LandmarkId id = 0; id < known_.map.landmark_id_end(); ++id) {
-      const bool worn = known_.map.landmark(id)->position_in_world.x() < 0;
-      edit.landmark(id).created_by = worn ? 1 : 0;
-      if (worn) edit.landmark(id).position_in_world += Eigen::Vector3d(0.02, 0.0, 0.02);
+      const bool on_person = known_.map.landmark(id)->position_in_world.x() < 0;
+      edit.landmark(id).created_by = on_person ? 1 : 0;
+      if (on_person) edit.landmark(id).position_in_world += Eigen::Vector3d(0.02, 0.0, 0.02);
     }
     map_ = std::move(edit).finish();
   }
 
-  double error_at(double seconds_since_newcomers, double proving_time,
-                  KeyFrameId first_keyframe = 0) {
+  double error_at(double seconds_since_creation, double probation, KeyFrameId first_keyframe = 0) {
     auto frame = std::make_shared<Frame>(*frame_.frame);
-    frame->time = map_.keyframe(1)->time + seconds_since_newcomers;
+    frame->time = map_.keyframe(1)->time + seconds_since_creation;
     frame_.frame = std::move(frame);
     frame_.world_from_camera = walk(2);
-    solve_pose(frame_, map_, proving_time, first_keyframe);
+    solve_pose(frame_, map_, probation, first_keyframe);
     return metres_between(frame_.world_from_camera, walk(2));
   }
 
   SparseMap map_;
 };
 
-TEST_F(NewcomersTest, CountLittleAtFirst) {
+TEST_F(ProbationTest, CountLittleAtFirst) {
   EXPECT_GT(error_at(0.05, 0.0), 0.02);
   EXPECT_LT(error_at(0.05, 1.0), 0.01);
 }
 
-TEST_F(NewcomersTest, CountInFullOnceTheyAreProven) {
+TEST_F(ProbationTest, CountInFullOnceTheyAreProven) {
   EXPECT_EQ(error_at(2.0, 1.0), error_at(2.0, 0.0));
 }
 
-TEST_F(NewcomersTest, OfAnotherRecordingAreNone) {
+TEST_F(ProbationTest, OfAnotherRecordingAreNone) {
   EXPECT_EQ(error_at(0.05, 1.0, 2), error_at(0.05, 0.0));
   EXPECT_EQ(error_at(-20.0, 1.0), error_at(-20.0, 0.0));
 }

@@ -6,6 +6,7 @@
 
 #include "orb_slam/appearance.hpp"
 #include "orb_slam/landmark_geometry.hpp"
+#include "orb_slam/orb_keyframe.hpp"
 #include "orb_slam/pose_uncertainty.hpp"
 
 namespace stillpoint::orb {
@@ -58,13 +59,13 @@ void OrbTracker::Options::visit(OptionVisitor& v) {
      .help = "search radius around the place predicted from the last frame"});
   v("local_window", local_window,
     {.min = 0.5, .unit = "px", .help = "search radius around the place predicted from the map"});
-  v("proving_time", proving_time,
+  v("probation", probation,
     {.min = 0,
      .max = 60,
      .unit = "s",
      .help = "until a new landmark counts in full for the pose, where something about may move; 0: "
              "at once"});
-  v("most_features", most_features,
+  v("max_feature_factor", max_feature_factor,
     {.min = 1,
      .max = 4,
      .help = "times `features`, to make up for a part of the image that cannot be mapped"});
@@ -77,15 +78,14 @@ OrbTracker::OrbTracker(Options options) : options_(options), extractor_(options.
 
 PreparedFramePtr OrbTracker::prepare(FramePtr frame) {
   Features features = extractor_.extract(frame->gray, moving_area_.mask(),
-                                         moving_area_.feature_factor(options_.most_features));
+                                         moving_area_.feature_factor(options_.max_feature_factor));
   return std::make_unique<PreparedOrbFrame>(observe(std::move(frame), std::move(features)));
 }
 
 // Near moving things, new landmarks may lie on one that was not detected.
 int OrbTracker::solve(const SparseMap& map, const PoseTerm& term) {
-  const double proving_time =
-      moving_area_.recent(current_.frame->time) ? options_.proving_time : 0.0;
-  return solve_pose(current_, map, proving_time, *first_keyframe_, term);
+  const double probation = moving_area_.recent(current_.frame->time) ? options_.probation : 0.0;
+  return solve_pose(current_, map, probation, *first_keyframe_, term);
 }
 
 TrackResult OrbTracker::track(PreparedFramePtr prepared, const StaticWeights& weights,
@@ -93,7 +93,7 @@ TrackResult OrbTracker::track(PreparedFramePtr prepared, const StaticWeights& we
   current_ = std::move(static_cast<PreparedOrbFrame&>(*prepared).observed);
   current_.set_weights(weights);
   moving_area_.update(weights, current_.frame->time);
-  if (!first_keyframe_) first_keyframe_ = map.keyframe_id_end();
+  if (!first_keyframe_) begin_with(map);
   visible_.clear();
   depth_hold_.begin(current_.frame, weights);
   prediction_.reset();
@@ -109,6 +109,12 @@ TrackResult OrbTracker::track(PreparedFramePtr prepared, const StaticWeights& we
   if (!found && following) found = track_with_depth(map);
   if (!found) found = relocaliser_.find(current_, map) && track_local_map(map);
   return found ? tracked(map, hints) : not_tracked(TrackState::kLost);
+}
+
+// With a map of an earlier run, or an empty one.
+void OrbTracker::begin_with(const SparseMap& map) {
+  require_orb(map);
+  first_keyframe_ = map.keyframe_id_end();
 }
 
 // The first key frame defines the world.

@@ -28,8 +28,8 @@ class OrbTracker final : public Tracker {
     int local_keyframes = 80;
     double motion_window = 15.0;
     double local_window = 3.0;
-    double proving_time = 0.0;
-    double most_features = 1.0;
+    double probation = 0.0;
+    double max_feature_factor = 1.0;
     bool hold_by_depth = true;
 
     void visit(OptionVisitor& visitor);
@@ -43,6 +43,7 @@ class OrbTracker final : public Tracker {
 
  private:
   int solve(const SparseMap& map, const PoseTerm& term = {});
+  void begin_with(const SparseMap& map);
   bool start();
   bool surfaces_suffice();
   void follow_map(const SparseMap& map);

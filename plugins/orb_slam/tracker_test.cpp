@@ -241,7 +241,7 @@ TEST_F(TrackerTest, FeaturesOfNoWeightAreNotUsed) {
 
 TEST_F(TrackerTest, WhatIsHiddenIsMadeUpFor) {
   OrbTracker::Options options;
-  options.most_features = 1.5;
+  options.max_feature_factor = 1.5;
   OrbTracker tracker(options);
   const auto features_with = [&](const cv::Rect& hidden) {
     StaticWeights weights;
@@ -329,17 +329,18 @@ TEST_F(TrackerTest, SameFramesSameBits) {
   for (std::size_t i = 0; i < first.size(); ++i) EXPECT_EQ(first[i].matrix(), second[i].matrix());
 }
 
-TEST_F(TrackerTest, NewLandmarksProveThemselvesOnlyWhereSomethingMayMove) {
-  OrbTracker::Options proving;
-  proving.proving_time = 10;
-  StaticWeights company;
-  company.map = cv::Mat(480, 640, CV_8UC1, cv::Scalar(255));
-  const auto alone = anew({}, company), proving_alone = anew(proving, company);
-  EXPECT_EQ(alone.back().matrix(), proving_alone.back().matrix());
-  company.map(cv::Rect(0, 0, 160, 480)) = 0;
-  const auto believing = anew({}, company), doubting = anew(proving, company);
-  EXPECT_EQ(believing.front().matrix(), doubting.front().matrix());
-  EXPECT_NE(believing.back().matrix(), doubting.back().matrix());
+TEST_F(TrackerTest, NewLandmarksAreOnProbationOnlyWhereSomethingMayMove) {
+  OrbTracker::Options with_probation;
+  with_probation.probation = 10;
+  StaticWeights weights;
+  weights.map = cv::Mat(480, 640, CV_8UC1, cv::Scalar(255));
+  const auto static_scene = anew({}, weights),
+             with_probation_static = anew(with_probation, weights);
+  EXPECT_EQ(static_scene.back().matrix(), with_probation_static.back().matrix());
+  weights.map(cv::Rect(0, 0, 160, 480)) = 0;
+  const auto without = anew({}, weights), probation = anew(with_probation, weights);
+  EXPECT_EQ(without.front().matrix(), probation.front().matrix());
+  EXPECT_NE(without.back().matrix(), probation.back().matrix());
 }
 
 }  // namespace

@@ -72,14 +72,16 @@ TEST_F(OutputFiles, TrajectoryFollowsItsKeyFramesAndHasTrackedFramesOnly) {
   poses = {{0, 100.0, TrackState::kTracking, 0, at(0, 0, 0)},
            {1, 100.5, TrackState::kLost, kNoId, Pose::Identity()},
            {2, 101.0, TrackState::kTracking, 1, at(0.25, 0, 0)},
-           {3, 101.5, TrackState::kTracking, 7, at(0, 0, 0)}};  // never reached the map
+           // Its key frame never reached the map.
+           {3, 101.5, TrackState::kTracking, 7, at(0, 0, 0), at(9, 0, 0)}};
   TrajectoryOutput({}, context).finish(summary());
   EXPECT_THAT(
       lines("trajectory.txt"),
       ElementsAre(
           "# time tx ty tz qx qy qz qw",
           "100.000000 0.0000000 0.0000000 0.0000000 0.00000000 0.00000000 0.00000000 1.00000000",
-          "101.000000 5.2500000 0.0000000 0.0000000 0.00000000 0.00000000 0.00000000 "
+          "101.000000 5.2500000 0.0000000 0.0000000 0.00000000 0.00000000 0.00000000 1.00000000",
+          "101.500000 9.0000000 0.0000000 0.0000000 0.00000000 0.00000000 0.00000000 "
           "1.00000000"));
   EXPECT_THAT(files(), ElementsAre("trajectory.txt"));  // nothing temporary is left
 }

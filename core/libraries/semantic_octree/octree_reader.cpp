@@ -204,7 +204,7 @@ SavedOctree read_octree(const std::filesystem::path& file) {
                     .classes = {},
                     .has_colors = !header.binary && header.id == "ColorOcTree"};
   if (header.nodes == 0) bytes.fail("holds no voxel");
-  SemanticVoxel& root = saved.tree->plant();
+  SemanticVoxel& root = saved.tree->create_root();
   if (header.binary)
     BinaryNodeReader(*saved.tree, bytes).read(root, 0);
   else

@@ -156,10 +156,10 @@ void SemanticOctree::add(const ScanBricks& scan, std::span<const ScanBrick* cons
                          const OccupancyModel& model) {
   if (bricks.empty()) return;
   const bool known = root != nullptr;
-  Addition(*this, scan, model).add(plant(), known, 0, bricks);
+  Addition(*this, scan, model).add(create_root(), known, 0, bricks);
 }
 
-SemanticVoxel& SemanticOctree::plant() {
+SemanticVoxel& SemanticOctree::create_root() {
   if (!root) {
     root = new SemanticVoxel;
     ++tree_size;

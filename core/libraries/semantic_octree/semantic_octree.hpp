@@ -72,7 +72,7 @@ class SemanticOctree : public octomap::OccupancyOcTreeBase<SemanticVoxel> {
     return voxel && isNodeOccupied(voxel);
   }
   /// The root, made when there is none.
-  SemanticVoxel& plant();
+  SemanticVoxel& create_root();
   /// Forgets all that is known within some bricks.
   void remove(std::span<const BrickKey> bricks);
 

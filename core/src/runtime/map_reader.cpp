@@ -152,7 +152,8 @@ class MapReader {
     features->levels = static_cast<int>(row->integer(5));
     for (const auto& k : values_of<map_layout::StoredKeypoint>(row->bytes(8), count, "keypoints"))
       features->keypoints.emplace_back(k.x, k.y, k.size, k.angle, k.response, k.octave);
-    features->descriptors = values_of<Descriptor>(row->bytes(9), count, "descriptors");
+    if (!row->bytes(9).empty())
+      features->descriptors = values_of<Descriptor>(row->bytes(9), count, "descriptors");
     features->depth = values_of<float>(row->bytes(10), count, "depth");
 
     KeyFrame keyframe;

@@ -189,6 +189,7 @@ void Pipeline::record(const FrameReportPtr& report) {
                     .state = result.state,
                     .reference = result.reference,
                     .reference_from_camera = result.reference_from_camera,
+                    .world_from_camera = result.world_from_camera,
                     .held_by_depth = result.held_by_depth,
                     .poorly_constrained = result.state == TrackState::kTracking &&
                                           result.uncertainty &&

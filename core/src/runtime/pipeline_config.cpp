@@ -225,13 +225,13 @@ void SegmentationOptions::visit(OptionVisitor& v) {
     {.min = 1,
      .max = 1000,
      .unit = "frames",
-     .help = "of 'latest': from one that the network takes to the next; fewer cost less"});
+     .help = "with 'latest', the network labels every so many frames at most; more cost less"});
   v("latency", latency,
     {.min = 0,
      .max = 1000,
      .unit = "frames",
      .help = "of 'latest' in mode inline, which has no clock"});
-  v("most_labelled", most_labelled,
+  v("max_labelled", max_labelled,
     {.min = 0,
      .max = 1,
      .help = "of the image that may be of one class; labels with more are not used"});

@@ -92,7 +92,7 @@ Segmentation SegmentationStage::labels_of(const Frame& frame) {
     if (!labels.known()) return labels;
     if (labels.instances.empty()) find_objects(labels, kMinObjectPixels);
     // Nothing would be left to track by, and there is hardly such a thing.
-    if (largest_share(labels) > options_.most_labelled) return {.frame = frame.index};
+    if (largest_share(labels) > options_.max_labelled) return {.frame = frame.index};
     return labels;
   } catch (const StageError& error) {
     if (options_.on_failure == SegmentationOptions::OnFailure::kStop) throw;

@@ -73,13 +73,17 @@ void check_keyframe(const KeyFrame& keyframe, const Frame& frame, const SparseMa
                    "it must be finite, with an orthonormal rotation");
   const Features& features = *keyframe.features;
   const std::size_t count = features.size();
-  for (const std::size_t size :
-       {features.descriptors.size(), features.depth.size(), keyframe.track_weights.size(),
-        keyframe.map_weights.size(), keyframe.landmarks.size()})
+  const auto require_count = [count](std::size_t size, const std::string& what) {
     require_of_stage(size == count,
                      "the key frame has " + std::to_string(count) + " keypoints, but " +
-                         std::to_string(size) + " descriptors, depths, weights or landmarks",
+                         std::to_string(size) + " " + what,
                      "give one of each per keypoint");
+  };
+  if (!features.descriptors.empty()) require_count(features.descriptors.size(), "descriptors");
+  require_count(features.depth.size(), "depths");
+  require_count(keyframe.track_weights.size(), "track weights");
+  require_count(keyframe.map_weights.size(), "map weights");
+  require_count(keyframe.landmarks.size(), "landmarks");
   require_of_stage(
       std::ranges::all_of(keyframe.landmarks,
                           [&](LandmarkId id) { return id == kNoId || id < map.landmark_id_end(); }),

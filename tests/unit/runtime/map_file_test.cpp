@@ -140,6 +140,21 @@ class MapFile : public ::testing::Test {
   fs::path file_ = folder_.path() / "map.stillpoint";
 };
 
+TEST_F(MapFile, FeaturesOfOtherTrackersMayHaveNoDescriptors) {
+  MapEdit map{SparseMap()};
+  KeyFrame keyframe{.id = 0};
+  keyframe.camera = std::make_shared<const Camera>();
+  keyframe.features =
+      std::make_shared<const Features>(Features{.keypoints = {{10, 20, 1}}, .depth = {1.5F}});
+  keyframe.track_weights = keyframe.map_weights = {255};
+  keyframe.landmarks = {kNoId};
+  map.add_keyframe(std::move(keyframe));
+  save_map(map.map(), file_);
+  const SparseMap loaded = load_map(file_);
+  expect_same(map.map(), loaded);
+  EXPECT_EQ(loaded.keyframe(0)->features->size(), 1u);
+}
+
 TEST_F(MapFile, GivesBackWhatWasSaved) {
   const SparseMap map = small_map();
   save_map(map, file_);

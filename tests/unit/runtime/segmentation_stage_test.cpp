@@ -197,7 +197,7 @@ TEST(SegmentationStage, OneClassOnNearlyTheWholeImageIsNotUsed) {
     cv::Mat labels = cv::Mat::zeros(10, 1, CV_8UC1);
     labels.rowRange(0, rows_of_people) = 15;
     SegmentationStage stage({std::make_shared<Careless>(Segmentation{.labels = labels}), "fake"},
-                            {}, {.most_labelled = 0.9}, Mode::kInline, f.stop, f.times);
+                            {}, {.max_labelled = 0.9}, Mode::kInline, f.stop, f.times);
     Frame frame = testing::make_frame(0);
     frame.gray = cv::Mat::zeros(10, 1, CV_8UC1);
     const auto shared = std::make_shared<const Frame>(std::move(frame));

@@ -198,7 +198,7 @@ INSTANTIATE_TEST_SUITE_P(
         TrackFault{"Features", [](TrackResult& r) { r.keyframe->features = nullptr; },
                    "the key frame has no features"},
         TrackFault{"Weights", [](TrackResult& r) { r.keyframe->map_weights.pop_back(); },
-                   "has 2 keypoints, but 1 descriptors, depths, weights or landmarks"},
+                   "has 2 keypoints, but 1 map weights; give one of each per keypoint"},
         TrackFault{"Landmark", [](TrackResult& r) { r.keyframe->landmarks[0] = 0; },
                    "sees a landmark that is not in the map"},
         TrackFault{"KeyFramePose",

@@ -19,13 +19,14 @@ inline int hamming_distance(const Descriptor& a, const Descriptor& b) {
          std::popcount(a[3] ^ b[3]);
 }
 
-/// Keypoints and descriptors of one image, in parallel vectors.
+/// Keypoints and descriptors of one image, in parallel vectors. A tracker and a local mapper that
+/// know each other may derive from it, for descriptors of another kind.
 struct Features {
   /// px of the full image; `octave` is the pyramid level, `angle` in degrees, `size` in px.
   std::vector<cv::KeyPoint> keypoints;
-  std::vector<Descriptor> descriptors;
-  std::vector<float> depth;   ///< metres at the keypoint, 0 = no measurement
-  double scale_factor = 1.2;  ///< between two levels of the pyramid
+  std::vector<Descriptor> descriptors;  ///< may be empty: the tracker has none of this kind
+  std::vector<float> depth;             ///< metres at the keypoint, 0 = no measurement
+  double scale_factor = 1.2;            ///< between two levels of the pyramid
   int levels = 8;
 
   std::size_t size() const { return keypoints.size(); }

@@ -46,8 +46,9 @@ struct TrackedPose {
   TrackState state = TrackState::kWaiting;
   KeyFrameId reference = kNoId;
   Pose reference_from_camera = Pose::Identity();
-  bool held_by_depth = false;       ///< as in TrackResult
-  bool poorly_constrained = false;  ///< as in PoseUncertainty
+  Pose world_from_camera = Pose::Identity();  ///< at the time of tracking
+  bool held_by_depth = false;                 ///< as in TrackResult
+  bool poorly_constrained = false;            ///< as in PoseUncertainty
 };
 
 struct RunSummary {

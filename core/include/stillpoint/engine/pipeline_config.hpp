@@ -49,9 +49,9 @@ struct STILLPOINT_EXPORT RuntimeOptions {
 /// The `segmentation:` section, and `segmenter.on_failure`: how labels meet frames.
 struct STILLPOINT_EXPORT SegmentationOptions {
   enum class Schedule { kWait, kLatest } schedule = Schedule::kWait;
-  int interval = 1;            ///< frames, of `latest`: from one that the network takes to the next
-  int latency = 3;             ///< frames; of `latest` in mode inline, instead of the clock
-  double most_labelled = 0.9;  ///< share of the image that one class may have
+  int interval = 1;           ///< frames; with `latest`, the network labels every so many at most
+  int latency = 3;            ///< frames; of `latest` in mode inline, instead of the clock
+  double max_labelled = 0.9;  ///< share of the image that one class may have
   enum class OnFailure { kStop, kContinue } on_failure = OnFailure::kStop;
 
   void visit(OptionVisitor& visitor);

@@ -8,8 +8,9 @@
 
 namespace stillpoint {
 
-/// Where the camera was, by what the map says now of the pose's reference key frame. Nothing while
-/// it was not tracked, or when the map does not know the key frame yet.
+/// Where the camera was, by what the map says now of the pose's reference key frame, and as it was
+/// tracked when that is not in the map: not yet, or never, after a stop. Nothing while it was not
+/// tracked.
 STILLPOINT_EXPORT std::optional<Pose> world_from_camera(const SparseMap& map,
                                                         const TrackedPose& pose);
 

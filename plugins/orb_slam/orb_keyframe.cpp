@@ -1,0 +1,21 @@
+#include "orb_slam/orb_keyframe.hpp"
+
+#include <string>
+
+#include "stillpoint/error.hpp"
+
+namespace stillpoint::orb {
+
+void require_orb(const KeyFrame& keyframe) {
+  if (keyframe.features->descriptors.size() == keyframe.features->size()) return;
+  throw Error(Fault::kStage,
+              "key frame " + std::to_string(keyframe.id) + " has features without ORB descriptors",
+              "", "take tracker and local mapper of one plugin, and maps that they have made");
+}
+
+void require_orb(const SparseMap& map) {
+  for (KeyFrameId id = 0; id < map.keyframe_id_end(); ++id)
+    if (const KeyFrame* keyframe = map.keyframe(id)) require_orb(*keyframe);
+}
+
+}  // namespace stillpoint::orb

@@ -1,0 +1,12 @@
+// Key frames of other trackers are not for this plugin.
+#pragma once
+
+#include "stillpoint/contracts/sparse_map.hpp"
+
+namespace stillpoint::orb {
+
+/// Throws Error(kStage) when a key frame's features have no 256-bit descriptors.
+void require_orb(const KeyFrame& keyframe);
+void require_orb(const SparseMap& map);
+
+}  // namespace stillpoint::orb

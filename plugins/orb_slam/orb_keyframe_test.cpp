@@ -1,0 +1,52 @@
+#include "orb_slam/orb_keyframe.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "orb_slam/local_mapper.hpp"
+#include "orb_slam/tracker.hpp"
+#include "stillpoint/error.hpp"
+
+namespace stillpoint::orb {
+namespace {
+
+/// Of a tracker with descriptors of its own.
+KeyFrame of_another_tracker() {
+  KeyFrame keyframe{.id = 0};
+  keyframe.camera = std::make_shared<const Camera>();
+  keyframe.features =
+      std::make_shared<const Features>(Features{.keypoints = {{10, 10, 1}}, .depth = {1}});
+  keyframe.track_weights = keyframe.map_weights = {255};
+  keyframe.landmarks = {kNoId};
+  return keyframe;
+}
+
+TEST(OrbKeyFrame, LocalMappingRefusesThoseOfOtherTrackers) {
+  OrbLocalMapper mapper({}, {});
+  EXPECT_THAT(
+      [&] { mapper.insert({}, of_another_tracker()); },
+      ::testing::ThrowsMessage<Error>(::testing::HasSubstr("features without ORB descriptors")));
+}
+
+TEST(OrbKeyFrame, TrackingRefusesMapsOfOtherTrackers) {
+  MapEdit map{SparseMap()};
+  map.add_keyframe(of_another_tracker());
+  EXPECT_THROW(require_orb(map.map()), Error);
+  OrbTracker tracker{OrbTracker::Options()};
+  auto frame = std::make_shared<Frame>();
+  frame->camera = std::make_shared<const Camera>();
+  frame->gray = cv::Mat::zeros(480, 640, CV_8UC1);
+  frame->bgr = cv::Mat::zeros(480, 640, CV_8UC3);
+  frame->depth = cv::Mat::zeros(480, 640, CV_32FC1);
+  auto prepared = tracker.prepare(frame);
+  EXPECT_THROW(tracker.track(std::move(prepared), {}, map.map(), {}), Error);
+}
+
+TEST(OrbKeyFrame, WithoutFeaturesThereIsNothingToRefuse) {
+  KeyFrame keyframe{.id = 0};
+  keyframe.features = std::make_shared<const Features>();
+  EXPECT_NO_THROW(require_orb(keyframe));
+}
+
+}  // namespace
+}  // namespace stillpoint::orb
