@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <mutex>
 #include <new>
+#include <type_traits>
 
 namespace stillpoint {
 namespace {
@@ -45,10 +46,10 @@ class AddressTable {
   std::array<Range, 4096> ranges_;  // written with mutex_ held
 };
 
-AddressTable& table() {
-  static AddressTable& table = *new AddressTable;  // images may outlive static objects
-  return table;
-}
+// Made at compile time and never destroyed: for signal handlers at any time, and for images that
+// outlive static objects.
+constinit AddressTable table;
+static_assert(std::is_trivially_destructible_v<AddressTable>);
 
 /// Pages of their own for each image.
 class PageAllocator final : public cv::MatAllocator {
@@ -67,7 +68,7 @@ class PageAllocator final : public cv::MatAllocator {
     if (pages == MAP_FAILED) throw std::bad_alloc();
     result->data = result->origdata = static_cast<unsigned char*>(pages);
     result->size = bytes;
-    table().add(pages, bytes);
+    table.add(pages, bytes);
     return result;
   }
   bool allocate(cv::UMatData* data, cv::AccessFlag, cv::UMatUsageFlags) const override {
@@ -75,14 +76,14 @@ class PageAllocator final : public cv::MatAllocator {
   }
   void deallocate(cv::UMatData* data) const override {
     if (!data) return;
-    table().remove(data->origdata);
+    table.remove(data->origdata);
     ::munmap(data->origdata, data->size);
     delete data;
   }
 };
 
 cv::Mat read_only(const cv::Mat& image) {
-  static PageAllocator& pages = *new PageAllocator;  // as above
+  static PageAllocator& pages = *new PageAllocator;  // images may outlive static objects
   if (image.empty()) return image;
   cv::Mat copy;
   copy.allocator = &pages;
@@ -101,6 +102,6 @@ Frame with_read_only_images(Frame frame) {
   return frame;
 }
 
-bool in_read_only_image(const void* address) { return table().contains(address); }
+bool in_read_only_image(const void* address) { return table.contains(address); }
 
 }  // namespace stillpoint
