@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "orb_slam/local_mapper.hpp"
+#include "orb_slam/loop_closer.hpp"
 #include "orb_slam/tracker.hpp"
 #include "stillpoint/error.hpp"
 
@@ -40,6 +41,15 @@ TEST(OrbKeyFrame, TrackingRefusesMapsOfOtherTrackers) {
   frame->depth = cv::Mat::zeros(480, 640, CV_32FC1);
   auto prepared = tracker.prepare(frame);
   EXPECT_THROW(tracker.track(std::move(prepared), {}, map.map(), {}), Error);
+}
+
+TEST(OrbKeyFrame, LoopClosingRefusesThoseOfOtherTrackers) {
+  MapEdit map{SparseMap()};
+  KeyFrame keyframe = of_another_tracker();
+  map.add_keyframe(std::move(keyframe));
+  map.add_observation(map.add_landmark({.reference = 0}), {.keyframe = 0, .feature = 0});
+  OrbLoopCloser closer({}, {});
+  EXPECT_THROW(closer.close(map.map(), 0, {}), Error);
 }
 
 TEST(OrbKeyFrame, WithoutFeaturesThereIsNothingToRefuse) {

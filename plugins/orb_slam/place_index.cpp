@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "orb_slam/orb_keyframe.hpp"
+
 namespace stillpoint::orb {
 namespace {
 
@@ -27,6 +29,7 @@ std::vector<Descriptor> place_descriptors(const Features& features, const Featur
 }
 
 std::vector<Descriptor> place_descriptors(const KeyFrame& keyframe) {
+  require_orb(keyframe);
   return place_descriptors(*keyframe.features,
                            [&](std::uint32_t i) { return keyframe.landmarks[i] != kNoId; });
 }

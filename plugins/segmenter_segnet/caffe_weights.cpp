@@ -28,7 +28,7 @@ constexpr std::uint32_t kLegacyDimensions = 4;  // fields 1 … 4: num, channels
 constexpr std::uint32_t kBlobData = 5;
 constexpr std::uint32_t kBlobShape = 7;
 constexpr std::uint32_t kBlobDoubleData = 8;
-constexpr std::size_t kMostDimensions = 32;  // of a cv::Mat
+constexpr std::size_t kMaxDimensions = 32;  // of a cv::Mat
 
 std::vector<std::byte> read_file(const std::filesystem::path& file) {
   std::ifstream stream(file, std::ios::binary | std::ios::ate);
@@ -81,7 +81,7 @@ cv::Mat shaped(std::vector<int> shape, std::vector<float>& values) {
   if (expected != static_cast<double>(values.size()) || values.empty())
     throw Error(Fault::kData, "a blob has " + std::to_string(values.size()) +
                                   " values, but its shape is " + shape_text(shape));
-  if (shape.size() > kMostDimensions)
+  if (shape.size() > kMaxDimensions)
     throw Error(Fault::kData, "a blob has " + std::to_string(shape.size()) + " dimensions");
   if (shape.size() < 2) shape.insert(shape.begin(), 2 - shape.size(), 1);
   return cv::Mat(static_cast<int>(shape.size()), shape.data(), CV_32F, values.data()).clone();

@@ -10,8 +10,10 @@ function(stillpoint_compile_options target)
     list(APPEND strictness -Werror)
   endif()
   if(CMAKE_UNITY_BUILD)
-    list(APPEND strictness -Wno-subobject-linkage
-                           -Wno-array-bounds -Wno-stringop-overflow -Wno-stringop-overread)
+    list(APPEND strictness -Wno-subobject-linkage)
+  endif()
+  if(NOT CMAKE_DISABLE_PRECOMPILE_HEADERS)
+    list(APPEND strictness -Wno-array-bounds -Wno-stringop-overflow -Wno-stringop-overread)
   endif()
   target_compile_options(${target} PRIVATE
     -Wall -Wextra -Wno-missing-field-initializers -Wno-restrict -Wshadow -Wnon-virtual-dtor

@@ -169,7 +169,8 @@ FuzzTarget stamp_list() {
                 std::vector<std::string> warnings;
                 read_image_list(file, warnings);
               },
-          .words = {"nan", "inf", "1e308", "1e-400", "-", "\n", "\r\n", "#", ",", "\t", "\0"}};
+          .words = {"nan", "inf", "1e308", "1e-400", "-", "\n", "\r\n", "#", ",", "\t",
+                    std::string(1, '\0')}};
 }
 
 FuzzTarget trajectory() {

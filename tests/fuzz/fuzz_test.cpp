@@ -4,6 +4,7 @@
 // More cases than usual, or others: STILLPOINT_FUZZ_CASES=1000000 STILLPOINT_FUZZ_SEED=2. The file
 // under test is always on disk, so that it is there after a crash.
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <cstdlib>
 #include <fstream>
@@ -47,7 +48,8 @@ class Fuzz : public ::testing::TestWithParam<NamedFuzzTarget> {
 
   const FuzzTarget target_ = GetParam().make();
   const fs::path file_ =
-      fs::path(::testing::TempDir()) / (std::string("stillpoint_fuzz_") + GetParam().name);
+      fs::path(::testing::TempDir()) /
+      (std::string("stillpoint_fuzz_") + GetParam().name + "_" + std::to_string(::getpid()));
 };
 
 TEST_P(Fuzz, EndsWithAResultOrInWords) {
@@ -59,8 +61,9 @@ TEST_P(Fuzz, EndsWithAResultOrInWords) {
   Mutator mutator(number_of("STILLPOINT_FUZZ_SEED", 1), target_.words);
   const std::uint64_t cases = number_of("STILLPOINT_FUZZ_CASES", 10'000);
   for (std::uint64_t i = 0; i < cases && !HasFailure(); ++i) {
-    Bytes file =
-        mutator.mutated(corpus[mutator.below(corpus.size())], corpus[mutator.below(corpus.size())]);
+    const Bytes& one = corpus[mutator.below(corpus.size())];
+    const Bytes& other = corpus[mutator.below(corpus.size())];
+    Bytes file = mutator.mutated(one, other);
     target_.repair(file);
     if (run(file)) corpus.push_back(std::move(file));
   }

@@ -216,6 +216,15 @@ TEST_P(LibraryThatEndsTheProcess, IsNamed) {
   }
 }
 
+TEST_F(LibraryThatMisbehaves, IsNamedWhenItsOptionsAreAskedFor) {
+  const std::string plugin = "crashes_when_described";
+  const Outcome outcome = run("orb_baseline", on_recording(), with_it(plugin));
+  EXPECT_EQ(outcome.exit_code, kStageFailed) << outcome.signal;
+  EXPECT_THAT(outcome.err,
+              HasSubstr("error: " + folder_of(plugin).string() + "/libstillpoint_" + plugin +
+                        ".so: the options of moving_checker 'crashes_when_described': it crashed"));
+}
+
 TEST_F(LibraryThatMisbehaves, IsNamedWhileItHangs) {
   Program program({"plugins", "list"}, with_it("hangs_when_loaded"));
   EXPECT_TRUE(program.wait_for("libstillpoint_hangs_when_loaded.so has not returned for "));

@@ -93,7 +93,7 @@ void describe(const PluginType& type) {
             << type.summary << "\nplugin " << type.plugin << ' ' << type.version << ", "
             << type.library.string() << "\n\n";
   OptionDescriber describer;
-  type.entry->describe(describer);
+  describe_options(type, describer);
   if (describer.rows().empty()) {
     std::cout << "no options\n";
     return;

@@ -2,6 +2,7 @@
 #include <csignal>
 #include <cstdlib>
 #include <filesystem>
+#include <functional>
 #include <iostream>
 #include <memory>
 #include <optional>
@@ -17,6 +18,7 @@
 #include "run_table.hpp"
 #include "stillpoint/engine/engine.hpp"
 #include "stillpoint/engine/make_stages.hpp"
+#include "stillpoint/runtime/stage_error.hpp"
 #include "stillpoint/runtime/stage_guard.hpp"
 
 namespace stillpoint {
@@ -41,10 +43,16 @@ void print_files(const RunFolder& folder, const fs::path& ground_truth) {
               << " --estimate " << trajectory.string() << '\n';
 }
 
+template <class Function>
+auto in_source(const Stages& stages, Function function) {
+  return in_stage("source (" + stages.source.type + ")", {},
+                  [&] { return std::invoke(function, *stages.source.object); });
+}
+
 // Runs, and prints the table also when a stage has failed: what was computed is saved.
 void run_and_print(Stages stages, const PipelineConfig& config, const RunFolder& folder,
                    std::stop_token stop) {
-  const fs::path ground_truth = stages.source.object->ground_truth();
+  const fs::path ground_truth = in_source(stages, &Source::ground_truth);
   const auto table = std::make_shared<RunTable>();
   stages.outputs.push_back({{table, "table"}});
   const auto print = [&] {
@@ -88,7 +96,7 @@ void warn_of_labels(const PipelineConfig& config, const RunFolder& folder) {
 }
 
 void run(const RunArguments& arguments) {
-  std::optional<LateCalls> late(watch_loading());
+  std::optional<LateCalls> loading(watch_loading());
   Registry registry;
   const PipelineConfig config = load_pipeline(arguments.request, registry);
   SparseMap known_map = arguments.load_map.empty() ? SparseMap() : load_map(arguments.load_map);
@@ -98,8 +106,8 @@ void run(const RunArguments& arguments) {
   RunFolder folder(
       arguments.output.empty() ? fs::path("out") / config.file.stem() : arguments.output, console);
   folder.log(LogLevel::kInfo, "stillpoint " STILLPOINT_VERSION ", " + config.file.string());
-  late.reset();
-  late.emplace(config.runtime.stage_timeout, [&folder](const std::string& text) {
+  loading.reset();
+  const LateCalls late(config.runtime.stage_timeout, [&folder](const std::string& text) {
     folder.log(LogLevel::kWarning, text + "; Ctrl-C stops the run");
   });
   warn_of_labels(config, folder);
@@ -108,7 +116,7 @@ void run(const RunArguments& arguments) {
                   [&folder](LogLevel level, std::string_view text) { folder.log(level, text); });
   folder.begin(config.effective_yaml);
   stages.outputs.push_back(
-      {{std::make_shared<Progress>(console, stages.source.object->size()), "progress"}});
+      {{std::make_shared<Progress>(console, in_source(stages, &Source::size)), "progress"}});
   stages.known_map = std::move(known_map);
   stages.localise_only = arguments.localise_only;
   if (saver) stages.outputs.push_back({{std::move(saver), "map saver"}});

@@ -4,6 +4,8 @@
 #include <string>
 #include <utility>
 
+#include "stillpoint/runtime/stage_error.hpp"
+
 namespace stillpoint {
 namespace {
 
@@ -22,7 +24,9 @@ class StageMaker {
   /// First of all, because the others are told its classes.
   Stage<Segmenter> make_segmenter() {
     Stage<Segmenter> segmenter = make<Segmenter>(config_.segmenter);
-    if (segmenter.object) classes_ = segmenter.object->classes();
+    if (segmenter.object)
+      classes_ = in_stage("segmentation (" + segmenter.type + ")", {},
+                          [&] { return segmenter.object->classes(); });
     return segmenter;
   }
 

@@ -152,8 +152,11 @@ void MappingSystem::map(NewKeyFrame item) {
 
 void MappingSystem::correct(const Correction& item) {
   const MapStore::Snapshot before = map_.snapshot();
-  map_.publish(local_mapper_.call("map_correct", item.frame,
-                                  [&](LocalMapper&) { return apply(item.correction, *before); }));
+  map_.publish(loop_closer_.call("map_correct", item.frame, [&](LoopCloser&) {
+    SparseMap map = apply(item.correction, *before);
+    if (thorough_) check_thoroughly(map);
+    return map;
+  }));
   send_moved(*before, *map_.snapshot());
   if (!item.closes_loop) return;
   ++loops_;

@@ -58,6 +58,12 @@ NewKeyFrame new_keyframe(const KeyFrame& keyframe, const FramePtr& frame,
   return {keyframe, {keyframe.id, frame, labels, weights, keyframe.world_from_camera}};
 }
 
+ClassNames classes_of(const Stage<Segmenter>& segmenter) {
+  if (!segmenter.object) return {};
+  return in_stage("segmentation (" + segmenter.type + ")", {},
+                  [&] { return segmenter.object->classes(); });
+}
+
 std::optional<TrackedFrame> tracked_frame(const FramePtr& frame,
                                           const std::shared_ptr<const StaticWeights>& weights,
                                           const TrackResult& result) {
@@ -73,7 +79,7 @@ Pipeline::Pipeline(Stages stages, const RuntimeOptions& runtime,
     : options_(runtime),
       map_directory_(std::move(stages.map_directory)),
       localise_only_(stages.localise_only),
-      classes_(stages.segmenter.object ? stages.segmenter.object->classes() : ClassNames()),
+      classes_(classes_of(stages.segmenter)),
       clock_(clock ? std::move(clock) : std::make_shared<SteadyClock>()),
       wall_start_(SteadyClock().now()),
       cpu_start_(process_cpu_seconds()),

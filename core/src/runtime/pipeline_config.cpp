@@ -7,6 +7,7 @@
 #include "stillpoint/contracts/source.hpp"
 #include "stillpoint/engine/config_lookup.hpp"
 #include "stillpoint/runtime/pipeline_tree.hpp"
+#include "stillpoint/runtime/stage_guard.hpp"
 #include "stillpoint/runtime/yaml_option_reader.hpp"
 #include "stillpoint/support/did_you_mean.hpp"
 
@@ -170,8 +171,9 @@ class PipelineReader {
     }
     more(reader);
     try {
-      plugin->entry->describe(reader);
+      describe_options(*plugin, reader);
     } catch (const std::exception& error) {
+      if (StageGuard::has_ended_one()) throw;
       faults_.add(type->location, path + " (" + plugin->type + "): " + error.what());
       return std::nullopt;
     }

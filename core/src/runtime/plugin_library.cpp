@@ -39,7 +39,10 @@ boost::dll::shared_library load(const fs::path& file, std::string& reason) {
     call_guarded(name, std::nullopt, open);
   } catch (const std::exception& error) {  // dlopen() still holds its lock
     throw Error(Fault::kStage, error.what(), name,
-                "its static constructors did that; mend it, or take it out of the folder");
+                "its static constructors did that; fix the plugin, or remove it from the folder");
+  } catch (...) {
+    throw Error(Fault::kStage, "it threw something that is not a std::exception", name,
+                "its static constructors did that; fix the plugin, or remove it from the folder");
   }
   StageGuard::library_was_loaded();
   return library;

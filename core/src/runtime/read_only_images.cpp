@@ -9,6 +9,8 @@
 #include <new>
 #include <type_traits>
 
+#include "stillpoint/error.hpp"
+
 namespace stillpoint {
 namespace {
 
@@ -88,7 +90,10 @@ cv::Mat read_only(const cv::Mat& image) {
   cv::Mat copy;
   copy.allocator = &pages;
   image.copyTo(copy);
-  ::mprotect(copy.data, copy.total() * copy.elemSize(), PROT_READ);
+  if (copy.u->currAllocator != &pages ||
+      ::mprotect(copy.data, copy.total() * copy.elemSize(), PROT_READ) != 0)
+    throw Error(Fault::kStage, "there is no memory for images that cannot be written to", "",
+                "run without 'validate: full'");
   copy.allocator = nullptr;  // of what is made of this header later
   return copy;
 }

@@ -26,15 +26,27 @@ std::vector<fs::path> plugin_files(const fs::path& folder) {
   return files;
 }
 
+/// Throws Error when a StageGuard had to end it: what it held stays as it was.
+void describe(const PluginEntry& entry, const fs::path& library, OptionVisitor& visitor) {
+  const std::string name = std::string("the options of ") + entry.kind + " '" + entry.type + "'";
+  auto visit = [&] { entry.describe(visitor); };
+  try {
+    call_guarded(name, std::nullopt, visit);
+  } catch (const std::exception& error) {
+    if (!StageGuard::has_ended_one()) throw;
+    throw Error(Fault::kStage, error.what(), library.string() + ": " + name,
+                "fix the plugin, or remove it from the folder");
+  }
+}
+
 /// What is wrong with the options that a plugin declares; empty: nothing.
-std::string fault_of_options(const PluginEntry& entry) {
+std::string fault_of_options(const PluginEntry& entry, const fs::path& library) {
   try {
     OptionDescriber describer;
-    auto describe = [&] { entry.describe(describer); };
-    call_guarded(std::string("options of ") + entry.kind + " '" + entry.type + "'", std::nullopt,
-                 describe);
+    describe(entry, library, describer);
     return join(describer.faults());
   } catch (const std::exception& error) {
+    if (StageGuard::has_ended_one()) throw;
     return error.what();
   } catch (...) {
     return "describing them threw something that is not a std::exception";
@@ -42,13 +54,13 @@ std::string fault_of_options(const PluginEntry& entry) {
 }
 
 /// Why a type cannot be used; empty when it can.
-std::string fault_of(const PluginEntry& entry) {
+std::string fault_of(const PluginEntry& entry, const fs::path& library) {
   if (!entry.kind || !entry.type || !entry.summary || !entry.describe || !entry.create)
     return "its descriptor has an incomplete entry";
   const std::string name = std::string(entry.kind) + " '" + entry.type + "'";
   if (const std::string fault = why_kind_does_not_fit(entry.kind, entry.kind_api); !fault.empty())
     return name + ": " + fault;
-  const std::string fault = fault_of_options(entry);
+  const std::string fault = fault_of_options(entry, library);
   return fault.empty() ? fault : "the options of " + name + ": " + fault;
 }
 
@@ -73,7 +85,7 @@ void Registry::add(const PluginDescriptor& descriptor, const fs::path& file,
                    std::shared_ptr<const void> handle) {
   const std::span<const PluginEntry> entries(descriptor.entries, descriptor.entry_count);
   for (const PluginEntry& entry : entries) {
-    if (const std::string fault = fault_of(entry); !fault.empty()) {
+    if (const std::string fault = fault_of(entry, file); !fault.empty()) {
       unusable_.push_back({file, fault});
       continue;
     }
@@ -120,6 +132,10 @@ std::string Registry::explain_missing(std::string_view kind, std::string_view ty
     folders.push_back(folder.string() + (fs::is_directory(folder, error) ? "" : " (not there)"));
   return text + "\n  searched:   " + (folders.empty() ? "nothing" : join(folders)) +
          "      (add folders with STILLPOINT_PLUGIN_PATH)";
+}
+
+void describe_options(const PluginType& type, OptionVisitor& visitor) {
+  describe(*type.entry, type.library, visitor);
 }
 
 std::shared_ptr<void> create_object(const PluginType& type, std::string_view kind,

@@ -4,6 +4,7 @@
 #include <array>
 #include <utility>
 
+#include "stillpoint/runtime/stage_guard.hpp"
 #include "stillpoint/runtime/stage_results.hpp"
 #include "stillpoint/support/objects.hpp"
 
@@ -43,7 +44,7 @@ SegmentationStage::SegmentationStage(Stage<Segmenter> segmenter, Stage<Propagato
       times_(times),
       segmenter_(std::move(segmenter), "segmentation", times),
       propagator_(std::move(propagator), "propagation", times),
-      classes_(segmenter_.object().classes().size()),
+      classes_(segmenter_.call_unmeasured({}, &Segmenter::classes).size()),
       network_(
           segmenter_.present() ? mode : Mode::kInline, 1, stop,
           [this](FramePtr frame) { segment(taken(std::move(frame))); },
@@ -95,7 +96,8 @@ Segmentation SegmentationStage::labels_of(const Frame& frame) {
     if (largest_share(labels) > options_.max_labelled) return {.frame = frame.index};
     return labels;
   } catch (const StageError& error) {
-    if (options_.on_failure == SegmentationOptions::OnFailure::kStop) throw;
+    if (options_.on_failure == SegmentationOptions::OnFailure::kStop || StageGuard::has_ended_one())
+      throw;
     if (failures_++ == 0) first_failure_ = error.what();
     return {.frame = frame.index};
   }

@@ -102,10 +102,15 @@ class StackOfHandlers {
   std::unique_ptr<char[]> memory_;
 };
 
+void say(const char* words) {  // for signal handlers
+  [[maybe_unused]] const auto written = ::write(STDERR_FILENO, words, std::strlen(words));
+}
+
 extern "C" void on_crash(int signal, siginfo_t* info, void*) {
   const bool wrote_to_image = signal == SIGSEGV && in_read_only_image(info->si_addr);
   if (current && !bookkeeping)
     siglongjmp(current->way_out, wrote_to_image ? kWroteToImage : signal);
+  if (wrote_to_image) say("error: a thread of a plugin wrote to an image of a frame\n");
   ::signal(signal, SIG_DFL);
   ::raise(signal);
 }
@@ -119,8 +124,7 @@ extern "C" void on_exit_of_process() {
 }
 
 extern "C" void on_saving_hangs(int) {
-  [[maybe_unused]] const auto written =
-      ::write(STDERR_FILENO, last_words.data(), std::strlen(last_words.data()));
+  say(last_words.data());
   ::_exit(1);
 }
 

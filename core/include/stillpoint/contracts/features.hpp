@@ -19,8 +19,7 @@ inline int hamming_distance(const Descriptor& a, const Descriptor& b) {
          std::popcount(a[3] ^ b[3]);
 }
 
-/// Keypoints and descriptors of one image, in parallel vectors. A tracker and a local mapper that
-/// know each other may derive from it, for descriptors of another kind.
+/// Keypoints and descriptors of one image, in parallel vectors.
 struct Features {
   /// px of the full image; `octave` is the pyramid level, `angle` in degrees, `size` in px.
   std::vector<cv::KeyPoint> keypoints;

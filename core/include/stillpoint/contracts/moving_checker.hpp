@@ -14,7 +14,8 @@
 namespace stillpoint {
 
 /// What is known before a frame is checked, for checks that look further back than one frame. Poses
-/// are those of the map as it is now.
+/// are those of the map as it is now; key frames that are not in it yet are where they were
+/// tracked.
 struct TrackingHistory {
   std::optional<Pose> world_from_previous;  ///< of the frame before; nothing: it was not tracked
   std::vector<DenseKeyFrame> keyframes;     ///< newest first

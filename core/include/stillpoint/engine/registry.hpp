@@ -61,6 +61,9 @@ class STILLPOINT_EXPORT Registry {
   std::vector<std::filesystem::path> searched_;
 };
 
+/// Visits the default options of a type. Throws what the type's visit() throws.
+STILLPOINT_EXPORT void describe_options(const PluginType& type, OptionVisitor& visitor);
+
 /// Use create().
 STILLPOINT_EXPORT std::shared_ptr<void> create_object(const PluginType& type, std::string_view kind,
                                                       OptionVisitor& options,

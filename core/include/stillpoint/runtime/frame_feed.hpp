@@ -29,7 +29,7 @@ class FrameFeed {
   void end();
 
   /// Only after end().
-  SourceReport report() const { return source_.object().report(); }
+  SourceReport report() { return source_.call_unmeasured({}, &Source::report); }
   std::size_t dropped() const { return dropped_; }
 
  private:

@@ -16,7 +16,7 @@ class MovingCheck {
   MovingCheck(Stage<MovingChecker> checker, RuntimeOptions::Validate validate, TimeLog& times)
       : checker_(std::move(checker), "moving check", times),
         thorough_(validate == RuntimeOptions::Validate::kFull),
-        wanted_keyframes_(checker_.object().wanted_keyframes()) {}
+        wanted_keyframes_(checker_.call_unmeasured({}, &MovingChecker::wanted_keyframes)) {}
 
   bool present() const { return checker_.present(); }
   /// Once per frame, in order. Nothing is known of the first, which has none before it.

@@ -13,7 +13,7 @@ namespace stillpoint {
 
 /// "segmentation (opencv_dnn) failed on frame 412: …". The fault is kStage, except that unusable
 /// data stay kData.
-class StageError final : public Error {
+class STILLPOINT_EXPORT StageError final : public Error {
  public:
   StageError(const std::string& stage, std::optional<std::uint32_t> frame,
              const std::exception* cause);
