@@ -61,8 +61,17 @@ class Program {
     posix_spawn_file_actions_addchdir_np(&actions, surroundings.folder.c_str());
     arguments.insert(arguments.begin(), program_file().string());
     std::vector<std::string> variables = environment_with(surroundings.environment);
-    const int error = ::posix_spawn(&process_, program_file().c_str(), &actions, nullptr,
+    // As in a terminal: what a shell puts into the background ignores SIGINT, and so its children.
+    sigset_t interrupt;
+    sigemptyset(&interrupt);
+    sigaddset(&interrupt, SIGINT);
+    posix_spawnattr_t attributes;
+    posix_spawnattr_init(&attributes);
+    posix_spawnattr_setsigdefault(&attributes, &interrupt);
+    posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGDEF);
+    const int error = ::posix_spawn(&process_, program_file().c_str(), &actions, &attributes,
                                     pointers(arguments).data(), pointers(variables).data());
+    posix_spawnattr_destroy(&attributes);
     posix_spawn_file_actions_destroy(&actions);
     ::close(pipe[1]);
     if (error != 0) fail("cannot start " + program_file().string(), error);
