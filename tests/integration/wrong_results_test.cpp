@@ -1,0 +1,98 @@
+// Plugins that give what their contract forbids, through the program: the run ends with the stage,
+// the frame and what to do, and what was computed is saved.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <string>
+#include <tuple>
+#include <vector>
+
+#include "support/simulated_recording.hpp"
+
+namespace stillpoint::testing {
+namespace {
+
+namespace fs = std::filesystem;
+using ::testing::HasSubstr;
+
+constexpr int kStageFailed = 1;
+
+struct Wrong {
+  const char* kind;  // section of the pipeline file
+  const char* role;  // what messages call the stage
+  const char* how;
+  const char* problem;
+};
+
+constexpr Wrong kWrongs[] = {
+    {"source", "source", "index", "the frame has index 7; indices count from 0 without gaps"},
+    {"source", "source", "backwards", "s older than the one before; give frames in order of time"},
+    {"source", "source", "nan_time", "the time of the frame is not finite"},
+    {"source", "source", "depth_type", "the depth image is of CV_16UC1; it must be of CV_32FC1"},
+    {"source", "source", "empty", "the frame has no image"},
+    {"source", "source", "no_camera", "the frame has no camera; set Frame::camera"},
+    {"source", "source", "other_size", "the images have another size than those before"},
+    {"segmenter", "segmentation", "size",
+     "the labels have 2 x 2 pixels, but the frame has 64 x 48"},
+    {"segmenter", "segmentation", "label", "a pixel has label 2, but there are 2 classes"},
+    {"decision", "decision", "size", "the weights have 2 x 2 pixels, but the frame has 64 x 48"},
+    {"decision", "decision", "type", "the weights have 64 x 48 pixels of CV_32FC1"},
+    {"tracker", "tracking", "nan_pose", "the pose is no rigid motion"},
+    {"tracker", "tracking", "reference", "the reference is key frame kNoId of 4"},
+    {"tracker", "tracking", "keyframe_id", "the key frame has id 4, but the next one is 3"},
+    {"tracker", "tracking", "features", "the key frame has no features"},
+    {"local_mapper", "local mapping", "", "key frame 3 was not added to the map"},
+    {"loop_closer", "loop closing", "", "a key frame that is not there or whose pose is no rigid"},
+};
+
+class WrongResults : public ::testing::TestWithParam<std::tuple<const char*, Wrong>> {
+ protected:
+  static Wrong wrong() { return std::get<1>(GetParam()); }
+
+  // Source and tracker of the fixture, so that only it is asked; the rest as the case says.
+  fs::path pipeline() const {
+    const auto section = [&](const std::string& kind, const std::string& otherwise) {
+      if (kind != wrong().kind) return otherwise.empty() ? "" : kind + ": " + otherwise + "\n";
+      const std::string how = wrong().how;
+      return kind + ": {type: wrong" + (how.empty() ? "" : ", how: " + how) + "}\n";
+    };
+    return folder_.write("wrong.yaml",
+                         "version: 1\n" + section("source", "{type: wrong, how: right}") +
+                             section("segmenter", "") + section("decision", "") +
+                             section("tracker", "{type: wrong, how: right}") +
+                             section("local_mapper", "") + section("loop_closer", "") +
+                             "outputs: [{type: trajectory}, {type: summary}]\nruntime: {mode: " +
+                             std::get<0>(GetParam()) + "}\n");
+  }
+
+  const TemporaryFolder folder_;
+};
+
+TEST_P(WrongResults, EndTheRunWithTheStageThatGaveThem) {
+  const fs::path out = folder_.path() / "out";
+  const Outcome outcome =
+      call({"run", pipeline().string(), "-o", out.string()},
+           {.environment = {{"STILLPOINT_PLUGIN_PATH",
+                             std::string(STILLPOINT_BINARY_DIR) + "/tests/plugins_bad/plugins"}}});
+  EXPECT_EQ(outcome.exit_code, kStageFailed) << outcome.signal;
+  const std::string message = std::string(wrong().role) + " (wrong) failed on frame 3: ";
+  EXPECT_THAT(outcome.err, HasSubstr("error: " + message));
+  EXPECT_THAT(outcome.err, HasSubstr(wrong().problem));
+  EXPECT_GE(count_poses(out / "trajectory.txt"), 3u);
+  const auto summary = json_file(out / "summary.json");
+  EXPECT_FALSE(summary["complete"]);
+  EXPECT_THAT(summary["failure"].get<std::string>(), ::testing::StartsWith(message));
+}
+
+INSTANTIATE_TEST_SUITE_P(Cases, WrongResults,
+                         ::testing::Combine(::testing::Values("inline", "threaded"),
+                                            ::testing::ValuesIn(kWrongs)),
+                         [](const auto& test) {
+                           const Wrong& wrong = std::get<1>(test.param);
+                           return std::string(std::get<0>(test.param)) + "_" + wrong.kind + "_" +
+                                  wrong.how;
+                         });
+
+}  // namespace
+}  // namespace stillpoint::testing
