@@ -8,7 +8,7 @@
 #include "stillpoint/engine/registry.hpp"
 #include "stillpoint/sdk.hpp"
 
-namespace stillpoint::test {
+namespace stillpoint {
 
 struct FakeSource final : Source {
   struct Options {
@@ -116,4 +116,4 @@ inline constexpr PluginEntry kEntries[] = {
 };
 inline constexpr PluginDescriptor kFakePlugin = {"fake", "1.0", kEntries, std::size(kEntries)};
 
-}  // namespace stillpoint::test
+}  // namespace stillpoint

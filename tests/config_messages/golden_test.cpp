@@ -10,7 +10,7 @@
 #include "fake_stages.hpp"
 #include "stillpoint/engine/pipeline_config.hpp"
 
-namespace stillpoint::test {
+namespace stillpoint {
 namespace {
 
 namespace fs = std::filesystem;
@@ -87,4 +87,4 @@ INSTANTIATE_TEST_SUITE_P(Cases, ConfigMessages, testing::ValuesIn(case_names()),
                          [](const auto& instance) { return instance.param; });
 
 }  // namespace
-}  // namespace stillpoint::test
+}  // namespace stillpoint

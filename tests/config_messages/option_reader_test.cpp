@@ -9,7 +9,7 @@
 #include "stillpoint/runtime/yaml_option_reader.hpp"
 #include "stillpoint/support/did_you_mean.hpp"
 
-namespace stillpoint::test {
+namespace stillpoint {
 namespace {
 
 using testing::ElementsAre;
@@ -112,4 +112,4 @@ TEST(DidYouMean, SuggestsNearNamesOnly) {
 }
 
 }  // namespace
-}  // namespace stillpoint::test
+}  // namespace stillpoint

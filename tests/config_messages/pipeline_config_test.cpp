@@ -7,7 +7,7 @@
 #include "fake_stages.hpp"
 #include "stillpoint/engine/pipeline_config.hpp"
 
-namespace stillpoint::test {
+namespace stillpoint {
 namespace {
 
 namespace fs = std::filesystem;
@@ -139,6 +139,27 @@ TEST_F(PipelineConfigTest, AParentHasAPathOrAName) {
   unsetenv("STILLPOINT_CONFIG_PATH");
 }
 
+TEST_F(PipelineConfigTest, SizeDepthAndNumberOfFilesHaveLimits) {
+  const auto message = [this](const std::string& file) -> std::string {
+    try {
+      load({.pipeline = file});
+    } catch (const ConfigError& error) {
+      return error.what();
+    }
+    return "no error";
+  };
+  write("large.yaml", kSource + std::string(2 << 20, '#'));
+  EXPECT_THAT(message("large.yaml"), HasSubstr("large.yaml:1:1: error: is larger than 1 MiB"));
+  write("deep.yaml", "a: " + std::string(100'000, '['));
+  EXPECT_THAT(message("deep.yaml"), HasSubstr("nested too deeply or too large"));
+  for (int i = 0; i < 40; ++i)
+    write("chain" + std::to_string(i) + ".yaml",
+          "extends: chain" + std::to_string(i + 1) + ".yaml\n");
+  write("chain40.yaml", kSource);
+  EXPECT_THAT(message("chain0.yaml"), HasSubstr("extends goes on over more than 32 files"));
+  EXPECT_EQ(message("chain9.yaml"), "no error");
+}
+
 TEST_F(PipelineConfigTest, OverriddenVariablesNeedNotBeSet) {
   unsetenv("STILLPOINT_TEST_UNSET");
   write("p.yaml", "version: 1\nsource: {type: tum_rgbd, path: '${STILLPOINT_TEST_UNSET}/x'}\n");
@@ -255,4 +276,4 @@ TEST_F(PipelineConfigTest, WhatIsTooLargeIsSaidOnce) {
 }
 
 }  // namespace
-}  // namespace stillpoint::test
+}  // namespace stillpoint

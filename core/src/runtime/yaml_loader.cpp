@@ -1,5 +1,6 @@
 #include "stillpoint/runtime/yaml_loader.hpp"
 
+#include <yaml-cpp/depthguard.h>
 #include <yaml-cpp/eventhandler.h>
 #include <yaml-cpp/yaml.h>
 
@@ -24,6 +25,10 @@ namespace fs = std::filesystem;
 // Aliases can nest a node in itself, or double a document at every level.
 constexpr int kMaxDepth = 32;
 constexpr int kMaxNodes = 10000;  // keys are compared with each other
+constexpr std::uintmax_t kMaxBytes = 1 << 20;
+constexpr std::size_t kMaxFiles = 32;  // that extend each other
+
+constexpr const char* kTooLarge = "nested too deeply or too large for a configuration";
 
 /// Turns the nodes of one document into ours.
 class Converter {
@@ -36,8 +41,7 @@ class Converter {
     node.location = at(yaml.Mark());
     node.folder = folder_;
     if (depth > kMaxDepth || ++nodes_ > kMaxNodes) {
-      if (!std::exchange(too_large_, true))
-        faults_.add(node.location, "nested too deeply or too large for a configuration");
+      if (!std::exchange(too_large_, true)) faults_.add(node.location, kTooLarge);
       return node;
     }
     if (yaml.IsScalar()) {
@@ -146,6 +150,9 @@ std::optional<ConfigNode> parse(const std::string& text, Location origin, const 
     }
     faults.add(origin, "more than one YAML document ('---') in a file");
     return std::nullopt;
+  } catch (const YAML::DeepRecursion&) {
+    faults.add(origin, kTooLarge);
+    return std::nullopt;
   } catch (const YAML::Exception& error) {
     if (origin.line > 0 && !error.mark.is_null())
       origin = {origin.file, error.mark.line + 1, error.mark.column + 1};
@@ -159,7 +166,10 @@ std::optional<std::string> read_text(const fs::path& file) {
   if (!fs::is_regular_file(file, error)) return std::nullopt;
   std::ifstream stream(file, std::ios::binary);
   if (!stream) return std::nullopt;
-  return std::string(std::istreambuf_iterator<char>(stream), {});
+  std::string text(std::min(fs::file_size(file, error), kMaxBytes + 1), '\0');
+  stream.read(text.data(), static_cast<std::streamsize>(text.size()));
+  text.resize(static_cast<std::size_t>(stream.gcount()));
+  return text;
 }
 
 Location start_of(const fs::path& file) { return {file.string(), 1, 1}; }
@@ -207,9 +217,17 @@ ConfigNode load_chain(const fs::path& file, const Location& named_at, std::vecto
     return empty_map(start_of(file));
   }
   above.push_back(identity);
+  if (above.size() > kMaxFiles) {
+    faults.add(named_at, "extends goes on over more than " + std::to_string(kMaxFiles) + " files");
+    return empty_map(start_of(file));
+  }
   const std::optional<std::string> text = read_text(file);
   if (!text) {
     faults.add(named_at, "cannot read '" + file.string() + "'");
+    return empty_map(start_of(file));
+  }
+  if (text->size() > kMaxBytes) {
+    faults.add(start_of(file), "is larger than 1 MiB: no configuration");
     return empty_map(start_of(file));
   }
   const fs::path folder = fs::absolute(file).parent_path();
