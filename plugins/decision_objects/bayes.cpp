@@ -8,7 +8,7 @@
 #include "decision_objects/probability.hpp"
 #include "decision_objects/weight_image.hpp"
 
-namespace stillpoint::decision {
+namespace stillpoint::decision_objects {
 namespace {
 
 constexpr double kUnlikelyLogOdds = -2;  // of moving, at which a surface has its full weight
@@ -173,4 +173,4 @@ std::uint8_t Bayes::weight_of(double log_odds) const {
   return static_cast<std::uint8_t>(std::lround(255 * (1 - std::clamp(doubt, 0.0, 1.0))));
 }
 
-}  // namespace stillpoint::decision
+}  // namespace stillpoint::decision_objects

@@ -11,7 +11,7 @@
 #include "stillpoint/contracts/decision.hpp"
 #include "stillpoint/plugin.hpp"
 
-namespace stillpoint::decision {
+namespace stillpoint::decision_objects {
 
 /// What is known of a class before any measurement, and what becomes of it in the map.
 struct ClassPolicy {
@@ -62,4 +62,4 @@ class Bayes final : public Decision {
   MotionField field_;
 };
 
-}  // namespace stillpoint::decision
+}  // namespace stillpoint::decision_objects

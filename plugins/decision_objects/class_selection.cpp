@@ -5,7 +5,7 @@
 #include "stillpoint/error.hpp"
 #include "stillpoint/support/did_you_mean.hpp"
 
-namespace stillpoint::decision {
+namespace stillpoint::decision_objects {
 
 int find_class(const ClassNames& classes, const std::string& name) {
   const auto found = std::ranges::find(classes, name);
@@ -31,4 +31,4 @@ std::bitset<256> select_classes(const ClassNames& classes, const std::vector<std
               "it has: " + join(classes));
 }
 
-}  // namespace stillpoint::decision
+}  // namespace stillpoint::decision_objects

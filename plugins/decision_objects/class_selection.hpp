@@ -8,7 +8,7 @@
 
 #include "stillpoint/class_names.hpp"
 
-namespace stillpoint::decision {
+namespace stillpoint::decision_objects {
 
 /// The id of a class, or -1 when this segmenter does not know it but others do: a pipeline keeps
 /// working when its network is exchanged. Throws Error(kUsage) for a name that is in no list.
@@ -17,4 +17,4 @@ int find_class(const ClassNames& classes, const std::string& name);
 /// Ids of the listed classes. Throws Error(kUsage) when the segmenter knows none of them.
 std::bitset<256> select_classes(const ClassNames& classes, const std::vector<std::string>& names);
 
-}  // namespace stillpoint::decision
+}  // namespace stillpoint::decision_objects

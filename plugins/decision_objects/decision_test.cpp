@@ -8,7 +8,7 @@
 #include "decision_objects/test_frames.hpp"
 #include "stillpoint/error.hpp"
 
-namespace stillpoint::decision {
+namespace stillpoint::decision_objects {
 namespace {
 
 const cv::Rect kNowhere;
@@ -271,4 +271,4 @@ TEST(Bayes, WhoWasMissedForLongIsJudgedByTheClassAgain) {
 }
 
 }  // namespace
-}  // namespace stillpoint::decision
+}  // namespace stillpoint::decision_objects

@@ -4,7 +4,7 @@
 
 #include "decision_objects/probability.hpp"
 
-namespace stillpoint::decision {
+namespace stillpoint::decision_objects {
 
 void GeometryOnly::Options::visit(OptionVisitor& v) {
   field.visit(v);
@@ -22,4 +22,4 @@ StaticWeights GeometryOnly::decide(const Frame& frame, const Segmentation&,
   return weights;
 }
 
-}  // namespace stillpoint::decision
+}  // namespace stillpoint::decision_objects

@@ -4,7 +4,7 @@
 #include "decision_objects/motion_field.hpp"
 #include "stillpoint/contracts/decision.hpp"
 
-namespace stillpoint::decision {
+namespace stillpoint::decision_objects {
 
 class GeometryOnly final : public Decision {
  public:
@@ -25,4 +25,4 @@ class GeometryOnly final : public Decision {
   MotionField field_;
 };
 
-}  // namespace stillpoint::decision
+}  // namespace stillpoint::decision_objects

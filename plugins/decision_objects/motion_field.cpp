@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-namespace stillpoint::decision {
+namespace stillpoint::decision_objects {
 namespace {
 
 constexpr float kMostEvidence = 4.0F;  // log-odds, either way: changes of mind stay possible
@@ -93,4 +93,4 @@ void MotionField::spread(const Frame& frame, const cv::Point2f& pixel, float evi
   }
 }
 
-}  // namespace stillpoint::decision
+}  // namespace stillpoint::decision_objects

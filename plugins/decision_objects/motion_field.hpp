@@ -9,7 +9,7 @@
 #include "stillpoint/contracts/moving_points.hpp"
 #include "stillpoint/options.hpp"
 
-namespace stillpoint::decision {
+namespace stillpoint::decision_objects {
 
 struct MotionFieldOptions {
   double prior = 0.05;   ///< probability that a surface moves of which nothing is known
@@ -47,4 +47,4 @@ class MotionField {
   cv::Mat weight_;    // CV_32FC1, per cell: sum of their weights
 };
 
-}  // namespace stillpoint::decision
+}  // namespace stillpoint::decision_objects

@@ -5,7 +5,7 @@
 
 #include "decision_objects/probability.hpp"
 
-namespace stillpoint::decision {
+namespace stillpoint::decision_objects {
 
 void ObjectMotionOptions::visit(OptionVisitor& v) {
   v("gain", gain,
@@ -88,4 +88,4 @@ void ObjectBeliefs::learn(ObjectBelief& belief, const PointCount& count) const {
   belief.moves = belief.moves ? p > options_.static_below : p > options_.moves_above;
 }
 
-}  // namespace stillpoint::decision
+}  // namespace stillpoint::decision_objects

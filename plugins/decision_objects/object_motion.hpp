@@ -8,7 +8,7 @@
 #include "stillpoint/contracts/segmentation.hpp"
 #include "stillpoint/options.hpp"
 
-namespace stillpoint::decision {
+namespace stillpoint::decision_objects {
 
 struct ObjectMotionOptions {
   double gain = 15.0;         ///< log-odds per share of moving points above or below `share`
@@ -62,4 +62,4 @@ class ObjectBeliefs {
   int updates_ = 0;
 };
 
-}  // namespace stillpoint::decision
+}  // namespace stillpoint::decision_objects

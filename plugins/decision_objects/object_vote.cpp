@@ -3,7 +3,7 @@
 #include "decision_objects/class_selection.hpp"
 #include "decision_objects/weight_image.hpp"
 
-namespace stillpoint::decision {
+namespace stillpoint::decision_objects {
 
 void ObjectVote::Options::visit(OptionVisitor& v) {
   v("labels", labels, {.help = "classes that can move; all else is taken for static"});
@@ -50,4 +50,4 @@ bool ObjectVote::moves(const Segmentation& segmentation, std::size_t object,
   return moved >= options_.min_moving_points && moved >= options_.min_moving_share * points;
 }
 
-}  // namespace stillpoint::decision
+}  // namespace stillpoint::decision_objects

@@ -6,7 +6,7 @@
 #include "stillpoint/contracts/decision.hpp"
 #include "stillpoint/plugin.hpp"
 
-namespace stillpoint::decision {
+namespace stillpoint::decision_objects {
 
 /// The features of what moves are removed; people who stand still keep theirs.
 class ObjectVote final : public Decision {
@@ -37,4 +37,4 @@ class ObjectVote final : public Decision {
   std::bitset<256> labels_;
 };
 
-}  // namespace stillpoint::decision
+}  // namespace stillpoint::decision_objects

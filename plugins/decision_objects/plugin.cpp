@@ -4,7 +4,7 @@
 #include "decision_objects/object_vote.hpp"
 #include "decision_objects/semantic_only.hpp"
 
-using namespace stillpoint::decision;
+using namespace stillpoint::decision_objects;
 
 STILLPOINT_PLUGIN(decision_objects, "0.1.0",
                   stillpoint::provide<stillpoint::Decision, ObjectVote>(

@@ -3,7 +3,7 @@
 #include "decision_objects/class_selection.hpp"
 #include "decision_objects/weight_image.hpp"
 
-namespace stillpoint::decision {
+namespace stillpoint::decision_objects {
 
 void SemanticOnly::Options::visit(OptionVisitor& v) {
   v("labels", labels, {.help = "classes that are not used"});
@@ -27,4 +27,4 @@ StaticWeights SemanticOnly::decide(const Frame& frame, const Segmentation& segme
   return weights;
 }
 
-}  // namespace stillpoint::decision
+}  // namespace stillpoint::decision_objects

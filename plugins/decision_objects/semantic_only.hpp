@@ -6,7 +6,7 @@
 #include "stillpoint/contracts/decision.hpp"
 #include "stillpoint/plugin.hpp"
 
-namespace stillpoint::decision {
+namespace stillpoint::decision_objects {
 
 class SemanticOnly final : public Decision {
  public:
@@ -28,4 +28,4 @@ class SemanticOnly final : public Decision {
   std::bitset<256> labels_;
 };
 
-}  // namespace stillpoint::decision
+}  // namespace stillpoint::decision_objects

@@ -5,7 +5,7 @@
 #include "stillpoint/plugin.hpp"
 #include "stillpoint/support/objects.hpp"
 
-namespace stillpoint::decision {
+namespace stillpoint::decision_objects {
 
 inline const cv::Rect kPerson(200, 100, 120, 300);  // px
 inline constexpr float kPersonDepth = 2.0F;         // m
@@ -70,4 +70,4 @@ inline int weight_at(const cv::Mat& weights, int x, int y) {
   return StaticWeights::at(weights, static_cast<float>(x), static_cast<float>(y));
 }
 
-}  // namespace stillpoint::decision
+}  // namespace stillpoint::decision_objects

@@ -2,7 +2,7 @@
 
 #include <opencv2/imgproc.hpp>
 
-namespace stillpoint::decision {
+namespace stillpoint::decision_objects {
 
 ObjectMask mask_of(const Segmentation& segmentation, std::size_t index, int margin,
                    const cv::Mat& except) {
@@ -30,4 +30,4 @@ void lower(cv::Mat& weights, cv::Size size, const ObjectMask& object, std::uint8
   lowered.copyTo(part, object.mask);
 }
 
-}  // namespace stillpoint::decision
+}  // namespace stillpoint::decision_objects

@@ -5,7 +5,7 @@
 
 #include "stillpoint/contracts/segmentation.hpp"
 
-namespace stillpoint::decision {
+namespace stillpoint::decision_objects {
 
 /// Object `index` of a segmentation, cut out.
 struct ObjectMask {
@@ -22,4 +22,4 @@ ObjectMask mask_of(const Segmentation& segmentation, std::size_t index, int marg
 /// Lowers the weights under the mask to at most `weight`. An empty image is full of 255.
 void lower(cv::Mat& weights, cv::Size size, const ObjectMask& object, std::uint8_t weight);
 
-}  // namespace stillpoint::decision
+}  // namespace stillpoint::decision_objects

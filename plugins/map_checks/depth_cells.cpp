@@ -4,7 +4,7 @@
 #include <limits>
 #include <opencv2/imgproc.hpp>
 
-namespace stillpoint {
+namespace stillpoint::map_checks {
 namespace {
 
 constexpr float kSurfaceEdge = 0.06F;  // of the depth, between neighbouring cells of one surface
@@ -67,4 +67,4 @@ cv::Mat surface_normals(const cv::Mat& cells, const CellCamera& camera) {
   return normals;
 }
 
-}  // namespace stillpoint
+}  // namespace stillpoint::map_checks

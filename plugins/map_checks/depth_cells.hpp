@@ -3,7 +3,7 @@
 
 #include <stillpoint/sdk.hpp>
 
-namespace stillpoint {
+namespace stillpoint::map_checks {
 
 inline constexpr int kCell = 4;  // px, the side of a cell
 
@@ -28,4 +28,4 @@ cv::Mat depth_bounds(const cv::Mat& cells);
 /// CV_32FC3: unit normals in the camera frame; 0 at depth edges and where depth is missing.
 cv::Mat surface_normals(const cv::Mat& cells, const CellCamera& camera);
 
-}  // namespace stillpoint
+}  // namespace stillpoint::map_checks

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <vector>
 
-namespace stillpoint {
+namespace stillpoint::map_checks {
 namespace {
 
 constexpr double kLeastOverlap = 0.1;
@@ -65,4 +65,4 @@ MapEvidence DepthConsistency::check(const Frame& frame, std::span<const Pose> gu
                          options_.verdict)};
 }
 
-}  // namespace stillpoint
+}  // namespace stillpoint::map_checks

@@ -4,7 +4,7 @@
 #include "map_checks/surface_verdicts.hpp"
 #include "map_checks/view_alignment.hpp"
 
-namespace stillpoint {
+namespace stillpoint::map_checks {
 
 /// Nearer than a surface that was seen through here: something has come in. Where it was, from
 /// another viewpoint or after a second: it stands still. Needs neither labels nor a motion that
@@ -31,4 +31,4 @@ class DepthConsistency final : public MapChecker {
   ViewMemory memory_;
 };
 
-}  // namespace stillpoint
+}  // namespace stillpoint::map_checks

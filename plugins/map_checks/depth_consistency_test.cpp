@@ -7,7 +7,7 @@
 
 #include "map_checks/test_room.hpp"
 
-namespace stillpoint {
+namespace stillpoint::map_checks {
 namespace {
 
 constexpr double kRate = 10;  // frames per second
@@ -209,4 +209,4 @@ TEST(ViewAlignment, FindsThePoseToMillimetres) {
 }
 
 }  // namespace
-}  // namespace stillpoint
+}  // namespace stillpoint::map_checks

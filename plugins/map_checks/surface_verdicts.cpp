@@ -8,7 +8,7 @@
 #include <opencv2/imgproc.hpp>
 #include <vector>
 
-namespace stillpoint {
+namespace stillpoint::map_checks {
 namespace {
 
 constexpr int kLanes = cv::v_float32::nlanes;
@@ -273,4 +273,4 @@ cv::Mat judge_surfaces(const cv::Mat& depth, const CellCamera& camera,
   return log_odds;
 }
 
-}  // namespace stillpoint
+}  // namespace stillpoint::map_checks

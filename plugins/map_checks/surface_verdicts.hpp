@@ -5,7 +5,7 @@
 
 #include "map_checks/view_memory.hpp"
 
-namespace stillpoint {
+namespace stillpoint::map_checks {
 
 struct VerdictOptions {
   double margin = 0.04;         ///< m, by which something must stand before what was seen
@@ -29,4 +29,4 @@ cv::Mat judge_surfaces(const cv::Mat& depth, const CellCamera& camera,
                        const Pose& world_from_camera, double time,
                        std::span<const View* const> views, const VerdictOptions& options);
 
-}  // namespace stillpoint
+}  // namespace stillpoint::map_checks

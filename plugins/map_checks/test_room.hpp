@@ -7,7 +7,7 @@
 #include <opencv2/core.hpp>
 #include <vector>
 
-namespace stillpoint {
+namespace stillpoint::map_checks {
 
 /// In the world, metres: x right, y down, z forward as seen by the first camera.
 struct TestBox {
@@ -85,4 +85,4 @@ class TestRoom {
   std::shared_ptr<const Camera> camera_;
 };
 
-}  // namespace stillpoint
+}  // namespace stillpoint::map_checks

@@ -5,7 +5,7 @@
 #include <array>
 #include <cmath>
 
-namespace stillpoint {
+namespace stillpoint::map_checks {
 namespace {
 
 constexpr int kStep = 4;        // cells between the points used
@@ -159,4 +159,4 @@ ViewAlignment align(const cv::Mat& depth, const CellCamera& camera, std::span<co
   return {*best, agreement(aligner.compare(*best))};
 }
 
-}  // namespace stillpoint
+}  // namespace stillpoint::map_checks

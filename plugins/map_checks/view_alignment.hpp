@@ -6,7 +6,7 @@
 
 #include "map_checks/view_memory.hpp"
 
-namespace stillpoint {
+namespace stillpoint::map_checks {
 
 /// Where a depth image lies among the views.
 struct ViewAlignment {
@@ -22,4 +22,4 @@ struct ViewAlignment {
 ViewAlignment align(const cv::Mat& depth, const CellCamera& camera, std::span<const Pose> guesses,
                     std::span<const View* const> views);
 
-}  // namespace stillpoint
+}  // namespace stillpoint::map_checks

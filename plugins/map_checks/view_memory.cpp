@@ -5,7 +5,7 @@
 #include <numbers>
 #include <opencv2/imgproc.hpp>
 
-namespace stillpoint {
+namespace stillpoint::map_checks {
 namespace {
 
 constexpr int kUsed = 128;  // weight from which a surface was used
@@ -98,4 +98,4 @@ void ViewMemory::drop_one() {
   views_.erase(views_.begin() + static_cast<std::ptrdiff_t>(spare));
 }
 
-}  // namespace stillpoint
+}  // namespace stillpoint::map_checks

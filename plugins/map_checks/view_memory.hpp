@@ -5,7 +5,7 @@
 
 #include "map_checks/depth_cells.hpp"
 
-namespace stillpoint {
+namespace stillpoint::map_checks {
 
 /// How far a surface was trusted when it was seen.
 enum Trust : int {
@@ -54,4 +54,4 @@ class ViewMemory {
   std::vector<View> views_;  // newest first
 };
 
-}  // namespace stillpoint
+}  // namespace stillpoint::map_checks

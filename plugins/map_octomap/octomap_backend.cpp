@@ -4,8 +4,19 @@
 #include <cmath>
 #include <iterator>
 
-namespace stillpoint {
+namespace stillpoint::map_octomap {
 namespace {
+
+using semantic_octree::CostMap;
+using semantic_octree::floor_of;
+using semantic_octree::project;
+using semantic_octree::ScanBrick;
+using semantic_octree::ScanOptions;
+using semantic_octree::with_colors;
+using semantic_octree::write_cost_map;
+using semantic_octree::write_occupancy;
+using semantic_octree::write_octree;
+using semantic_octree::write_point_cloud;
 
 constexpr float kAlmost = 0.01F;   // log-odds below being occupied
 constexpr long kWidestMargin = 3;  // voxels: their number grows with its third power
@@ -202,4 +213,4 @@ void OctomapBackend::fuse_again(std::span<const std::size_t> entries) {
   }
 }
 
-}  // namespace stillpoint
+}  // namespace stillpoint::map_octomap

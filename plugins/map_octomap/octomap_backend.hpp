@@ -14,7 +14,15 @@
 #include "semantic_octree/semantic_octree.hpp"
 #include "stillpoint/sdk.hpp"
 
-namespace stillpoint {
+namespace stillpoint::map_octomap {
+
+using semantic_octree::BrickKey;
+using semantic_octree::CostMapOptions;
+using semantic_octree::MapClasses;
+using semantic_octree::OccupancyModel;
+using semantic_octree::occupied_points;
+using semantic_octree::ScanBricks;
+using semantic_octree::SemanticOctree;
 
 /// The map is a function of its key frames, their poses and their order: where some have moved, all
 /// that was ever seen there is fused again, and the rest stays as it is.
@@ -83,4 +91,4 @@ class OctomapBackend final : public MapBackend {
   std::map<KeyFrameId, std::size_t> index_;
 };
 
-}  // namespace stillpoint
+}  // namespace stillpoint::map_octomap

@@ -18,8 +18,13 @@
 #include "semantic_octree/test_room.hpp"
 #include "support/recording_writer.hpp"
 
-namespace stillpoint {
+namespace stillpoint::map_octomap {
 namespace {
+
+using semantic_octree::ClassBelief;
+using semantic_octree::looking;
+using semantic_octree::SemanticVoxel;
+using semantic_octree::TestRoom;
 
 namespace fs = std::filesystem;
 using Options = OctomapBackend::Options;
@@ -340,4 +345,4 @@ TEST(ClassBelief, ItCanChange) {
 }
 
 }  // namespace
-}  // namespace stillpoint
+}  // namespace stillpoint::map_octomap

@@ -1,5 +1,6 @@
 #include "map_octomap/octomap_backend.hpp"
 
-STILLPOINT_PLUGIN(map_octomap, "0.1.0",
-                  stillpoint::provide<stillpoint::MapBackend, stillpoint::OctomapBackend>(
-                      "octomap", "dense semantic octree that follows its key frames (OctoMap)"));
+STILLPOINT_PLUGIN(
+    map_octomap, "0.1.0",
+    stillpoint::provide<stillpoint::MapBackend, stillpoint::map_octomap::OctomapBackend>(
+        "octomap", "dense semantic octree that follows its key frames (OctoMap)"));

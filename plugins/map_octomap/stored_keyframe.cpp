@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <utility>
 
-namespace stillpoint {
+namespace stillpoint::map_octomap {
 namespace {
 
 constexpr float kDepthSteps = 5000;  // per metre, as in TUM's recordings
@@ -111,4 +111,4 @@ DenseKeyFrame StoredKeyFrame::unpack(const Pose& world_from_camera) const {
           .world_from_camera = world_from_camera};
 }
 
-}  // namespace stillpoint
+}  // namespace stillpoint::map_octomap

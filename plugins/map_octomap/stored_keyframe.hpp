@@ -6,7 +6,7 @@
 
 #include "stillpoint/contracts/map_backend.hpp"
 
-namespace stillpoint {
+namespace stillpoint::map_octomap {
 
 /// Every `stride`-th pixel of a key frame in both directions, compressed without loss but for
 /// depth, which is rounded to 0.2 mm and ends at 13.1 m.
@@ -27,4 +27,4 @@ class StoredKeyFrame {
   std::string packed_;
 };
 
-}  // namespace stillpoint
+}  // namespace stillpoint::map_octomap

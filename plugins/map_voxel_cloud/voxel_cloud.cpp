@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-namespace stillpoint {
+namespace stillpoint::map_voxel_cloud {
 namespace {
 
 constexpr int kBits = 21;                    // of a key, per axis
@@ -39,4 +39,4 @@ std::vector<VoxelPoint> VoxelCloud::points() const {
   return points;
 }
 
-}  // namespace stillpoint
+}  // namespace stillpoint::map_voxel_cloud

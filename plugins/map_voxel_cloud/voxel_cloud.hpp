@@ -10,7 +10,7 @@
 #include "stillpoint/support/majority_vote.hpp"
 #include "stillpoint/support/point_cloud_file.hpp"
 
-namespace stillpoint {
+namespace stillpoint::map_voxel_cloud {
 
 /// A point that stands for several.
 struct VoxelPoint {
@@ -45,4 +45,4 @@ class VoxelCloud {
   std::vector<Sum> sums_;
 };
 
-}  // namespace stillpoint
+}  // namespace stillpoint::map_voxel_cloud

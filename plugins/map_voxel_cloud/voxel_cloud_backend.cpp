@@ -1,7 +1,7 @@
 #include "map_voxel_cloud/voxel_cloud_backend.hpp"
 #include "stillpoint/support/point_cloud_file.hpp"
 
-namespace stillpoint {
+namespace stillpoint::map_voxel_cloud {
 
 void VoxelCloudBackend::Options::visit(OptionVisitor& v) {
   v("resolution", resolution, {.min = 0.005, .max = 1, .unit = "m", .help = "edge of a voxel"});
@@ -65,4 +65,4 @@ std::vector<VoxelPoint> VoxelCloudBackend::points() const {
   return points;
 }
 
-}  // namespace stillpoint
+}  // namespace stillpoint::map_voxel_cloud

@@ -8,7 +8,7 @@
 #include "map_voxel_cloud/voxel_cloud.hpp"
 #include "stillpoint/sdk.hpp"
 
-namespace stillpoint {
+namespace stillpoint::map_voxel_cloud {
 
 /// Every key frame keeps what it saw as a cloud of its own, in its camera's frame; they are put
 /// together when the map is asked for. Moving key frames costs nothing.
@@ -45,4 +45,4 @@ class VoxelCloudBackend final : public MapBackend {
   std::map<KeyFrameId, Entry> entries_;
 };
 
-}  // namespace stillpoint
+}  // namespace stillpoint::map_voxel_cloud

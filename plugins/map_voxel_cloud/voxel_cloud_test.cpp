@@ -12,7 +12,7 @@
 
 #include "map_voxel_cloud/voxel_cloud_backend.hpp"
 
-namespace stillpoint {
+namespace stillpoint::map_voxel_cloud {
 namespace {
 
 namespace fs = std::filesystem;
@@ -134,4 +134,4 @@ TEST(VoxelCloudBackend, WritesItsPoints) {
 }
 
 }  // namespace
-}  // namespace stillpoint
+}  // namespace stillpoint::map_voxel_cloud

@@ -8,12 +8,8 @@
 #include "moving_checks/rgbd_checker.hpp"
 #include "moving_checks/test_scene.hpp"
 
-namespace stillpoint {
+namespace stillpoint::moving_checks {
 namespace {
-
-using moving::Board;
-using moving::camera_at;
-using moving::TestScene;
 
 std::unique_ptr<MovingChecker> make(const std::string& type) {
   StageContext context;
@@ -174,4 +170,4 @@ TEST(LkEpipolar, DecidesOnParallaxItIsToldToIgnore) {
 }
 
 }  // namespace
-}  // namespace stillpoint
+}  // namespace stillpoint::moving_checks

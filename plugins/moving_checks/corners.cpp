@@ -4,7 +4,7 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
-namespace stillpoint::moving {
+namespace stillpoint::moving_checks {
 namespace {
 
 constexpr int kBlock = 3;  // px, in which a corner's gradients are summed
@@ -114,4 +114,4 @@ Corners find_corners(const cv::Mat& gray, const cv::Mat& half, std::span<const c
   return corners;
 }
 
-}  // namespace stillpoint::moving
+}  // namespace stillpoint::moving_checks

@@ -8,7 +8,7 @@
 
 #include "stillpoint/options.hpp"
 
-namespace stillpoint::moving {
+namespace stillpoint::moving_checks {
 
 struct CornerOptions {
   enum class Method { kGrid, kShiTomasi } corners = Method::kGrid;
@@ -33,4 +33,4 @@ struct Corners {
 Corners find_corners(const cv::Mat& gray, const cv::Mat& half, std::span<const cv::Point2f> kept,
                      double border, const CornerOptions& options);
 
-}  // namespace stillpoint::moving
+}  // namespace stillpoint::moving_checks

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-namespace stillpoint::moving {
+namespace stillpoint::moving_checks {
 namespace {
 
 constexpr double kNoiseMultiple = 3;  // what noise alone may make of a second difference
@@ -72,4 +72,4 @@ Surface surface_at(const cv::Mat& depth, const cv::Point2f& pixel, double noise,
   return {Surface::Kind::kMeasured, middle};
 }
 
-}  // namespace stillpoint::moving
+}  // namespace stillpoint::moving_checks

@@ -6,7 +6,7 @@
 
 #include "stillpoint/options.hpp"
 
-namespace stillpoint::moving {
+namespace stillpoint::moving_checks {
 
 struct SurfaceOptions {
   int edge_radius = 6;      ///< px
@@ -29,4 +29,4 @@ struct Surface {
 Surface surface_at(const cv::Mat& depth, const cv::Point2f& pixel, double noise,
                    const SurfaceOptions& options);
 
-}  // namespace stillpoint::moving
+}  // namespace stillpoint::moving_checks

@@ -4,7 +4,7 @@
 
 #include <limits>
 
-namespace stillpoint::moving {
+namespace stillpoint::moving_checks {
 namespace {
 
 using Kind = Surface::Kind;
@@ -53,4 +53,4 @@ TEST(SurfaceAt, WithoutMeasurementsThereIsNone) {
 }
 
 }  // namespace
-}  // namespace stillpoint::moving
+}  // namespace stillpoint::moving_checks

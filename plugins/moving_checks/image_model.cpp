@@ -5,7 +5,7 @@
 #include <limits>
 #include <opencv2/calib3d.hpp>
 
-namespace stillpoint::moving {
+namespace stillpoint::moving_checks {
 namespace {
 
 // OpenCV gives an empty matrix, several stacked ones, or throws when the matches determine none.
@@ -90,4 +90,4 @@ double transfer_distance(const cv::Matx33d& homography, const cv::Point2f& previ
   return std::hypot(moved[0] / moved[2] - current.x, moved[1] / moved[2] - current.y);
 }
 
-}  // namespace stillpoint::moving
+}  // namespace stillpoint::moving_checks

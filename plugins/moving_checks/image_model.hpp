@@ -9,7 +9,7 @@
 
 #include "stillpoint/options.hpp"
 
-namespace stillpoint::moving {
+namespace stillpoint::moving_checks {
 
 using Points = std::vector<cv::Point2f>;
 
@@ -48,4 +48,4 @@ double epipolar_distance(const cv::Matx33d& fundamental, const cv::Point2f& prev
 double transfer_distance(const cv::Matx33d& homography, const cv::Point2f& previous,
                          const cv::Point2f& current);
 
-}  // namespace stillpoint::moving
+}  // namespace stillpoint::moving_checks

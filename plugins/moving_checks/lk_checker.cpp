@@ -4,11 +4,7 @@
 #include <cmath>
 #include <limits>
 
-namespace stillpoint {
-
-using moving::ImageModel;
-using moving::Match;
-using moving::Points;
+namespace stillpoint::moving_checks {
 
 namespace {
 
@@ -58,7 +54,7 @@ MovingPoints judged(const std::vector<Match>& matches, double epsilon, Distance 
 MovingPoints judged_by_homography(const std::vector<Match>& matches, double epsilon,
                                   const ImageModel& model) {
   return judged(matches, epsilon, [&](const cv::Point2f& previous, const cv::Point2f& current) {
-    return moving::transfer_distance(model.matrix, previous, current);
+    return transfer_distance(model.matrix, previous, current);
   });
 }
 
@@ -72,7 +68,7 @@ double parallax(const Pairs& inliers, const ImageModel& homography, double share
   std::vector<double> distances;
   for (std::size_t i = 0; i < inliers.previous.size(); ++i)
     distances.push_back(
-        moving::transfer_distance(homography.matrix, inliers.previous[i], inliers.current[i]));
+        transfer_distance(homography.matrix, inliers.previous[i], inliers.current[i]));
   const auto below = static_cast<std::size_t>(static_cast<double>(distances.size()) * (1 - share));
   const auto nth = distances.begin() + static_cast<std::ptrdiff_t>(below);
   std::nth_element(distances.begin(), nth, distances.end());
@@ -110,7 +106,7 @@ void EpipolarChecker::Options::visit(OptionVisitor& v) {
            {.help = "decide nothing, judge by the homography, or as the paper does not ask"});
 }
 
-EpipolarChecker::EpipolarChecker(const Options& options, moving::Consensus consensus,
+EpipolarChecker::EpipolarChecker(const Options& options, Consensus consensus,
                                  const StageContext& context)
     : options_(options),
       consensus_(consensus),
@@ -122,20 +118,19 @@ MovingPoints EpipolarChecker::check(const Frame& previous, const Frame& current,
   const std::vector<Match> matches = follower_.follow(previous, current);
   if (matches.size() < static_cast<std::size_t>(options_.lk.min_matches)) return undecided(matches);
   const Pairs pairs = pairs_of(matches);
-  const auto model = moving::find_fundamental(pairs.previous, pairs.current, consensus_,
-                                              options_.lk.consensus, seed_);
+  const auto model =
+      find_fundamental(pairs.previous, pairs.current, consensus_, options_.lk.consensus, seed_);
   if (!model || !agreed(*model, matches, options_.lk.min_inlier_share)) return undecided(matches);
   if (options_.when_degenerate != Degenerate::kIgnore) {
     const Pairs inliers = inliers_of(pairs, *model);
-    const auto plane =
-        moving::find_homography(inliers.previous, inliers.current, options_.lk.consensus);
+    const auto plane = find_homography(inliers.previous, inliers.current, options_.lk.consensus);
     if (plane && parallax(inliers, *plane, options_.parallax_share) < options_.min_parallax) {
       if (options_.when_degenerate == Degenerate::kUnreliable) return undecided(matches);
       return judged_by_homography(matches, options_.epsilon, *plane);
     }
   }
   return judged(matches, options_.epsilon, [&](const cv::Point2f& from, const cv::Point2f& to) {
-    return moving::epipolar_distance(model->matrix, from, to);
+    return epipolar_distance(model->matrix, from, to);
   });
 }
 
@@ -150,9 +145,9 @@ MovingPoints LkHomography::check(const Frame& previous, const Frame& current,
   const std::vector<Match> matches = follower_.follow(previous, current);
   if (matches.size() < static_cast<std::size_t>(options_.lk.min_matches)) return undecided(matches);
   const Pairs pairs = pairs_of(matches);
-  const auto model = moving::find_homography(pairs.previous, pairs.current, options_.lk.consensus);
+  const auto model = find_homography(pairs.previous, pairs.current, options_.lk.consensus);
   if (!model || !agreed(*model, matches, options_.lk.min_inlier_share)) return undecided(matches);
   return judged_by_homography(matches, options_.epsilon, *model);
 }
 
-}  // namespace stillpoint
+}  // namespace stillpoint::moving_checks

@@ -7,12 +7,12 @@
 #include "moving_checks/image_model.hpp"
 #include "moving_checks/point_follower.hpp"
 
-namespace stillpoint {
+namespace stillpoint::moving_checks {
 
 /// What the checks from images alone have in common: matches, and a model that most agree on.
 struct LkOptions {
-  moving::ConsensusOptions consensus;
-  moving::FollowOptions follow;
+  ConsensusOptions consensus;
+  FollowOptions follow;
   int min_matches = 30;
   double min_inlier_share = 0.5;
 
@@ -39,31 +39,31 @@ class EpipolarChecker : public MovingChecker {
   MovingPoints check(const Frame& previous, const Frame& current, const TrackingHistory&) override;
 
  protected:
-  EpipolarChecker(const Options& options, moving::Consensus consensus, const StageContext& context);
+  EpipolarChecker(const Options& options, Consensus consensus, const StageContext& context);
 
  private:
   Options options_;
-  moving::Consensus consensus_;
+  Consensus consensus_;
   int seed_;
-  moving::PointFollower follower_;
+  PointFollower follower_;
 };
 
 class LkEpipolar final : public EpipolarChecker {
  public:
   LkEpipolar(const Options& options, const StageContext& context)
-      : EpipolarChecker(options, moving::Consensus::kRansac, context) {}
+      : EpipolarChecker(options, Consensus::kRansac, context) {}
 };
 
 class LkUsac final : public EpipolarChecker {
  public:
   LkUsac(const Options& options, const StageContext& context)
-      : EpipolarChecker(options, moving::Consensus::kUsac, context) {}
+      : EpipolarChecker(options, Consensus::kUsac, context) {}
 };
 
 class LkMagsac final : public EpipolarChecker {
  public:
   LkMagsac(const Options& options, const StageContext& context)
-      : EpipolarChecker(options, moving::Consensus::kMagsac, context) {}
+      : EpipolarChecker(options, Consensus::kMagsac, context) {}
 };
 
 /// One homography for everything that stands still: right for a camera that only turns or sees one
@@ -83,7 +83,7 @@ class LkHomography final : public MovingChecker {
 
  private:
   Options options_;
-  moving::PointFollower follower_;
+  PointFollower follower_;
 };
 
-}  // namespace stillpoint
+}  // namespace stillpoint::moving_checks

@@ -6,15 +6,16 @@
 using stillpoint::MovingChecker;
 using stillpoint::provide;
 
-STILLPOINT_PLUGIN(
-    moving_checks, "0.1.0",
-    provide<MovingChecker, stillpoint::LkEpipolar>(
-        "lk_epipolar", "optical flow and epipolar distance (DS-SLAM, Algorithm 1)"),
-    provide<MovingChecker, stillpoint::LkUsac>("lk_usac",
-                                               "lk_epipolar with the fundamental matrix of USAC"),
-    provide<MovingChecker, stillpoint::LkMagsac>(
-        "lk_magsac", "lk_epipolar with the fundamental matrix of MAGSAC"),
-    provide<MovingChecker, stillpoint::LkHomography>(
-        "lk_homography", "optical flow and one homography for everything that stands still"),
-    provide<MovingChecker, stillpoint::RgbdChecker>(
-        "rgbd_reprojection", "optical flow and depth against the rigid motion of the camera"));
+STILLPOINT_PLUGIN(moving_checks, "0.1.0",
+                  provide<MovingChecker, stillpoint::moving_checks::LkEpipolar>(
+                      "lk_epipolar", "optical flow and epipolar distance (DS-SLAM, Algorithm 1)"),
+                  provide<MovingChecker, stillpoint::moving_checks::LkUsac>(
+                      "lk_usac", "lk_epipolar with the fundamental matrix of USAC"),
+                  provide<MovingChecker, stillpoint::moving_checks::LkMagsac>(
+                      "lk_magsac", "lk_epipolar with the fundamental matrix of MAGSAC"),
+                  provide<MovingChecker, stillpoint::moving_checks::LkHomography>(
+                      "lk_homography",
+                      "optical flow and one homography for everything that stands still"),
+                  provide<MovingChecker, stillpoint::moving_checks::RgbdChecker>(
+                      "rgbd_reprojection",
+                      "optical flow and depth against the rigid motion of the camera"));

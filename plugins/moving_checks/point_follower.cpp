@@ -6,7 +6,7 @@
 #include <opencv2/video/tracking.hpp>
 #include <utility>
 
-namespace stillpoint::moving {
+namespace stillpoint::moving_checks {
 namespace {
 
 bool far_from_edge(const cv::Mat& image, const cv::Point2f& p, double edge) {
@@ -128,4 +128,4 @@ std::vector<std::optional<cv::Point2f>> PointFollower::follow_from(
   return result;
 }
 
-}  // namespace stillpoint::moving
+}  // namespace stillpoint::moving_checks

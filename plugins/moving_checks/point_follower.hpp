@@ -10,7 +10,7 @@
 #include "moving_checks/corners.hpp"
 #include "stillpoint/contracts/frame.hpp"
 
-namespace stillpoint::moving {
+namespace stillpoint::moving_checks {
 
 struct FollowOptions {
   CornerOptions corners;
@@ -63,4 +63,4 @@ class PointFollower {
   Pyramid previous_, current_;  // of the last call
 };
 
-}  // namespace stillpoint::moving
+}  // namespace stillpoint::moving_checks

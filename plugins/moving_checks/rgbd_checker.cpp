@@ -8,10 +8,7 @@
 
 #include "stillpoint/support/median.hpp"
 
-namespace stillpoint {
-
-using moving::Match;
-using moving::Surface;
+namespace stillpoint::moving_checks {
 
 namespace {
 
@@ -111,7 +108,7 @@ RigidNoise RgbdChecker::noise_of(const Camera& camera) const {
   return {.pixel = options_.pixel_noise, .inverse_depth = kFollowedNoise * camera.surface_noise};
 }
 
-moving::Surface RgbdChecker::surface_in(const Frame& frame, const cv::Point2f& pixel) const {
+Surface RgbdChecker::surface_in(const Frame& frame, const cv::Point2f& pixel) const {
   return surface_at(frame.depth, pixel, noise_of(*frame.camera).inverse_depth, options_.surface);
 }
 
@@ -260,4 +257,4 @@ void RgbdChecker::remember(const std::vector<Observation>& observations, const M
   memory_ = std::move(memory);
 }
 
-}  // namespace stillpoint
+}  // namespace stillpoint::moving_checks

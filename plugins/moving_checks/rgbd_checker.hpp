@@ -10,7 +10,7 @@
 #include "moving_checks/point_follower.hpp"
 #include "stillpoint/support/rigid_motion.hpp"
 
-namespace stillpoint {
+namespace stillpoint::moving_checks {
 
 /// `rgbd_reprojection`. Knows the scale of everything, so that pure rotation, planes and a standing
 /// camera are no special cases. Remembers from call to call which points stood still: what has been
@@ -21,8 +21,8 @@ class RgbdChecker final : public MovingChecker {
     double epsilon = 1.0;         ///< px
     double noise_multiple = 4.0;  ///< of the median residual of inliers
     double pixel_noise = 0.4;     ///< px
-    moving::SurfaceOptions surface;
-    moving::FollowOptions follow;
+    SurfaceOptions surface;
+    FollowOptions follow;
     int samples = 60;
     int min_matches = 20;
     double min_agreement = 0.4;
@@ -40,8 +40,8 @@ class RgbdChecker final : public MovingChecker {
  private:
   // A match with the surfaces that it lies on.
   struct Observation {
-    moving::Match match;
-    moving::Surface from, to;
+    Match match;
+    Surface from, to;
     double trust = 0.5;   // 0 moved … 1 stood still
     bool judged = false;  // it is known well enough where the camera's motion puts it
   };
@@ -55,7 +55,7 @@ class RgbdChecker final : public MovingChecker {
   };
 
   RigidNoise noise_of(const Camera& camera) const;
-  moving::Surface surface_in(const Frame& frame, const cv::Point2f& pixel) const;
+  Surface surface_in(const Frame& frame, const cv::Point2f& pixel) const;
   std::vector<Observation> observe(const Frame& previous, const Frame& current);
   void inherit_trust(std::vector<Observation>& observations) const;
   double inherited_trust(const Observation& observation) const;
@@ -70,8 +70,8 @@ class RgbdChecker final : public MovingChecker {
 
   Options options_;
   std::uint64_t seed_;
-  moving::PointFollower follower_;
+  PointFollower follower_;
   Memory memory_;
 };
 
-}  // namespace stillpoint
+}  // namespace stillpoint::moving_checks

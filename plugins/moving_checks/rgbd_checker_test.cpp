@@ -6,12 +6,8 @@
 
 #include "moving_checks/test_scene.hpp"
 
-namespace stillpoint {
+namespace stillpoint::moving_checks {
 namespace {
-
-using moving::Board;
-using moving::camera_at;
-using moving::TestScene;
 
 struct Counts {
   int on_board = 0, found = 0, elsewhere = 0, wrong = 0;
@@ -189,4 +185,4 @@ TEST_F(RgbdCheckerTest, DecidesNothingWhenNothingAgrees) {
 }
 
 }  // namespace
-}  // namespace stillpoint
+}  // namespace stillpoint::moving_checks

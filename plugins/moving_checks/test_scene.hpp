@@ -10,7 +10,7 @@
 #include "stillpoint/contracts/frame.hpp"
 #include "stillpoint/pose_math.hpp"
 
-namespace stillpoint::moving {
+namespace stillpoint::moving_checks {
 
 struct Board {
   Eigen::Vector3d centre;        // metres; z is its distance from the world's origin
@@ -105,4 +105,4 @@ inline Pose camera_at(double x, double y, double z, double pan = 0, double tilt 
   return pose;
 }
 
-}  // namespace stillpoint::moving
+}  // namespace stillpoint::moving_checks

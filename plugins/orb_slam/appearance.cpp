@@ -4,7 +4,7 @@
 #include <opencv2/core/eigen.hpp>
 #include <optional>
 
-namespace stillpoint::orb {
+namespace stillpoint::orb_slam {
 namespace {
 
 constexpr int kMinAppearanceMatches = 15;  // to try a pose
@@ -67,4 +67,4 @@ int locate_by_appearance(ObservedFrame& frame, std::span<const Target> targets,
   return inliers;
 }
 
-}  // namespace stillpoint::orb
+}  // namespace stillpoint::orb_slam

@@ -5,7 +5,7 @@
 
 #include "orb_slam/targets.hpp"
 
-namespace stillpoint::orb {
+namespace stillpoint::orb_slam {
 
 /// Matches targets by their descriptors alone, finds the pose by perspective-n-point with RANSAC,
 /// then searches the same targets again around the places that this pose predicts. On success the
@@ -13,4 +13,4 @@ namespace stillpoint::orb {
 int locate_by_appearance(ObservedFrame& frame, std::span<const Target> targets,
                          const SparseMap& map);
 
-}  // namespace stillpoint::orb
+}  // namespace stillpoint::orb_slam

@@ -4,7 +4,7 @@
 
 #include "orb_slam/test_world.hpp"
 
-namespace stillpoint::orb {
+namespace stillpoint::orb_slam {
 namespace {
 
 class AppearanceTest : public testing::Test {
@@ -93,4 +93,4 @@ TEST_F(AppearanceTest, RepeatsToTheBit) {
 }
 
 }  // namespace
-}  // namespace stillpoint::orb
+}  // namespace stillpoint::orb_slam

@@ -8,7 +8,7 @@
 #include "orb_slam/landmark_geometry.hpp"
 #include "orb_slam/scale_pyramid.hpp"
 
-namespace stillpoint::orb {
+namespace stillpoint::orb_slam {
 namespace {
 
 constexpr std::size_t kMinLandmarks = 20;  // that a key frame must see to be moved by them
@@ -134,4 +134,4 @@ std::optional<MapCorrection> adjust_all(const SparseMap& map, int max_iterations
                        .landmarks = problem.landmarks()};
 }
 
-}  // namespace stillpoint::orb
+}  // namespace stillpoint::orb_slam

@@ -8,7 +8,7 @@
 #include "stillpoint/contracts/map_correction.hpp"
 #include "stillpoint/contracts/sparse_map.hpp"
 
-namespace stillpoint::orb {
+namespace stillpoint::orb_slam {
 
 struct BundleOptions {
   int max_keyframes = 10;  ///< adjusted locally; others that see the same landmarks stay fixed
@@ -26,4 +26,4 @@ std::vector<LandmarkId> adjust_locally(MapEdit& edit, KeyFrameId centre,
 std::optional<MapCorrection> adjust_all(const SparseMap& map, int max_iterations,
                                         const std::stop_token& hurry);
 
-}  // namespace stillpoint::orb
+}  // namespace stillpoint::orb_slam

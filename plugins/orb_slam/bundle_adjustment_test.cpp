@@ -4,7 +4,7 @@
 
 #include "orb_slam/test_world.hpp"
 
-namespace stillpoint::orb {
+namespace stillpoint::orb_slam {
 namespace {
 
 constexpr BundleOptions kAll{.max_keyframes = 20, .max_iterations = 20};
@@ -200,4 +200,4 @@ TEST_F(BundleAdjustmentTest, KeyFrameWithoutLandmarksIsNoCrash) {
 }
 
 }  // namespace
-}  // namespace stillpoint::orb
+}  // namespace stillpoint::orb_slam

@@ -10,7 +10,7 @@
 
 #include "orb_slam/pose_solver.hpp"
 
-namespace stillpoint::orb {
+namespace stillpoint::orb_slam {
 namespace {
 
 constexpr double kMinDepth = 0.05;  // metres; nearer points give no residual
@@ -286,4 +286,4 @@ bool BundleSolver::solve(int max_iterations, const std::stop_token& hurry) {
   return true;
 }
 
-}  // namespace stillpoint::orb
+}  // namespace stillpoint::orb_slam

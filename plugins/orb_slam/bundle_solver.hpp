@@ -8,7 +8,7 @@
 
 #include "stillpoint/pose_math.hpp"
 
-namespace stillpoint::orb {
+namespace stillpoint::orb_slam {
 
 /// What a camera saw of a point.
 struct BundleMeasurement {
@@ -96,4 +96,4 @@ class BundleSolver {
   std::vector<Eigen::Matrix3d> inverse_point_hessians_;
 };
 
-}  // namespace stillpoint::orb
+}  // namespace stillpoint::orb_slam

@@ -8,7 +8,7 @@
 
 #include "orb_slam/pose_solver.hpp"
 
-namespace stillpoint::orb {
+namespace stillpoint::orb_slam {
 namespace {
 
 constexpr int kCameras = 6, kFixedCameras = 2, kPoints = 80;
@@ -177,4 +177,4 @@ TEST_F(BundleSolverTest, StopsAtOnceWhenAskedTo) {
 }
 
 }  // namespace
-}  // namespace stillpoint::orb
+}  // namespace stillpoint::orb_slam

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-namespace stillpoint::orb {
+namespace stillpoint::orb_slam {
 namespace {
 
 constexpr double kFreshVelocity = 0.3;  // share of the newest velocity when it is smoothed
@@ -35,4 +35,4 @@ QuadraticCost motion_prior(const Pose& predicted_world_from_camera, double secon
   return prior;
 }
 
-}  // namespace stillpoint::orb
+}  // namespace stillpoint::orb_slam

@@ -6,7 +6,7 @@
 #include "orb_slam/pose_solver.hpp"
 #include "stillpoint/pose_math.hpp"
 
-namespace stillpoint::orb {
+namespace stillpoint::orb_slam {
 
 class ConstantVelocity {
  public:
@@ -29,4 +29,4 @@ class ConstantVelocity {
 /// hand-held motion; the same at every pose.
 QuadraticCost motion_prior(const Pose& predicted_world_from_camera, double seconds);
 
-}  // namespace stillpoint::orb
+}  // namespace stillpoint::orb_slam

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace stillpoint::orb {
+namespace stillpoint::orb_slam {
 namespace {
 
 // Of the camera in its own frame, per second: translation, then rotation.
@@ -45,4 +45,4 @@ TEST(MotionPrior, IsTighterForShorterTimesAndNoneBesideItsPose) {
 }
 
 }  // namespace
-}  // namespace stillpoint::orb
+}  // namespace stillpoint::orb_slam

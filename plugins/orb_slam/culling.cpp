@@ -1,6 +1,6 @@
 #include "orb_slam/culling.hpp"
 
-namespace stillpoint::orb {
+namespace stillpoint::orb_slam {
 namespace {
 
 constexpr double kMinFoundShare = 0.25;
@@ -60,4 +60,4 @@ void cull_keyframes(MapEdit& edit, KeyFrameId latest, double redundant_share) {
   }
 }
 
-}  // namespace stillpoint::orb
+}  // namespace stillpoint::orb_slam

@@ -5,7 +5,7 @@
 
 #include "stillpoint/contracts/sparse_map.hpp"
 
-namespace stillpoint::orb {
+namespace stillpoint::orb_slam {
 
 /// Checks the landmarks of the last few key frames (`recent`): those that are found in too few of
 /// the frames that should see them, or that no second key frame has seen in time, are removed;
@@ -16,4 +16,4 @@ void cull_landmarks(MapEdit& edit, KeyFrameId latest, std::vector<LandmarkId>& r
 /// or a finer scale (ORB-SLAM, "local key frame culling").
 void cull_keyframes(MapEdit& edit, KeyFrameId latest, double redundant_share);
 
-}  // namespace stillpoint::orb
+}  // namespace stillpoint::orb_slam

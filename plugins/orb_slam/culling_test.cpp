@@ -7,7 +7,7 @@
 
 #include "orb_slam/test_world.hpp"
 
-namespace stillpoint::orb {
+namespace stillpoint::orb_slam {
 namespace {
 
 // One feature per key frame and landmark: landmark i is feature i, wherever it is seen.
@@ -127,4 +127,4 @@ TEST_F(CullKeyFramesTest, ShareOfOneKeepsAll) {
 }
 
 }  // namespace
-}  // namespace stillpoint::orb
+}  // namespace stillpoint::orb_slam

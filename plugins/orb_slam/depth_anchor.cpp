@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-namespace stillpoint::orb {
+namespace stillpoint::orb_slam {
 namespace {
 
 constexpr std::size_t kMostViews = 40;     // kept; 130 kB each
@@ -63,4 +63,4 @@ void DepthAnchor::add(KeyFrameId keyframe, DepthView view) {
   if (views_.size() > kMostViews) views_.pop_front();
 }
 
-}  // namespace stillpoint::orb
+}  // namespace stillpoint::orb_slam

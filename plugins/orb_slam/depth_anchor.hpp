@@ -6,7 +6,7 @@
 #include "orb_slam/plane_registration.hpp"
 #include "stillpoint/contracts/sparse_map.hpp"
 
-namespace stillpoint::orb {
+namespace stillpoint::orb_slam {
 
 class DepthAnchor {
  public:
@@ -30,4 +30,4 @@ class DepthAnchor {
   std::deque<View> views_;
 };
 
-}  // namespace stillpoint::orb
+}  // namespace stillpoint::orb_slam

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-namespace stillpoint::orb {
+namespace stillpoint::orb_slam {
 namespace {
 
 constexpr int kMinPatches = 60;        // of 1,200, to hold a pose
@@ -79,4 +79,4 @@ const DepthView& DepthHold::view() {
   return *view_;
 }
 
-}  // namespace stillpoint::orb
+}  // namespace stillpoint::orb_slam

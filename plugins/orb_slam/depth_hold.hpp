@@ -8,7 +8,7 @@
 #include "orb_slam/observed_frame.hpp"
 #include "stillpoint/contracts/static_weights.hpp"
 
-namespace stillpoint::orb {
+namespace stillpoint::orb_slam {
 
 /// Of one frame after the other, against the depth of the newest key frames.
 class DepthHold {
@@ -49,4 +49,4 @@ class DepthHold {
 /// Of landmarks beside surfaces; fewer may all be wrong.
 inline constexpr int kMinHeldLandmarks = 12;
 
-}  // namespace stillpoint::orb
+}  // namespace stillpoint::orb_slam

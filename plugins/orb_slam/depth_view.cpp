@@ -5,7 +5,7 @@
 
 #include "orb_slam/observed_frame.hpp"
 
-namespace stillpoint::orb {
+namespace stillpoint::orb_slam {
 namespace {
 
 constexpr int kCell = DepthView::kCell;
@@ -131,4 +131,4 @@ float DepthView::normal_sigma(const PlanePatch& patch) const {
   return cell_sigma / std::sqrt(kSumOfSquares) * focal_.x() / kCell * patch.point.z();
 }
 
-}  // namespace stillpoint::orb
+}  // namespace stillpoint::orb_slam

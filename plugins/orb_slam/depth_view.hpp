@@ -7,7 +7,7 @@
 #include "stillpoint/contracts/frame.hpp"
 #include "stillpoint/contracts/static_weights.hpp"
 
-namespace stillpoint::orb {
+namespace stillpoint::orb_slam {
 
 /// A piece of a surface, in the frame of the camera that measured it.
 struct PlanePatch {
@@ -48,4 +48,4 @@ class DepthView {
   std::vector<PlanePatch> patches_;
 };
 
-}  // namespace stillpoint::orb
+}  // namespace stillpoint::orb_slam

@@ -4,7 +4,7 @@
 
 #include "orb_slam/test_surfaces.hpp"
 
-namespace stillpoint::orb {
+namespace stillpoint::orb_slam {
 namespace {
 
 int patches_of(const DepthView& view) {
@@ -89,4 +89,4 @@ TEST(DepthView, OutsideTheImageIsNothing) {
 }
 
 }  // namespace
-}  // namespace stillpoint::orb
+}  // namespace stillpoint::orb_slam

@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <opencv2/core/hal/intrin.hpp>
 
-namespace stillpoint::orb {
+namespace stillpoint::orb_slam {
 namespace {
 
 // 128-bit vectors exist on every supported processor: one code path, hence the same corners
@@ -132,4 +132,4 @@ void FastDetector::detect(const cv::Mat& gray, int threshold, int border,
   }
 }
 
-}  // namespace stillpoint::orb
+}  // namespace stillpoint::orb_slam

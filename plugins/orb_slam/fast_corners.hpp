@@ -7,7 +7,7 @@
 #include <opencv2/core/types.hpp>
 #include <vector>
 
-namespace stillpoint::orb {
+namespace stillpoint::orb_slam {
 
 /// A corner that no neighbour in 3 × 3 pixels exceeds.
 struct Corner {
@@ -37,4 +37,4 @@ class FastDetector {
   std::vector<std::uint8_t> rows_;  // scores of the last three rows
 };
 
-}  // namespace stillpoint::orb
+}  // namespace stillpoint::orb_slam

@@ -1,6 +1,6 @@
 #include "orb_slam/feature_grid.hpp"
 
-namespace stillpoint::orb {
+namespace stillpoint::orb_slam {
 
 FeatureGrid::FeatureGrid(const Features& features, const Camera& camera)
     : columns_(camera.width / kCell + 1),
@@ -17,4 +17,4 @@ FeatureGrid::FeatureGrid(const Features& features, const Camera& camera)
   }
 }
 
-}  // namespace stillpoint::orb
+}  // namespace stillpoint::orb_slam

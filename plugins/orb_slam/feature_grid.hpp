@@ -8,7 +8,7 @@
 #include "stillpoint/contracts/camera.hpp"
 #include "stillpoint/contracts/features.hpp"
 
-namespace stillpoint::orb {
+namespace stillpoint::orb_slam {
 
 /// Buckets of the feature indices of one image. Building it takes microseconds, so it is made where
 /// it is needed and not kept.
@@ -48,4 +48,4 @@ class FeatureGrid {
   std::vector<Entry> entries_;                 // sorted by cell
 };
 
-}  // namespace stillpoint::orb
+}  // namespace stillpoint::orb_slam

@@ -5,7 +5,7 @@
 
 #include "orb_slam/test_world.hpp"
 
-namespace stillpoint::orb {
+namespace stillpoint::orb_slam {
 namespace {
 
 std::vector<std::uint32_t> near(const FeatureGrid& grid, double u, double v, double radius) {
@@ -58,4 +58,4 @@ TEST(FeatureGrid, WithoutFeaturesFindsNothing) {
 }
 
 }  // namespace
-}  // namespace stillpoint::orb
+}  // namespace stillpoint::orb_slam

@@ -4,7 +4,7 @@
 
 #include "orb_slam/landmark_geometry.hpp"
 
-namespace stillpoint::orb {
+namespace stillpoint::orb_slam {
 namespace {
 
 constexpr int kHeldFramesBetween = 5;  // where corners come and go, there are new ones every time
@@ -93,4 +93,4 @@ bool needs_keyframe(const TrackingQuality& q, TrackHints hints, const KeyFrameOp
   return urgent || q.frames_since_last >= options.max_frames_between || !hints.mapping_waiting;
 }
 
-}  // namespace stillpoint::orb
+}  // namespace stillpoint::orb_slam

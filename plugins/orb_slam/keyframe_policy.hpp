@@ -5,7 +5,7 @@
 #include "stillpoint/contracts/tracker.hpp"
 #include "stillpoint/options.hpp"
 
-namespace stillpoint::orb {
+namespace stillpoint::orb_slam {
 
 struct KeyFrameOptions {
   int max_frames_between = 30;
@@ -37,4 +37,4 @@ TrackingQuality tracking_quality(const ObservedFrame& frame, const SparseMap& ma
 bool needs_keyframe(const TrackingQuality& quality, TrackHints hints,
                     const KeyFrameOptions& options);
 
-}  // namespace stillpoint::orb
+}  // namespace stillpoint::orb_slam

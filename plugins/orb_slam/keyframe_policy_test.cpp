@@ -4,7 +4,7 @@
 
 #include "orb_slam/test_world.hpp"
 
-namespace stillpoint::orb {
+namespace stillpoint::orb_slam {
 namespace {
 
 constexpr TrackHints kIdle{.mapping_waiting = false}, kBusy{.mapping_waiting = true};
@@ -141,4 +141,4 @@ TEST_F(TrackingQualityTest, WithoutReferenceThereIsNothingToCompareWith) {
 }
 
 }  // namespace
-}  // namespace stillpoint::orb
+}  // namespace stillpoint::orb_slam

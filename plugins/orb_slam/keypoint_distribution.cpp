@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 
-namespace stillpoint::orb {
+namespace stillpoint::orb_slam {
 namespace {
 
 // Square cells that are covered by a corner chosen already. The side of a cell counts in eighths of
@@ -81,4 +81,4 @@ void keep_evenly_spread(std::vector<Corner>& corners, cv::Size image, int count)
   corners = std::move(best);
 }
 
-}  // namespace stillpoint::orb
+}  // namespace stillpoint::orb_slam

@@ -6,7 +6,7 @@
 
 #include "orb_slam/fast_corners.hpp"
 
-namespace stillpoint::orb {
+namespace stillpoint::orb_slam {
 
 /// Removes corners with score <= `threshold` from every square cell of `cell` px that holds a
 /// stronger one: weak corners only where there is nothing better.
@@ -17,4 +17,4 @@ void drop_weak_beside_strong(std::vector<Corner>& corners, cv::Size image, int c
 /// Letters 106, 2018). Sorted by score, strongest first; equal scores keep their order.
 void keep_evenly_spread(std::vector<Corner>& corners, cv::Size image, int count);
 
-}  // namespace stillpoint::orb
+}  // namespace stillpoint::orb_slam

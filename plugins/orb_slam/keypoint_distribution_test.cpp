@@ -6,7 +6,7 @@
 #include <opencv2/core.hpp>
 #include <set>
 
-namespace stillpoint::orb {
+namespace stillpoint::orb_slam {
 namespace {
 
 const cv::Size kImage(320, 240);
@@ -83,4 +83,4 @@ TEST(KeepEvenlySpread, CornersDoNotTouch) {
 }
 
 }  // namespace
-}  // namespace stillpoint::orb
+}  // namespace stillpoint::orb_slam

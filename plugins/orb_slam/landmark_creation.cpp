@@ -10,7 +10,7 @@
 #include "orb_slam/pose_solver.hpp"
 #include "stillpoint/support/median.hpp"
 
-namespace stillpoint::orb {
+namespace stillpoint::orb_slam {
 namespace {
 
 constexpr double kMinBaselineShare = 0.01;  // of the median depth; less gives no parallax
@@ -162,4 +162,4 @@ std::vector<LandmarkId> triangulate(MapEdit& edit, KeyFrameId id, int neighbours
   return created;
 }
 
-}  // namespace stillpoint::orb
+}  // namespace stillpoint::orb_slam

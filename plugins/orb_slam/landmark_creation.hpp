@@ -5,7 +5,7 @@
 
 #include "stillpoint/contracts/sparse_map.hpp"
 
-namespace stillpoint::orb {
+namespace stillpoint::orb_slam {
 
 /// Landmarks from measured depth, for all features that have none yet.
 std::vector<LandmarkId> create_from_depth(MapEdit& edit, KeyFrameId id);
@@ -14,4 +14,4 @@ std::vector<LandmarkId> create_from_depth(MapEdit& edit, KeyFrameId id);
 /// epipolar lines with the `neighbours` most covisible key frames.
 std::vector<LandmarkId> triangulate(MapEdit& edit, KeyFrameId id, int neighbours);
 
-}  // namespace stillpoint::orb
+}  // namespace stillpoint::orb_slam

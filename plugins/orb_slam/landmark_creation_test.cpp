@@ -5,7 +5,7 @@
 
 #include "orb_slam/test_world.hpp"
 
-namespace stillpoint::orb {
+namespace stillpoint::orb_slam {
 namespace {
 
 class CreateFromDepthTest : public testing::Test {
@@ -162,4 +162,4 @@ TEST_F(TriangulateTest, AloneItDoesNothing) {
 }
 
 }  // namespace
-}  // namespace stillpoint::orb
+}  // namespace stillpoint::orb_slam

@@ -7,7 +7,7 @@
 #include "orb_slam/landmark_geometry.hpp"
 #include "orb_slam/matcher.hpp"
 
-namespace stillpoint::orb {
+namespace stillpoint::orb_slam {
 namespace {
 
 constexpr double kFusionWindow = 3.0;  // px at the predicted level
@@ -91,4 +91,4 @@ void fuse_with_neighbours(MapEdit& edit, KeyFrameId id, int neighbours) {
   fuse_into(edit, theirs, id);
 }
 
-}  // namespace stillpoint::orb
+}  // namespace stillpoint::orb_slam

@@ -4,7 +4,7 @@
 
 #include "orb_slam/test_world.hpp"
 
-namespace stillpoint::orb {
+namespace stillpoint::orb_slam {
 namespace {
 
 class LandmarkFusionTest : public testing::Test {
@@ -157,4 +157,4 @@ TEST_F(LandmarkFusionTest, AloneItDoesNothing) {
 }
 
 }  // namespace
-}  // namespace stillpoint::orb
+}  // namespace stillpoint::orb_slam

@@ -6,7 +6,7 @@
 #include "orb_slam/pose_solver.hpp"
 #include "orb_slam/scale_pyramid.hpp"
 
-namespace stillpoint::orb {
+namespace stillpoint::orb_slam {
 namespace {
 
 // More would cost quadratic time and change the choice little.
@@ -91,4 +91,4 @@ void drop_misfits(MapEdit& edit, LandmarkId id) {
   }
 }
 
-}  // namespace stillpoint::orb
+}  // namespace stillpoint::orb_slam

@@ -3,7 +3,7 @@
 
 #include "stillpoint/contracts/sparse_map.hpp"
 
-namespace stillpoint::orb {
+namespace stillpoint::orb_slam {
 
 /// Recomputes mean viewing direction, descriptor and range of distances from the observations.
 /// Does nothing when the landmark is gone.
@@ -29,4 +29,4 @@ void drop_misfits(MapEdit& edit, LandmarkId id);
 /// Features with less weight than this do not become landmarks.
 inline constexpr std::uint8_t kMinMapWeight = 128;
 
-}  // namespace stillpoint::orb
+}  // namespace stillpoint::orb_slam

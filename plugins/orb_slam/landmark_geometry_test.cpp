@@ -6,7 +6,7 @@
 #include "orb_slam/scale_pyramid.hpp"
 #include "orb_slam/test_world.hpp"
 
-namespace stillpoint::orb {
+namespace stillpoint::orb_slam {
 namespace {
 
 class LandmarkGeometryTest : public testing::Test {
@@ -115,4 +115,4 @@ TEST_F(LandmarkGeometryTest, BehindTheCameraNothingFits) {
 }
 
 }  // namespace
-}  // namespace stillpoint::orb
+}  // namespace stillpoint::orb_slam

@@ -3,7 +3,10 @@
 #include <algorithm>
 #include <map>
 
-namespace stillpoint::orb {
+#include "orb_slam/landmark_geometry.hpp"
+#include "orb_slam/matcher.hpp"
+
+namespace stillpoint::orb_slam {
 namespace {
 
 constexpr int kMostCovisible = 10;  // most covisible ones, added per key frame
@@ -57,4 +60,27 @@ LocalMap local_map_around(const std::vector<LandmarkId>& matched, const SparseMa
   return local;
 }
 
-}  // namespace stillpoint::orb
+void search(ObservedFrame& frame, const LocalMap& local, const SparseMap& map, double window,
+            std::vector<LandmarkId>& visible) {
+  std::vector<bool> matched(map.landmark_id_end());
+  for (const LandmarkId id : frame.landmarks)
+    if (id != kNoId) matched[id] = true;
+  const Pose camera_from_world = frame.world_from_camera.inverse();
+  const ScalePyramid pyramid(*frame.features);
+  std::vector<Query> queries;
+  for (const LandmarkId id : local.landmarks) {
+    if (matched[id]) {
+      visible.push_back(id);
+      continue;
+    }
+    const auto query =
+        predict(*map.landmark(id), camera_from_world, *frame.frame->camera, pyramid, window);
+    if (!query) continue;
+    visible.push_back(id);
+    queries.push_back(*query);
+  }
+  frame.assign(match_near(queries, *frame.features, frame.grid,
+                          [&](std::uint32_t i) { return frame.free(i); }, {.ratio = 0.8}));
+}
+
+}  // namespace stillpoint::orb_slam

@@ -3,9 +3,10 @@
 
 #include <vector>
 
+#include "orb_slam/observed_frame.hpp"
 #include "stillpoint/contracts/sparse_map.hpp"
 
-namespace stillpoint::orb {
+namespace stillpoint::orb_slam {
 
 struct LocalMap {
   KeyFrameId reference = kNoId;       ///< shares most landmarks with the frame
@@ -17,4 +18,9 @@ struct LocalMap {
 LocalMap local_map_around(const std::vector<LandmarkId>& matched, const SparseMap& map,
                           int max_keyframes);
 
-}  // namespace stillpoint::orb
+/// Matches the local map's landmarks to the frame's free features within `window` px of their
+/// places at its present pose. Adds those that should be in view, matched or not, to `visible`.
+void search(ObservedFrame& frame, const LocalMap& local, const SparseMap& map, double window,
+            std::vector<LandmarkId>& visible);
+
+}  // namespace stillpoint::orb_slam

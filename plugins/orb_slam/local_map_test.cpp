@@ -7,7 +7,7 @@
 
 #include "orb_slam/test_world.hpp"
 
-namespace stillpoint::orb {
+namespace stillpoint::orb_slam {
 namespace {
 
 class LocalMapTest : public testing::Test {
@@ -74,4 +74,4 @@ TEST_F(LocalMapTest, LandmarksThatAreGoneDoNotCount) {
 }
 
 }  // namespace
-}  // namespace stillpoint::orb
+}  // namespace stillpoint::orb_slam

@@ -9,7 +9,7 @@
 #include "orb_slam/orb_keyframe.hpp"
 #include "orb_slam/static_evidence.hpp"
 
-namespace stillpoint::orb {
+namespace stillpoint::orb_slam {
 namespace {
 
 constexpr float kMostLogOdds = 6.0F;  // of being static, either way: things do begin to move
@@ -79,4 +79,4 @@ void OrbLocalMapper::remember(const std::vector<LandmarkId>& created) {
   recent_.insert(recent_.end(), created.begin(), created.end());
 }
 
-}  // namespace stillpoint::orb
+}  // namespace stillpoint::orb_slam

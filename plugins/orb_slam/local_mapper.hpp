@@ -8,7 +8,7 @@
 #include "stillpoint/options.hpp"
 #include "stillpoint/plugin.hpp"
 
-namespace stillpoint::orb {
+namespace stillpoint::orb_slam {
 
 class OrbLocalMapper final : public LocalMapper {
  public:
@@ -34,4 +34,4 @@ class OrbLocalMapper final : public LocalMapper {
   std::vector<LandmarkId> recent_;  // landmarks on probation
 };
 
-}  // namespace stillpoint::orb
+}  // namespace stillpoint::orb_slam

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-namespace stillpoint::orb {
+namespace stillpoint::orb_slam {
 namespace {
 
 // Key frames that must agree on a place. ORB-SLAM asks for three, but in a round of some twenty key
@@ -62,4 +62,4 @@ LoopCandidates::Group LoopCandidates::follow(const SparseMap& map, KeyFrameId ca
   return group;
 }
 
-}  // namespace stillpoint::orb
+}  // namespace stillpoint::orb_slam

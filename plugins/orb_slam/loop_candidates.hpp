@@ -5,7 +5,7 @@
 
 #include "orb_slam/place_index.hpp"
 
-namespace stillpoint::orb {
+namespace stillpoint::orb_slam {
 
 /// One look at one place may be chance. A candidate counts when the key frames before also had one
 /// in the same part of the map: among its covisible key frames.
@@ -26,4 +26,4 @@ class LoopCandidates {
   std::vector<Group> groups_;  // of the key frame before
 };
 
-}  // namespace stillpoint::orb
+}  // namespace stillpoint::orb_slam

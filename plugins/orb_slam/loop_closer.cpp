@@ -2,7 +2,7 @@
 
 #include <utility>
 
-namespace stillpoint::orb {
+namespace stillpoint::orb_slam {
 namespace {
 
 double way_between(const SparseMap& map, KeyFrameId from, KeyFrameId to) {
@@ -73,4 +73,4 @@ std::optional<MapCorrection> OrbLoopCloser::adjust(const SparseMap& map, std::st
   return adjust_all(map, options_.adjust_iterations, hurry);
 }
 
-}  // namespace stillpoint::orb
+}  // namespace stillpoint::orb_slam

@@ -12,7 +12,7 @@
 #include "stillpoint/options.hpp"
 #include "stillpoint/plugin.hpp"
 
-namespace stillpoint::orb {
+namespace stillpoint::orb_slam {
 
 class OrbLoopCloser final : public LoopCloser {
  public:
@@ -40,4 +40,4 @@ class OrbLoopCloser final : public LoopCloser {
   std::optional<KeyFrameId> last_loop_;  // the newest key frame of the last one
 };
 
-}  // namespace stillpoint::orb
+}  // namespace stillpoint::orb_slam

@@ -4,7 +4,7 @@
 
 #include "orb_slam/test_round_trip.hpp"
 
-namespace stillpoint::orb {
+namespace stillpoint::orb_slam {
 namespace {
 
 class LoopCloserTest : public testing::Test {
@@ -83,4 +83,4 @@ TEST_F(LoopCloserTest, AKeyFrameThatIsGoneClosesNothing) {
 }
 
 }  // namespace
-}  // namespace stillpoint::orb
+}  // namespace stillpoint::orb_slam

@@ -7,7 +7,7 @@
 #include "orb_slam/targets.hpp"
 #include "stillpoint/support/rigid_motion.hpp"
 
-namespace stillpoint::orb {
+namespace stillpoint::orb_slam {
 namespace {
 
 constexpr int kMostNeighbours = 10;  // around either end, most covisible ones
@@ -16,10 +16,11 @@ constexpr int kMinInliers = 40;      // landmarks that fit it
 // Of the landmarks that should be seen. Of one place, 0.31 and more were; of two that look alike
 // 0.25 at most (place_index_benchmark).
 constexpr double kMinSupport = 0.3;
-constexpr int kRansacSamples = 300;      // of RANSAC
-constexpr RigidNoise kNoise{2.0, 0.02};  // px, 1/m: wide enough for a map that has drifted
-constexpr double kWideWindow = 10;       // px
-constexpr double kNarrowWindow = 4;      // px
+constexpr int kRansacSamples = 300;  // of RANSAC
+// Not of the sensor: how far landmarks of one part of a map have drifted against each other.
+constexpr RigidNoise kDrift{.pixel = 2.0, .inverse_depth = 0.02};
+constexpr double kWideWindow = 10;   // px
+constexpr double kNarrowWindow = 4;  // px
 
 std::vector<KeyFrameId> neighbourhood(const SparseMap& map, KeyFrameId centre) {
   std::vector<KeyFrameId> ids{centre};
@@ -65,7 +66,7 @@ std::optional<Pose> camera_from_world(const ObservedFrame& view, std::span<const
                       camera.unproject(pixel.x, pixel.y, features.depth[m.feature]),
                       {pixel.x, pixel.y}});
   }
-  const auto motion = find_rigid_motion(points, camera, kNoise, {}, kRansacSamples, 1);
+  const auto motion = find_rigid_motion(points, camera, kDrift, {}, kRansacSamples, 1);
   if (!motion || motion->inliers < kMinLoopMatches) return std::nullopt;
   return motion->target_from_source * near_from_world;
 }
@@ -130,4 +131,4 @@ std::optional<LoopMatch> match_loop(const SparseMap& map, KeyFrameId keyframe, K
   return loop;
 }
 
-}  // namespace stillpoint::orb
+}  // namespace stillpoint::orb_slam

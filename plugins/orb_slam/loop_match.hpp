@@ -7,7 +7,7 @@
 
 #include "stillpoint/contracts/sparse_map.hpp"
 
-namespace stillpoint::orb {
+namespace stillpoint::orb_slam {
 
 /// A place that the map holds twice.
 struct LoopMatch {
@@ -26,4 +26,4 @@ struct LoopMatch {
 /// that must not be mapped take no part.
 std::optional<LoopMatch> match_loop(const SparseMap& map, KeyFrameId keyframe, KeyFrameId place);
 
-}  // namespace stillpoint::orb
+}  // namespace stillpoint::orb_slam

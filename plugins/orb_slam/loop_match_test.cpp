@@ -6,7 +6,7 @@
 
 #include "orb_slam/test_round_trip.hpp"
 
-namespace stillpoint::orb {
+namespace stillpoint::orb_slam {
 namespace {
 
 class LoopMatchTest : public testing::Test {
@@ -98,4 +98,4 @@ TEST(LoopMatch, OnePosterIsNoPlace) {
 }
 
 }  // namespace
-}  // namespace stillpoint::orb
+}  // namespace stillpoint::orb_slam

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numeric>
 
-namespace stillpoint::orb {
+namespace stillpoint::orb_slam {
 namespace {
 
 constexpr double kMinViewCosine = 0.5;    // 60 degrees
@@ -197,4 +197,4 @@ std::optional<Query> predict(const Landmark& landmark, const Pose& camera_from_w
                .max_level = level + 1};
 }
 
-}  // namespace stillpoint::orb
+}  // namespace stillpoint::orb_slam

@@ -13,7 +13,7 @@
 #include "stillpoint/contracts/keyframe.hpp"
 #include "stillpoint/contracts/landmark.hpp"
 
-namespace stillpoint::orb {
+namespace stillpoint::orb_slam {
 
 /// Bounds on the Hamming distance of matching 256-bit descriptors, as in the ORB-SLAM paper's
 /// system: `kFar` where the place is predicted, `kNear` where it is not.
@@ -63,4 +63,4 @@ std::vector<Match> match_anywhere(std::span<const Query> queries, const Features
 std::optional<Query> predict(const Landmark& landmark, const Pose& camera_from_world,
                              const Camera& camera, const ScalePyramid& pyramid, double radius);
 
-}  // namespace stillpoint::orb
+}  // namespace stillpoint::orb_slam

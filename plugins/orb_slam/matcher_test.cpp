@@ -7,7 +7,7 @@
 
 #include "orb_slam/test_world.hpp"
 
-namespace stillpoint::orb {
+namespace stillpoint::orb_slam {
 namespace {
 
 using testing::ElementsAre;
@@ -236,4 +236,4 @@ TEST_F(PredictTest, NothingWhereItCannotBeSeen) {
 }
 
 }  // namespace
-}  // namespace stillpoint::orb
+}  // namespace stillpoint::orb_slam

@@ -6,7 +6,7 @@
 #include "orb_slam/landmark_geometry.hpp"
 #include "orb_slam/observed_frame.hpp"
 
-namespace stillpoint::orb {
+namespace stillpoint::orb_slam {
 namespace {
 
 constexpr double kRecent = 5.0;     // seconds
@@ -39,4 +39,4 @@ double MovingArea::feature_factor(double most) const {
 
 bool MovingArea::recent(double time) const { return time - last_time_ < kRecent; }
 
-}  // namespace stillpoint::orb
+}  // namespace stillpoint::orb_slam

@@ -5,7 +5,7 @@
 
 #include "stillpoint/contracts/static_weights.hpp"
 
-namespace stillpoint::orb {
+namespace stillpoint::orb_slam {
 
 class MovingArea {
  public:
@@ -30,4 +30,4 @@ class MovingArea {
   double last_time_ = -1e300;  // of a frame in which it was more than noise, seconds
 };
 
-}  // namespace stillpoint::orb
+}  // namespace stillpoint::orb_slam

@@ -4,7 +4,7 @@
 
 #include <opencv2/core.hpp>
 
-namespace stillpoint::orb {
+namespace stillpoint::orb_slam {
 namespace {
 
 StaticWeights with_moving_columns(int columns) {
@@ -40,4 +40,4 @@ TEST(MovingArea, WhatHasLeftIsRememberedForSeconds) {
 }
 
 }  // namespace
-}  // namespace stillpoint::orb
+}  // namespace stillpoint::orb_slam

@@ -4,7 +4,7 @@
 
 #include "orb_slam/landmark_geometry.hpp"
 
-namespace stillpoint::orb {
+namespace stillpoint::orb_slam {
 namespace {
 
 constexpr float kMaxDepthStep = 0.04f;  // of the depth; more around a keypoint is an edge
@@ -151,4 +151,4 @@ int solve_pose(ObservedFrame& observed, const SparseMap& map, double probation,
   return solution.inliers;
 }
 
-}  // namespace stillpoint::orb
+}  // namespace stillpoint::orb_slam

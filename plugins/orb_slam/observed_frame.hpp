@@ -13,7 +13,7 @@
 #include "stillpoint/contracts/sparse_map.hpp"
 #include "stillpoint/contracts/static_weights.hpp"
 
-namespace stillpoint::orb {
+namespace stillpoint::orb_slam {
 
 struct ObservedFrame {
   FramePtr frame;
@@ -65,4 +65,4 @@ ObservedFrame observe_again(const KeyFrame& keyframe);
 int solve_pose(ObservedFrame& frame, const SparseMap& map, double probation = 0.0,
                KeyFrameId first_keyframe = 0, const PoseTerm& term = {});
 
-}  // namespace stillpoint::orb
+}  // namespace stillpoint::orb_slam

@@ -5,7 +5,7 @@
 
 #include "orb_slam/test_world.hpp"
 
-namespace stillpoint::orb {
+namespace stillpoint::orb_slam {
 namespace {
 
 Features features_at(std::initializer_list<cv::Point2f> pixels) {
@@ -178,4 +178,4 @@ TEST_F(SolvePoseTest, WithoutMatchesThePoseStays) {
 }
 
 }  // namespace
-}  // namespace stillpoint::orb
+}  // namespace stillpoint::orb_slam

@@ -11,7 +11,7 @@
 
 #include "orb_slam/orb_pattern.hpp"
 
-namespace stillpoint::orb {
+namespace stillpoint::orb_slam {
 namespace {
 
 constexpr int kRadius = 15;
@@ -152,4 +152,4 @@ Descriptor orb_descriptor(const cv::Mat& blurred, int x, int y, const Direction&
   return descriptor;
 }
 
-}  // namespace stillpoint::orb
+}  // namespace stillpoint::orb_slam

@@ -6,7 +6,7 @@
 
 #include "stillpoint/contracts/features.hpp"
 
-namespace stillpoint::orb {
+namespace stillpoint::orb_slam {
 
 /// Keypoints must lie this far inside the image.
 inline constexpr int kPatchBorder = 19;
@@ -30,4 +30,4 @@ float angle_degrees(const Direction& direction);
 /// The 256 tests, rotated by `direction`. `blurred` is CV_8UC1, smoothed with a Gaussian of 2 px.
 Descriptor orb_descriptor(const cv::Mat& blurred, int x, int y, const Direction& direction);
 
-}  // namespace stillpoint::orb
+}  // namespace stillpoint::orb_slam

@@ -8,7 +8,7 @@
 
 #include "orb_slam/orb_pattern.hpp"
 
-namespace stillpoint::orb {
+namespace stillpoint::orb_slam {
 namespace {
 
 cv::Mat random_image(int width, int height) {
@@ -99,4 +99,4 @@ TEST(OrbDescriptor, TurnsWithTheImage) {
 }
 
 }  // namespace
-}  // namespace stillpoint::orb
+}  // namespace stillpoint::orb_slam

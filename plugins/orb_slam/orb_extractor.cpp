@@ -10,7 +10,7 @@
 #include "orb_slam/orb_descriptor.hpp"
 #include "stillpoint/error.hpp"
 
-namespace stillpoint::orb {
+namespace stillpoint::orb_slam {
 namespace {
 
 constexpr int kPatchSize = 31;         // px, diameter of a keypoint on its level
@@ -149,4 +149,4 @@ void OrbExtractor::describe(const cv::Mat& image, int level, cv::Size full_size,
   }
 }
 
-}  // namespace stillpoint::orb
+}  // namespace stillpoint::orb_slam

@@ -10,7 +10,7 @@
 #include "stillpoint/contracts/features.hpp"
 #include "stillpoint/options.hpp"
 
-namespace stillpoint::orb {
+namespace stillpoint::orb_slam {
 
 struct OrbOptions {
   int features = 1000;
@@ -55,4 +55,4 @@ class OrbExtractor {
   std::vector<Corner> spare_corners_;  // those that are not wanted there
 };
 
-}  // namespace stillpoint::orb
+}  // namespace stillpoint::orb_slam

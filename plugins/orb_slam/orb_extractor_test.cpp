@@ -12,7 +12,7 @@
 
 #include "stillpoint/error.hpp"
 
-namespace stillpoint::orb {
+namespace stillpoint::orb_slam {
 namespace {
 
 constexpr int kWidth = 640, kHeight = 480;
@@ -288,4 +288,4 @@ TEST(OrbExtractor, RefusesOtherImages) {
 }
 
 }  // namespace
-}  // namespace stillpoint::orb
+}  // namespace stillpoint::orb_slam

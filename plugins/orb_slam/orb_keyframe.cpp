@@ -4,7 +4,7 @@
 
 #include "stillpoint/error.hpp"
 
-namespace stillpoint::orb {
+namespace stillpoint::orb_slam {
 
 void require_orb(const KeyFrame& keyframe) {
   if (keyframe.features->descriptors.size() == keyframe.features->size()) return;
@@ -18,4 +18,4 @@ void require_orb(const SparseMap& map) {
     if (const KeyFrame* keyframe = map.keyframe(id)) require_orb(*keyframe);
 }
 
-}  // namespace stillpoint::orb
+}  // namespace stillpoint::orb_slam

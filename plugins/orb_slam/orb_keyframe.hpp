@@ -3,10 +3,10 @@
 
 #include "stillpoint/contracts/sparse_map.hpp"
 
-namespace stillpoint::orb {
+namespace stillpoint::orb_slam {
 
 /// Throws Error(kStage) when a key frame's features have no 256-bit descriptors.
 void require_orb(const KeyFrame& keyframe);
 void require_orb(const SparseMap& map);
 
-}  // namespace stillpoint::orb
+}  // namespace stillpoint::orb_slam

@@ -8,7 +8,7 @@
 #include "orb_slam/tracker.hpp"
 #include "stillpoint/error.hpp"
 
-namespace stillpoint::orb {
+namespace stillpoint::orb_slam {
 namespace {
 
 /// Of a tracker with descriptors of its own.
@@ -59,4 +59,4 @@ TEST(OrbKeyFrame, WithoutFeaturesThereIsNothingToRefuse) {
 }
 
 }  // namespace
-}  // namespace stillpoint::orb
+}  // namespace stillpoint::orb_slam

@@ -23,7 +23,7 @@
 // WAY OUT OF THE USE OF THIS SOFTWARE, EVEN IF ADVISED OF THE POSSIBILITY OF SUCH DAMAGE.
 #include "orb_slam/orb_pattern.hpp"
 
-namespace stillpoint::orb {
+namespace stillpoint::orb_slam {
 
 // clang-format off
 const std::array<BinaryTest, 256> kOrbPattern = {{
@@ -81,4 +81,4 @@ const std::array<BinaryTest, 256> kOrbPattern = {{
 }};
 // clang-format on
 
-}  // namespace stillpoint::orb
+}  // namespace stillpoint::orb_slam

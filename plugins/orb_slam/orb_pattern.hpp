@@ -4,7 +4,7 @@
 #include <array>
 #include <cstdint>
 
-namespace stillpoint::orb {
+namespace stillpoint::orb_slam {
 
 /// Sets its bit when the first point is darker than the second. px from the keypoint, before the
 /// rotation by the keypoint's angle.
@@ -17,4 +17,4 @@ extern const std::array<BinaryTest, 256> kOrbPattern;
 /// No point of the pattern is farther from the keypoint, however it is rotated.
 inline constexpr int kPatternRadius = 19;
 
-}  // namespace stillpoint::orb
+}  // namespace stillpoint::orb_slam

@@ -5,7 +5,7 @@
 
 #include "orb_slam/orb_keyframe.hpp"
 
-namespace stillpoint::orb {
+namespace stillpoint::orb_slam {
 namespace {
 
 constexpr std::size_t kDescriptors = 500;  // of a key frame
@@ -110,4 +110,4 @@ PlaceIndex::Word PlaceIndex::word(const Descriptor& descriptor, int table) {
   return static_cast<Word>(descriptor[static_cast<std::size_t>(first) / 64] >> (first % 64));
 }
 
-}  // namespace stillpoint::orb
+}  // namespace stillpoint::orb_slam

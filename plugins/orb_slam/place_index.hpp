@@ -12,7 +12,7 @@
 #include "stillpoint/contracts/features.hpp"
 #include "stillpoint/contracts/sparse_map.hpp"
 
-namespace stillpoint::orb {
+namespace stillpoint::orb_slam {
 
 struct PlaceVote {
   KeyFrameId keyframe = kNoId;
@@ -65,4 +65,4 @@ class PlaceIndex {
   std::size_t keyframe_count_ = 0;
 };
 
-}  // namespace stillpoint::orb
+}  // namespace stillpoint::orb_slam

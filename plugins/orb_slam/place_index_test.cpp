@@ -6,7 +6,7 @@
 
 #include "orb_slam/test_round_trip.hpp"
 
-namespace stillpoint::orb {
+namespace stillpoint::orb_slam {
 namespace {
 
 std::vector<KeyFrameId> ids(const std::vector<PlaceVote>& votes) {
@@ -60,4 +60,4 @@ TEST(PlaceIndex, EmptyFindsNothing) {
 }
 
 }  // namespace
-}  // namespace stillpoint::orb
+}  // namespace stillpoint::orb_slam

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace stillpoint::orb {
+namespace stillpoint::orb_slam {
 namespace {
 
 constexpr int kStride = 2;             // every other patch of every other row
@@ -114,4 +114,4 @@ PlaneRegistration register_planes(const DepthView& current, std::span<const Plac
   return result;
 }
 
-}  // namespace stillpoint::orb
+}  // namespace stillpoint::orb_slam

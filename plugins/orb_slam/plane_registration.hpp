@@ -8,7 +8,7 @@
 #include "orb_slam/pose_solver.hpp"
 #include "stillpoint/pose_math.hpp"
 
-namespace stillpoint::orb {
+namespace stillpoint::orb_slam {
 
 struct PlacedView {
   const DepthView* view;
@@ -39,4 +39,4 @@ PlaneRegistration register_planes(const DepthView& current, std::span<const Plac
 
 inline constexpr double kMostPatches = 150.0;
 
-}  // namespace stillpoint::orb
+}  // namespace stillpoint::orb_slam

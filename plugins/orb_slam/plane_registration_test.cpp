@@ -7,7 +7,7 @@
 #include "orb_slam/test_surfaces.hpp"
 #include "orb_slam/test_world.hpp"
 
-namespace stillpoint::orb {
+namespace stillpoint::orb_slam {
 namespace {
 
 const std::vector<WorldPlane> kCorner = {kAhead, kRight, kFloor};
@@ -130,4 +130,4 @@ TEST(PlaneRegistration, AnotherPlaceDoesNotAgree) {
 }
 
 }  // namespace
-}  // namespace stillpoint::orb
+}  // namespace stillpoint::orb_slam

@@ -7,7 +7,7 @@
 #include <stop_token>
 #include <utility>
 
-namespace stillpoint::orb {
+namespace stillpoint::orb_slam {
 namespace {
 
 constexpr int kMinShared = 100;     // landmarks, of an edge of the essential graph
@@ -164,4 +164,4 @@ std::vector<MovedKeyFrame> optimise_pose_graph(const SparseMap& map,
   return graph.result();
 }
 
-}  // namespace stillpoint::orb
+}  // namespace stillpoint::orb_slam

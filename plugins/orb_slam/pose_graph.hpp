@@ -8,7 +8,7 @@
 #include "stillpoint/contracts/map_correction.hpp"
 #include "stillpoint/contracts/sparse_map.hpp"
 
-namespace stillpoint::orb {
+namespace stillpoint::orb_slam {
 
 /// How one key frame lies to another.
 struct PoseEdge {
@@ -23,4 +23,4 @@ std::vector<MovedKeyFrame> optimise_pose_graph(const SparseMap& map,
                                                std::span<const PoseEdge> loops,
                                                std::stop_token stop);
 
-}  // namespace stillpoint::orb
+}  // namespace stillpoint::orb_slam

@@ -4,7 +4,7 @@
 
 #include "orb_slam/test_round_trip.hpp"
 
-namespace stillpoint::orb {
+namespace stillpoint::orb_slam {
 namespace {
 
 class PoseGraphTest : public testing::Test {
@@ -29,7 +29,7 @@ TEST_F(PoseGraphTest, SpreadsTheErrorOfALoop) {
   EXPECT_LT(metres_between(moved[RoundTrip::kOneTurnOn].world_from_camera,
                            RoundTrip::truth(RoundTrip::kOneTurnOn)),
             0.02);
-  EXPECT_LT(worst_metres(moved), 0.75 * orb::worst_metres(map_));
+  EXPECT_LT(worst_metres(moved), 0.75 * orb_slam::worst_metres(map_));
 }
 
 TEST_F(PoseGraphTest, WithoutLoopsEverythingStays) {
@@ -43,7 +43,7 @@ TEST_F(PoseGraphTest, EdgesOfRemovedKeyFramesArePassedOver) {
   const PoseEdge loops[] = {loop_, {5, RoundTrip::kOneTurnOn, Pose::Identity()}};
   const auto moved = optimise_pose_graph(std::move(edit).finish(), loops, {});
   EXPECT_EQ(moved.size(), map_.keyframe_count() - 1);
-  EXPECT_LT(worst_metres(moved), 0.75 * orb::worst_metres(map_));
+  EXPECT_LT(worst_metres(moved), 0.75 * orb_slam::worst_metres(map_));
 }
 
 TEST_F(PoseGraphTest, WhereTheCameraSlidTakesTheError) {
@@ -67,8 +67,8 @@ TEST_F(PoseGraphTest, EndsWhenAsked) {
   std::stop_source stop;
   stop.request_stop();
   const auto moved = optimise_pose_graph(map_, {&loop_, 1}, stop.get_token());
-  EXPECT_LE(worst_metres(moved), orb::worst_metres(map_) + 1e-9);
+  EXPECT_LE(worst_metres(moved), orb_slam::worst_metres(map_) + 1e-9);
 }
 
 }  // namespace
-}  // namespace stillpoint::orb
+}  // namespace stillpoint::orb_slam

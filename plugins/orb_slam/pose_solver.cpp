@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace stillpoint::orb {
+namespace stillpoint::orb_slam {
 namespace {
 
 constexpr int kRounds = 4;
@@ -205,4 +205,4 @@ PoseSolution solve_pose(std::span<const PoseObservation> observations, const Cam
   return Solver(observations, camera, camera_from_world_guess, term).run();
 }
 
-}  // namespace stillpoint::orb
+}  // namespace stillpoint::orb_slam

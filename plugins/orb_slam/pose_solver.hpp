@@ -9,7 +9,7 @@
 #include "stillpoint/options.hpp"
 #include "stillpoint/pose_math.hpp"
 
-namespace stillpoint::orb {
+namespace stillpoint::orb_slam {
 
 /// A landmark and where it was measured.
 struct PoseObservation {
@@ -62,4 +62,4 @@ PoseSolution solve_pose(std::span<const PoseObservation> observations, const Cam
 inline constexpr double kChiSquare2 = 5.991;
 inline constexpr double kChiSquare3 = 7.815;
 
-}  // namespace stillpoint::orb
+}  // namespace stillpoint::orb_slam

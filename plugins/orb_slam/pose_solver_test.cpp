@@ -5,7 +5,7 @@
 
 #include "orb_slam/test_world.hpp"
 
-namespace stillpoint::orb {
+namespace stillpoint::orb_slam {
 namespace {
 
 constexpr double kPixelSigma = 1.0, kDepthSigma = 0.01;
@@ -191,4 +191,4 @@ TEST_F(PoseSolverTest, SameInputSameBits) {
 }
 
 }  // namespace
-}  // namespace stillpoint::orb
+}  // namespace stillpoint::orb_slam

@@ -2,7 +2,7 @@
 
 #include <Eigen/Cholesky>
 
-namespace stillpoint::orb {
+namespace stillpoint::orb_slam {
 namespace {
 
 constexpr double kMostMetres = 0.010;   // standard deviation
@@ -23,4 +23,4 @@ bool is_well_constrained(const Matrix6d& information) {
   return uncertainty.metres() < kMostMetres && uncertainty.radians() < kMostRadians;
 }
 
-}  // namespace stillpoint::orb
+}  // namespace stillpoint::orb_slam

@@ -4,7 +4,7 @@
 #include "stillpoint/contracts/tracker.hpp"
 #include "stillpoint/pose_math.hpp"
 
-namespace stillpoint::orb {
+namespace stillpoint::orb_slam {
 
 /// `information` of the camera's pose in its own frame, translation (m), then rotation (rad). In
 /// directions of which nothing is known the standard deviation is 1 m or 1 rad.
@@ -15,4 +15,4 @@ bool is_well_constrained(const Matrix6d& information);
 
 Matrix6d inverse(const Matrix6d& positive_definite);
 
-}  // namespace stillpoint::orb
+}  // namespace stillpoint::orb_slam

@@ -4,7 +4,7 @@
 
 #include "orb_slam/appearance.hpp"
 
-namespace stillpoint::orb {
+namespace stillpoint::orb_slam {
 namespace {
 
 constexpr std::size_t kCandidates = 5;  // per frame, two of them around the last known place
@@ -39,4 +39,4 @@ bool Relocaliser::find(ObservedFrame& frame, const SparseMap& map) {
   return false;
 }
 
-}  // namespace stillpoint::orb
+}  // namespace stillpoint::orb_slam

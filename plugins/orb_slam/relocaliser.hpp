@@ -6,7 +6,7 @@
 #include "orb_slam/observed_frame.hpp"
 #include "orb_slam/place_index.hpp"
 
-namespace stillpoint::orb {
+namespace stillpoint::orb_slam {
 
 /// Tries a few key frames per call: around the place where tracking was lost, and those that look
 /// like the frame. A lost frame costs a bounded time however large the map is.
@@ -26,4 +26,4 @@ class Relocaliser {
   PlaceIndex places_;
 };
 
-}  // namespace stillpoint::orb
+}  // namespace stillpoint::orb_slam

@@ -4,7 +4,7 @@
 
 #include "orb_slam/test_world.hpp"
 
-namespace stillpoint::orb {
+namespace stillpoint::orb_slam {
 namespace {
 
 constexpr int kRooms = 24;
@@ -81,4 +81,4 @@ TEST_F(RelocaliserTest, UnknownPlaceIsNeverFound) {
 TEST_F(RelocaliserTest, WithoutBeginItStillFinds) { EXPECT_GT(calls_to_find(8), 0); }
 
 }  // namespace
-}  // namespace stillpoint::orb
+}  // namespace stillpoint::orb_slam

@@ -8,7 +8,7 @@
 #include "stillpoint/contracts/features.hpp"
 #include "stillpoint/contracts/landmark.hpp"
 
-namespace stillpoint::orb {
+namespace stillpoint::orb_slam {
 
 /// Factors of the pyramid that features were extracted from.
 class ScalePyramid {
@@ -46,4 +46,4 @@ class ScalePyramid {
   std::array<double, kMaxLevels> scale_{};
 };
 
-}  // namespace stillpoint::orb
+}  // namespace stillpoint::orb_slam

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-namespace stillpoint::orb {
+namespace stillpoint::orb_slam {
 namespace {
 
 constexpr float kFound = 0.2F;       // log-odds of one frame, full weight
@@ -49,4 +49,4 @@ void add_static_evidence(const ObservedFrame& frame, const SparseMap& map,
   }
 }
 
-}  // namespace stillpoint::orb
+}  // namespace stillpoint::orb_slam

@@ -9,7 +9,7 @@
 #include "stillpoint/contracts/keyframe.hpp"
 #include "stillpoint/contracts/sparse_map.hpp"
 
-namespace stillpoint::orb {
+namespace stillpoint::orb_slam {
 
 /// Landmarks with less than this are taken for things that moved, and removed.
 constexpr float kMovedLogOdds = -3.0F;
@@ -22,4 +22,4 @@ using EvidenceByLandmark = std::unordered_map<LandmarkId, LandmarkEvidence>;
 void add_static_evidence(const ObservedFrame& frame, const SparseMap& map,
                          std::span<const LandmarkId> visible, EvidenceByLandmark& evidence);
 
-}  // namespace stillpoint::orb
+}  // namespace stillpoint::orb_slam

@@ -4,7 +4,7 @@
 
 #include "orb_slam/test_world.hpp"
 
-namespace stillpoint::orb {
+namespace stillpoint::orb_slam {
 namespace {
 
 class StaticEvidenceTest : public testing::Test {
@@ -51,4 +51,4 @@ TEST_F(StaticEvidenceTest, OccludedOrUnmeasuredTellsNothing) {
 }
 
 }  // namespace
-}  // namespace stillpoint::orb
+}  // namespace stillpoint::orb_slam

@@ -1,6 +1,6 @@
 #include "orb_slam/targets.hpp"
 
-namespace stillpoint::orb {
+namespace stillpoint::orb_slam {
 namespace {
 
 Target target_of(const Features& features, std::uint32_t i, LandmarkId landmark,
@@ -74,4 +74,4 @@ void assign_targets(ObservedFrame& frame, std::span<const Target> targets,
   }
 }
 
-}  // namespace stillpoint::orb
+}  // namespace stillpoint::orb_slam

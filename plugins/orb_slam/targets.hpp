@@ -7,7 +7,7 @@
 
 #include "orb_slam/observed_frame.hpp"
 
-namespace stillpoint::orb {
+namespace stillpoint::orb_slam {
 
 struct Target {
   LandmarkId landmark = kNoId;     ///< kNoId: a temporary point, measured by one frame's depth only
@@ -34,4 +34,4 @@ int match_projected(ObservedFrame& frame, std::span<const Target> targets,
 void assign_targets(ObservedFrame& frame, std::span<const Target> targets,
                     std::span<const Match> matches);
 
-}  // namespace stillpoint::orb
+}  // namespace stillpoint::orb_slam

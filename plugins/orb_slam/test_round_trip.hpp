@@ -8,7 +8,7 @@
 
 #include "orb_slam/test_world.hpp"
 
-namespace stillpoint::orb {
+namespace stillpoint::orb_slam {
 
 class RoundTrip {
  public:
@@ -83,4 +83,4 @@ inline double worst_metres(const SparseMap& map) {
   return worst;
 }
 
-}  // namespace stillpoint::orb
+}  // namespace stillpoint::orb_slam

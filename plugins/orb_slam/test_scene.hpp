@@ -9,7 +9,7 @@
 #include "stillpoint/contracts/frame.hpp"
 #include "stillpoint/pose_math.hpp"
 
-namespace stillpoint::orb {
+namespace stillpoint::orb_slam {
 
 // A rectangle at depth z of the world, metres.
 struct Panel {
@@ -96,4 +96,4 @@ class TestScene {
   std::shared_ptr<const Camera> camera_ = std::make_shared<Camera>();
 };
 
-}  // namespace stillpoint::orb
+}  // namespace stillpoint::orb_slam

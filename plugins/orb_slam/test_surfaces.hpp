@@ -10,7 +10,7 @@
 #include "stillpoint/contracts/frame.hpp"
 #include "stillpoint/pose_math.hpp"
 
-namespace stillpoint::orb {
+namespace stillpoint::orb_slam {
 
 // normal·x = distance, metres; unbounded, seen from either side.
 struct WorldPlane {
@@ -50,4 +50,4 @@ inline FramePtr see_planes(const std::vector<WorldPlane>& planes, const Pose& wo
   return frame;
 }
 
-}  // namespace stillpoint::orb
+}  // namespace stillpoint::orb_slam

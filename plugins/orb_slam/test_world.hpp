@@ -12,7 +12,7 @@
 #include "orb_slam/observed_frame.hpp"
 #include "stillpoint/contracts/sparse_map.hpp"
 
-namespace stillpoint::orb {
+namespace stillpoint::orb_slam {
 
 struct WorldPoint {
   Eigen::Vector3d position;  // metres
@@ -194,4 +194,4 @@ inline ObservedFrame observed(const View& view) {
   return result;
 }
 
-}  // namespace stillpoint::orb
+}  // namespace stillpoint::orb_slam

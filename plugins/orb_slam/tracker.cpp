@@ -9,7 +9,7 @@
 #include "orb_slam/orb_keyframe.hpp"
 #include "orb_slam/pose_uncertainty.hpp"
 
-namespace stillpoint::orb {
+namespace stillpoint::orb_slam {
 namespace {
 
 constexpr int kMinMotionMatches = 20;  // fewer: search again in a wider window
@@ -41,38 +41,6 @@ struct PreparedOrbFrame final : PreparedFrame {
 };
 
 }  // namespace
-
-void OrbTracker::Options::visit(OptionVisitor& v) {
-  orb.visit(v);
-  v("min_start_points", min_start_points,
-    {.min = 20, .help = "features with depth that the first key frame needs"});
-  v("min_inliers", min_inliers,
-    {.min = 6, .help = "with fewer fitting landmarks tracking is lost"});
-  v("min_bridge_points", min_bridge_points,
-    {.min = 6,
-     .help = "points that must fit where the map is not enough and the last frame's depth helps"});
-  v("local_keyframes", local_keyframes,
-    {.min = 1, .help = "key frames whose landmarks are searched for in a frame"});
-  v("motion_window", motion_window,
-    {.min = 1,
-     .unit = "px",
-     .help = "search radius around the place predicted from the last frame"});
-  v("local_window", local_window,
-    {.min = 0.5, .unit = "px", .help = "search radius around the place predicted from the map"});
-  v("probation", probation,
-    {.min = 0,
-     .max = 60,
-     .unit = "s",
-     .help = "until a new landmark counts in full for the pose, where something about may move; 0: "
-             "at once"});
-  v("max_feature_factor", max_feature_factor,
-    {.min = 1,
-     .max = 4,
-     .help = "times `features`, to make up for a part of the image that cannot be mapped"});
-  v("hold_by_depth", hold_by_depth,
-    {.help = "where landmarks do not hold the pose, surfaces in depth do"});
-  keyframe.visit(v);
-}
 
 OrbTracker::OrbTracker(Options options) : options_(options), extractor_(options.orb) {}
 
@@ -242,25 +210,7 @@ void OrbTracker::search_local_map(const SparseMap& map) {
   if (local.reference == kNoId && map.keyframe(last_.reference))
     current_.reference = last_.reference;
 
-  std::vector<bool> matched(map.landmark_id_end());
-  for (const LandmarkId id : current_.landmarks)
-    if (id != kNoId) matched[id] = true;
-  const Pose camera_from_world = current_.world_from_camera.inverse();
-  const ScalePyramid pyramid(*current_.features);
-  std::vector<Query> queries;
-  for (const LandmarkId id : local.landmarks) {
-    if (matched[id]) {
-      visible_.push_back(id);
-      continue;
-    }
-    const auto query = predict(*map.landmark(id), camera_from_world, *current_.frame->camera,
-                               pyramid, options_.local_window);
-    if (!query) continue;
-    visible_.push_back(id);
-    queries.push_back(*query);
-  }
-  current_.assign(match_near(queries, *current_.features, current_.grid,
-                             [&](std::uint32_t i) { return current_.free(i); }, {.ratio = 0.8}));
+  search(current_, local, map, options_.local_window, visible_);
 }
 
 TrackResult OrbTracker::tracked(const SparseMap& map, TrackHints hints) {
@@ -357,4 +307,4 @@ KeyFrame OrbTracker::make_keyframe(KeyFrameId id) {
   return keyframe;
 }
 
-}  // namespace stillpoint::orb
+}  // namespace stillpoint::orb_slam

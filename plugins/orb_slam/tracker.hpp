@@ -6,34 +6,19 @@
 
 #include "orb_slam/constant_velocity.hpp"
 #include "orb_slam/depth_hold.hpp"
-#include "orb_slam/keyframe_policy.hpp"
 #include "orb_slam/local_map.hpp"
 #include "orb_slam/moving_area.hpp"
 #include "orb_slam/observed_frame.hpp"
-#include "orb_slam/orb_extractor.hpp"
 #include "orb_slam/relocaliser.hpp"
 #include "orb_slam/static_evidence.hpp"
+#include "orb_slam/tracker_options.hpp"
 #include "stillpoint/contracts/tracker.hpp"
 
-namespace stillpoint::orb {
+namespace stillpoint::orb_slam {
 
 class OrbTracker final : public Tracker {
  public:
-  struct Options {
-    OrbOptions orb;
-    KeyFrameOptions keyframe;
-    int min_start_points = 100;
-    int min_inliers = 30;
-    int min_bridge_points = 50;
-    int local_keyframes = 80;
-    double motion_window = 15.0;
-    double local_window = 3.0;
-    double probation = 0.0;
-    double max_feature_factor = 1.0;
-    bool hold_by_depth = true;
-
-    void visit(OptionVisitor& visitor);
-  };
+  using Options = TrackerOptions;
 
   explicit OrbTracker(Options options);
 
@@ -87,4 +72,4 @@ class OrbTracker final : public Tracker {
   EvidenceByLandmark evidence_;
 };
 
-}  // namespace stillpoint::orb
+}  // namespace stillpoint::orb_slam

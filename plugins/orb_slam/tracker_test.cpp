@@ -8,7 +8,7 @@
 #include "orb_slam/test_surfaces.hpp"
 #include "orb_slam/test_world.hpp"
 
-namespace stillpoint::orb {
+namespace stillpoint::orb_slam {
 namespace {
 
 using Use = TrackedFeature::Use;
@@ -344,4 +344,4 @@ TEST_F(TrackerTest, NewLandmarksAreOnProbationOnlyWhereSomethingMayMove) {
 }
 
 }  // namespace
-}  // namespace stillpoint::orb
+}  // namespace stillpoint::orb_slam

@@ -5,7 +5,7 @@
 #include <cstdio>
 #include <opencv2/imgproc.hpp>
 
-namespace stillpoint {
+namespace stillpoint::output_files {
 namespace {
 
 using Use = TrackedFeature::Use;
@@ -109,4 +109,4 @@ cv::Mat annotated(const FrameReport& report, const AnnotationParts& parts) {
   return picture;
 }
 
-}  // namespace stillpoint
+}  // namespace stillpoint::output_files

@@ -4,7 +4,7 @@
 #include <opencv2/core/mat.hpp>
 #include <stillpoint/sdk.hpp>
 
-namespace stillpoint {
+namespace stillpoint::output_files {
 
 /// What is drawn.
 struct AnnotationParts {
@@ -18,4 +18,4 @@ struct AnnotationParts {
 /// A picture of the frame's size, CV_8UC3.
 cv::Mat annotated(const FrameReport& report, const AnnotationParts& parts);
 
-}  // namespace stillpoint
+}  // namespace stillpoint::output_files

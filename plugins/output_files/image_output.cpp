@@ -9,7 +9,7 @@
 
 #include "stillpoint/support/atomic_file.hpp"
 
-namespace stillpoint {
+namespace stillpoint::output_files {
 namespace {
 
 namespace fs = std::filesystem;
@@ -52,4 +52,4 @@ void ImageOutput::frame(const FrameReport& report) {
   file.commit();
 }
 
-}  // namespace stillpoint
+}  // namespace stillpoint::output_files

@@ -6,7 +6,7 @@
 
 #include "output_files/annotation.hpp"
 
-namespace stillpoint {
+namespace stillpoint::output_files {
 
 class ImageOutput final : public Output {
  public:
@@ -41,4 +41,4 @@ class ImageOutput final : public Output {
   bool begun_ = false;  // until then the folder is an earlier run's
 };
 
-}  // namespace stillpoint
+}  // namespace stillpoint::output_files

@@ -3,7 +3,7 @@
 #include "output_files/tum_pose.hpp"
 #include "stillpoint/support/atomic_file.hpp"
 
-namespace stillpoint {
+namespace stillpoint::output_files {
 
 void KeyFramesOutput::finish(const RunSummary& summary) {
   AtomicFile file(path_);
@@ -14,4 +14,4 @@ void KeyFramesOutput::finish(const RunSummary& summary) {
   file.commit();
 }
 
-}  // namespace stillpoint
+}  // namespace stillpoint::output_files

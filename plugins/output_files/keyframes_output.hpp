@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <stillpoint/sdk.hpp>
 
-namespace stillpoint {
+namespace stillpoint::output_files {
 
 class KeyFramesOutput final : public Output {
  public:
@@ -22,4 +22,4 @@ class KeyFramesOutput final : public Output {
   std::filesystem::path path_;
 };
 
-}  // namespace stillpoint
+}  // namespace stillpoint::output_files

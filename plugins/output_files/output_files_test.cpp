@@ -12,7 +12,7 @@
 #include "output_files/timings_output.hpp"
 #include "output_files/trajectory_output.hpp"
 
-namespace stillpoint {
+namespace stillpoint::output_files {
 namespace {
 
 namespace fs = std::filesystem;
@@ -260,4 +260,4 @@ TEST_F(OutputFiles, AFileThatCannotBeWrittenIsAUsageError) {
 }
 
 }  // namespace
-}  // namespace stillpoint
+}  // namespace stillpoint::output_files

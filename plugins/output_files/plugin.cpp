@@ -9,14 +9,14 @@
 using stillpoint::Output;
 using stillpoint::provide;
 
-STILLPOINT_PLUGIN(
-    output_files, "0.1.0",
-    provide<Output, stillpoint::TrajectoryOutput>(
-        "trajectory", "trajectory.txt: poses of all tracked frames, TUM format"),
-    provide<Output, stillpoint::KeyFramesOutput>(
-        "keyframes", "keyframes.txt: poses of the key frames, TUM format"),
-    provide<Output, stillpoint::TimingsOutput>(
-        "timings", "timings.csv: what every stage took for every frame"),
-    provide<Output, stillpoint::SummaryOutput>("summary", "summary.json: the figures of the run"),
-    provide<Output, stillpoint::ImageOutput>(
-        "images", "pictures of frames with features, moving points and labels"));
+STILLPOINT_PLUGIN(output_files, "0.1.0",
+                  provide<Output, stillpoint::output_files::TrajectoryOutput>(
+                      "trajectory", "trajectory.txt: poses of all tracked frames, TUM format"),
+                  provide<Output, stillpoint::output_files::KeyFramesOutput>(
+                      "keyframes", "keyframes.txt: poses of the key frames, TUM format"),
+                  provide<Output, stillpoint::output_files::TimingsOutput>(
+                      "timings", "timings.csv: what every stage took for every frame"),
+                  provide<Output, stillpoint::output_files::SummaryOutput>(
+                      "summary", "summary.json: the figures of the run"),
+                  provide<Output, stillpoint::output_files::ImageOutput>(
+                      "images", "pictures of frames with features, moving points and labels"));

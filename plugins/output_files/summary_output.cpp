@@ -7,7 +7,7 @@
 
 #include "stillpoint/support/atomic_file.hpp"
 
-namespace stillpoint {
+namespace stillpoint::output_files {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -75,4 +75,4 @@ void SummaryOutput::finish(const RunSummary& summary) {
   file.commit();
 }
 
-}  // namespace stillpoint
+}  // namespace stillpoint::output_files

@@ -5,7 +5,7 @@
 #include <stillpoint/sdk.hpp>
 #include <stillpoint/support/run_statistics.hpp>
 
-namespace stillpoint {
+namespace stillpoint::output_files {
 
 class SummaryOutput final : public Output {
  public:
@@ -25,4 +25,4 @@ class SummaryOutput final : public Output {
   StageStatistics statistics_;
 };
 
-}  // namespace stillpoint
+}  // namespace stillpoint::output_files

@@ -3,7 +3,7 @@
 #include <array>
 #include <cstdio>
 
-namespace stillpoint {
+namespace stillpoint::output_files {
 
 TimingsOutput::TimingsOutput(const Options& options, const StageContext& context)
     : file_(context.output_directory / options.file) {
@@ -23,4 +23,4 @@ void TimingsOutput::write(std::span<const StageTime> times) {
   }
 }
 
-}  // namespace stillpoint
+}  // namespace stillpoint::output_files

@@ -6,7 +6,7 @@
 
 #include "stillpoint/support/atomic_file.hpp"
 
-namespace stillpoint {
+namespace stillpoint::output_files {
 
 /// Written as the run goes, so that memory does not grow with it. Rows are in the order in which
 /// stages ended.
@@ -28,4 +28,4 @@ class TimingsOutput final : public Output {
   AtomicFile file_;
 };
 
-}  // namespace stillpoint
+}  // namespace stillpoint::output_files

@@ -4,7 +4,7 @@
 #include "stillpoint/support/atomic_file.hpp"
 #include "stillpoint/support/trajectory.hpp"
 
-namespace stillpoint {
+namespace stillpoint::output_files {
 
 void TrajectoryOutput::finish(const RunSummary& summary) {
   AtomicFile file(path_);
@@ -15,4 +15,4 @@ void TrajectoryOutput::finish(const RunSummary& summary) {
   file.commit();
 }
 
-}  // namespace stillpoint
+}  // namespace stillpoint::output_files

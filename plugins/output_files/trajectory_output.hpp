@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <stillpoint/sdk.hpp>
 
-namespace stillpoint {
+namespace stillpoint::output_files {
 
 /// Poses of the tracked frames. Each follows its reference key frame to where mapping and loop
 /// closing have moved it. Frames whose reference never reached the map, because the run was
@@ -25,4 +25,4 @@ class TrajectoryOutput final : public Output {
   std::filesystem::path path_;
 };
 
-}  // namespace stillpoint
+}  // namespace stillpoint::output_files

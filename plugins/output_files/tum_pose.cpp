@@ -3,7 +3,7 @@
 #include <array>
 #include <cstdio>
 
-namespace stillpoint {
+namespace stillpoint::output_files {
 
 void write_tum_pose(std::ostream& stream, double time, const Pose& world_from_camera) {
   Eigen::Quaterniond q(world_from_camera.linear());
@@ -16,4 +16,4 @@ void write_tum_pose(std::ostream& stream, double time, const Pose& world_from_ca
   stream << line.data();
 }
 
-}  // namespace stillpoint
+}  // namespace stillpoint::output_files

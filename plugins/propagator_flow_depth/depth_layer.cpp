@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-namespace stillpoint {
+namespace stillpoint::propagator_flow_depth {
 namespace {
 
 constexpr float kBin = 0.05f;        // metres
@@ -54,4 +54,4 @@ DepthLayer depth_layer(const cv::Mat& depth, const cv::Mat& mask) {
           kBin * static_cast<float>(reach(histogram, middle, 1, enough) + 1)};
 }
 
-}  // namespace stillpoint
+}  // namespace stillpoint::propagator_flow_depth

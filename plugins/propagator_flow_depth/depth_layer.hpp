@@ -3,7 +3,7 @@
 
 #include <opencv2/core/mat.hpp>
 
-namespace stillpoint {
+namespace stillpoint::propagator_flow_depth {
 
 /// Metres. `far` 0: nothing is known.
 struct DepthLayer {
@@ -22,4 +22,4 @@ struct DepthLayer {
 /// the median, without gaps. What a mask wrongly has of the things behind is beyond such a gap.
 DepthLayer depth_layer(const cv::Mat& depth, const cv::Mat& mask);
 
-}  // namespace stillpoint
+}  // namespace stillpoint::propagator_flow_depth

@@ -9,7 +9,7 @@
 #include "propagator_flow_depth/object_matching.hpp"
 #include "stillpoint/support/objects.hpp"
 
-namespace stillpoint {
+namespace stillpoint::propagator_flow_depth {
 namespace {
 
 constexpr std::size_t kHistory = 16;  // views
@@ -298,4 +298,4 @@ Segmentation FlowDepthPropagator::result(const View& view, const Frame& frame) c
   return result;
 }
 
-}  // namespace stillpoint
+}  // namespace stillpoint::propagator_flow_depth

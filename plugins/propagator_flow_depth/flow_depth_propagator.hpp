@@ -10,7 +10,7 @@
 #include "propagator_flow_depth/view.hpp"
 #include "stillpoint/sdk.hpp"
 
-namespace stillpoint {
+namespace stillpoint::propagator_flow_depth {
 
 /// Every object keeps the mask that the network gave it in its reference view, and points followed
 /// on it since. In the current view the mask is where these points have gone to, with its outline
@@ -63,4 +63,4 @@ class FlowDepthPropagator final : public Propagator {
   int next_id_ = 0;
 };
 
-}  // namespace stillpoint
+}  // namespace stillpoint::propagator_flow_depth

@@ -5,7 +5,7 @@
 #include "propagator_flow_depth/flow_depth_propagator.hpp"
 #include "propagator_flow_depth/test_scene.hpp"
 
-namespace stillpoint {
+namespace stillpoint::propagator_flow_depth {
 namespace {
 
 TEST(FlowDepthPropagator, CarriesLabelsOfAnOlderFrame) {
@@ -173,4 +173,4 @@ TEST(FlowDepthPropagator, IsReproducible) {
 }
 
 }  // namespace
-}  // namespace stillpoint
+}  // namespace stillpoint::propagator_flow_depth

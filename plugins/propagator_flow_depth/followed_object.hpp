@@ -8,7 +8,7 @@
 #include "propagator_flow_depth/depth_layer.hpp"
 #include "propagator_flow_depth/point_follower.hpp"
 
-namespace stillpoint {
+namespace stillpoint::propagator_flow_depth {
 
 struct FollowedObject {
   int id = 0;
@@ -37,4 +37,4 @@ struct FollowedObject {
   double support = 0.0;  ///< share of the mask's measurements that lie in the layer
 };
 
-}  // namespace stillpoint
+}  // namespace stillpoint::propagator_flow_depth

@@ -6,7 +6,7 @@
 #include "propagator_flow_depth/mask_rim.hpp"
 #include "stillpoint/support/objects.hpp"
 
-namespace stillpoint {
+namespace stillpoint::propagator_flow_depth {
 namespace {
 
 constexpr double kSurfaceShare = 0.05;  // of the mask; less is no surface of its own
@@ -72,4 +72,4 @@ FoundObjects found_objects(const Segmentation& segmentation, const View& view,
   return found;
 }
 
-}  // namespace stillpoint
+}  // namespace stillpoint::propagator_flow_depth

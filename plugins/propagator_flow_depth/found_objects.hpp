@@ -8,7 +8,7 @@
 #include "propagator_flow_depth/view.hpp"
 #include "stillpoint/contracts/segmentation.hpp"
 
-namespace stillpoint {
+namespace stillpoint::propagator_flow_depth {
 
 /// An object of the result; or a surface of its own before the larger part of one: a mask that has
 /// grown over the desk or the floor still has the person whom it belongs to, and of two people with
@@ -38,4 +38,4 @@ struct FindOptions {
 FoundObjects found_objects(const Segmentation& segmentation, const View& view,
                            const FindOptions& options);
 
-}  // namespace stillpoint
+}  // namespace stillpoint::propagator_flow_depth

@@ -9,7 +9,7 @@
 #include "propagator_flow_depth/test_scene.hpp"
 #include "stillpoint/support/objects.hpp"
 
-namespace stillpoint {
+namespace stillpoint::propagator_flow_depth {
 namespace {
 
 /// What a network leaves that has found only the upper `rows` rows.
@@ -135,4 +135,4 @@ TEST(ImperfectMask, DoesNotFloodWhatIsTouched) {
 }
 
 }  // namespace
-}  // namespace stillpoint
+}  // namespace stillpoint::propagator_flow_depth

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
-namespace stillpoint {
+namespace stillpoint::propagator_flow_depth {
 namespace {
 
 constexpr float kDepthWeight = 1.2f;  // more than the mask's 1: depth can cut its middle, too
@@ -72,4 +72,4 @@ cv::Mat fit_to_depth(const cv::Mat& predicted, const cv::Mat& depth, const Depth
   return fitted;
 }
 
-}  // namespace stillpoint
+}  // namespace stillpoint::propagator_flow_depth

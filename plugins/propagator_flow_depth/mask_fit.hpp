@@ -5,7 +5,7 @@
 
 #include "propagator_flow_depth/depth_layer.hpp"
 
-namespace stillpoint {
+namespace stillpoint::propagator_flow_depth {
 
 struct MaskFitOptions {
   int margin = 4;          ///< px that the outline may move outwards
@@ -18,4 +18,4 @@ struct MaskFitOptions {
 cv::Mat fit_to_depth(const cv::Mat& predicted, const cv::Mat& depth, const DepthLayer& layer,
                      const MaskFitOptions& options);
 
-}  // namespace stillpoint
+}  // namespace stillpoint::propagator_flow_depth

@@ -2,7 +2,7 @@
 
 #include <opencv2/imgproc.hpp>
 
-namespace stillpoint {
+namespace stillpoint::propagator_flow_depth {
 
 cv::Mat without_rims(const cv::Mat& mask, int rim) {
   const cv::Size wider(2 * rim + 1, 2 * rim + 1);
@@ -11,4 +11,4 @@ cv::Mat without_rims(const cv::Mat& mask, int rim) {
   return opened;
 }
 
-}  // namespace stillpoint
+}  // namespace stillpoint::propagator_flow_depth

@@ -3,9 +3,9 @@
 
 #include <opencv2/core/mat.hpp>
 
-namespace stillpoint {
+namespace stillpoint::propagator_flow_depth {
 
 /// `mask` (CV_8UC1, 0 or 255) without what is no wider than twice `rim` pixels.
 cv::Mat without_rims(const cv::Mat& mask, int rim);
 
-}  // namespace stillpoint
+}  // namespace stillpoint::propagator_flow_depth

@@ -5,7 +5,7 @@
 
 #include "stillpoint/support/median.hpp"
 
-namespace stillpoint {
+namespace stillpoint::propagator_flow_depth {
 namespace {
 
 constexpr int kCell = 8;    // px between the nodes where motion is computed
@@ -78,4 +78,4 @@ cv::Mat warp_mask(const cv::Mat& reference, cv::Rect box, std::span<const Track>
   return warped(cv::Rect({}, region.size())) > 127;
 }
 
-}  // namespace stillpoint
+}  // namespace stillpoint::propagator_flow_depth

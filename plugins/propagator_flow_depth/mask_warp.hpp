@@ -6,7 +6,7 @@
 
 #include "propagator_flow_depth/point_follower.hpp"
 
-namespace stillpoint {
+namespace stillpoint::propagator_flow_depth {
 
 /// Robust mean motion of an object since its reference view.
 struct ObjectMotion {
@@ -23,4 +23,4 @@ ObjectMotion median_motion(std::span<const Track> tracks);
 cv::Mat warp_mask(const cv::Mat& reference, cv::Rect box, std::span<const Track> tracks,
                   cv::Rect region);
 
-}  // namespace stillpoint
+}  // namespace stillpoint::propagator_flow_depth

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace stillpoint {
+namespace stillpoint::propagator_flow_depth {
 namespace {
 
 constexpr double kOverlap = 0.3;          // of the smaller mask
@@ -69,4 +69,4 @@ Matches match_objects(const MatchInput& input) {
   return matches;
 }
 
-}  // namespace stillpoint
+}  // namespace stillpoint::propagator_flow_depth

@@ -8,7 +8,7 @@
 #include "propagator_flow_depth/followed_object.hpp"
 #include "propagator_flow_depth/found_objects.hpp"
 
-namespace stillpoint {
+namespace stillpoint::propagator_flow_depth {
 
 /// What was found in a view, and what was followed there.
 struct MatchInput {
@@ -28,4 +28,4 @@ struct Matches {
 /// first.
 Matches match_objects(const MatchInput& input);
 
-}  // namespace stillpoint
+}  // namespace stillpoint::propagator_flow_depth

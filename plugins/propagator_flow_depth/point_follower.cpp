@@ -4,7 +4,7 @@
 #include <opencv2/imgproc.hpp>
 #include <opencv2/video/tracking.hpp>
 
-namespace stillpoint {
+namespace stillpoint::propagator_flow_depth {
 namespace {
 
 constexpr int kLevels = 3;
@@ -74,4 +74,4 @@ void follow(const View& from, const View& to, std::span<Track*> tracks, float ma
   }
 }
 
-}  // namespace stillpoint
+}  // namespace stillpoint::propagator_flow_depth

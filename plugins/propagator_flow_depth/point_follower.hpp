@@ -8,7 +8,7 @@
 
 #include "propagator_flow_depth/view.hpp"
 
-namespace stillpoint {
+namespace stillpoint::propagator_flow_depth {
 
 /// A point of an object since its reference view; px of views.
 struct Track {
@@ -31,4 +31,4 @@ std::vector<Track> choose_points(const View& view, const cv::Mat& mask, cv::Rect
 /// slides from the object onto something else.
 void follow(const View& from, const View& to, std::span<Track*> tracks, float max_error);
 
-}  // namespace stillpoint
+}  // namespace stillpoint::propagator_flow_depth

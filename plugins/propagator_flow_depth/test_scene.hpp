@@ -10,7 +10,7 @@
 #include "stillpoint/contracts/segmentation.hpp"
 #include "stillpoint/support/objects.hpp"
 
-namespace stillpoint {
+namespace stillpoint::propagator_flow_depth {
 
 inline constexpr int kPerson = 15;
 inline constexpr int kChair = 9;
@@ -74,4 +74,4 @@ inline Box walker(int index, int label = kPerson) {
   return {{60 + 5 * index, 60, 60, 120}, 2.0f, label};
 }
 
-}  // namespace stillpoint
+}  // namespace stillpoint::propagator_flow_depth

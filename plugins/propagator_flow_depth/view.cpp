@@ -6,7 +6,7 @@
 
 #include "propagator_flow_depth/point_follower.hpp"
 
-namespace stillpoint {
+namespace stillpoint::propagator_flow_depth {
 
 View make_view(const Frame& frame, View recycled) {
   View view = std::move(recycled);
@@ -33,4 +33,4 @@ float depth_at(const View& view, cv::Point2f position) {
   return view.depth.at<float>(y, x);
 }
 
-}  // namespace stillpoint
+}  // namespace stillpoint::propagator_flow_depth

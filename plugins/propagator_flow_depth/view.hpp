@@ -7,7 +7,7 @@
 
 #include "stillpoint/contracts/frame.hpp"
 
-namespace stillpoint {
+namespace stillpoint::propagator_flow_depth {
 
 /// px of a frame per pixel of its view. All positions in this plugin are pixels of views.
 inline constexpr int kViewScale = 2;
@@ -30,4 +30,4 @@ View make_view(const Frame& frame, View recycled = {});
 /// Depth at a position, 0 = no measurement.
 float depth_at(const View& view, cv::Point2f position);
 
-}  // namespace stillpoint
+}  // namespace stillpoint::propagator_flow_depth

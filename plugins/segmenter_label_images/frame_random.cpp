@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <opencv2/imgproc.hpp>
 
-namespace stillpoint {
+namespace stillpoint::segmenter_label_images {
 namespace {
 
 // Finaliser of SplitMix64: close numbers give unrelated streams.
@@ -29,4 +29,4 @@ cv::Mat random_blob(cv::Size size, cv::RNG& random) {
   return blob;
 }
 
-}  // namespace stillpoint
+}  // namespace stillpoint::segmenter_label_images

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <opencv2/core.hpp>
 
-namespace stillpoint {
+namespace stillpoint::segmenter_label_images {
 
 /// What random numbers are for; those for different purposes have nothing to do with each other.
 enum class Purpose : std::uint32_t { kMisses, kOutlines, kFalseObjects, kHoles, kBlobs };
@@ -15,4 +15,4 @@ cv::RNG frame_random(std::uint64_t seed, Purpose purpose, std::uint32_t period);
 /// CV_8UC1 of this size, 255 in an ellipse somewhere that is up to half as high as the image.
 cv::Mat random_blob(cv::Size size, cv::RNG& random);
 
-}  // namespace stillpoint
+}  // namespace stillpoint::segmenter_label_images

@@ -4,7 +4,7 @@
 
 #include "segmenter_label_images/frame_random.hpp"
 
-namespace stillpoint {
+namespace stillpoint::segmenter_label_images {
 namespace {
 
 constexpr int kBlobs = 6;  // they cover about a third of the image
@@ -43,4 +43,4 @@ cv::Mat HostileLabels::apply(const cv::Mat& labels, std::uint32_t period) const 
   return result;
 }
 
-}  // namespace stillpoint
+}  // namespace stillpoint::segmenter_label_images

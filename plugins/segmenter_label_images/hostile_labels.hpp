@@ -10,7 +10,7 @@
 #include "stillpoint/class_names.hpp"
 #include "stillpoint/options.hpp"
 
-namespace stillpoint {
+namespace stillpoint::segmenter_label_images {
 
 struct HostileOptions {
   enum class Kind { kNone, kEverything, kNobody, kBlobs } hostile = Kind::kNone;
@@ -38,4 +38,4 @@ class HostileLabels {
   std::uint64_t seed_;
 };
 
-}  // namespace stillpoint
+}  // namespace stillpoint::segmenter_label_images

@@ -10,7 +10,7 @@
 
 #include "stillpoint/error.hpp"
 
-namespace stillpoint {
+namespace stillpoint::segmenter_label_images {
 namespace {
 
 namespace fs = std::filesystem;
@@ -80,4 +80,4 @@ cv::Mat read_labels(const fs::path& file, std::size_t classes) {
   return labels;
 }
 
-}  // namespace stillpoint
+}  // namespace stillpoint::segmenter_label_images

@@ -5,7 +5,7 @@
 #include <opencv2/core/mat.hpp>
 #include <vector>
 
-namespace stillpoint {
+namespace stillpoint::segmenter_label_images {
 
 /// PNG files named SECONDS.png, as in `1305031102.175304.png`; others are not looked at.
 class LabelFiles {
@@ -32,4 +32,4 @@ class LabelFiles {
 /// below `classes`.
 cv::Mat read_labels(const std::filesystem::path& file, std::size_t classes);
 
-}  // namespace stillpoint
+}  // namespace stillpoint::segmenter_label_images

@@ -5,7 +5,7 @@
 #include "stillpoint/support/objects.hpp"
 #include "stillpoint/support/size_text.hpp"
 
-namespace stillpoint {
+namespace stillpoint::segmenter_label_images {
 namespace {
 
 constexpr std::size_t kHopelessStart = 10;  // frames without labels before the first with some
@@ -101,4 +101,4 @@ void LabelImageSegmenter::report_missing(const Frame& frame, const LabelFiles::E
   if (missing_ == 1) log_(LogLevel::kWarning, text.str());
 }
 
-}  // namespace stillpoint
+}  // namespace stillpoint::segmenter_label_images

@@ -10,7 +10,7 @@
 #include "segmenter_label_images/network_errors.hpp"
 #include "stillpoint/sdk.hpp"
 
-namespace stillpoint {
+namespace stillpoint::segmenter_label_images {
 
 /// A frame without an image has no labels; when none of the first ten frames has one, the folder
 /// belongs to another recording and segment() throws Error(kData).
@@ -46,4 +46,4 @@ class LabelImageSegmenter final : public Segmenter {
   std::size_t missing_ = 0;  // and without
 };
 
-}  // namespace stillpoint
+}  // namespace stillpoint::segmenter_label_images

@@ -8,7 +8,7 @@
 
 #include "support/recording_writer.hpp"
 
-namespace stillpoint {
+namespace stillpoint::segmenter_label_images {
 namespace {
 
 using ::testing::AllOf;
@@ -331,4 +331,4 @@ TEST_F(LabelImageSegmenterTest, LabelsOfAnotherSizeAreAnError) {
 }
 
 }  // namespace
-}  // namespace stillpoint
+}  // namespace stillpoint::segmenter_label_images

@@ -7,7 +7,7 @@
 #include "segmenter_label_images/frame_random.hpp"
 #include "stillpoint/support/objects.hpp"
 
-namespace stillpoint {
+namespace stillpoint::segmenter_label_images {
 namespace {
 
 /// px along an outline over which its error stays about the same.
@@ -111,4 +111,4 @@ void NetworkErrors::add_false_object(cv::Mat& labels, std::uint32_t period) cons
   labels.setTo(false_label_, random_blob(labels.size(), random) & (labels == 0));
 }
 
-}  // namespace stillpoint
+}  // namespace stillpoint::segmenter_label_images

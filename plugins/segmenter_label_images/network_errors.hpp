@@ -7,7 +7,7 @@
 
 #include "stillpoint/options.hpp"
 
-namespace stillpoint {
+namespace stillpoint::segmenter_label_images {
 
 struct NetworkErrorOptions {
   double miss_rate = 0.0;              ///< probability that an object is missed
@@ -51,4 +51,4 @@ class NetworkErrors {
   std::uint64_t seed_;
 };
 
-}  // namespace stillpoint
+}  // namespace stillpoint::segmenter_label_images

@@ -7,7 +7,7 @@
 
 #include "segmenter_opencv_dnn/test_networks.hpp"
 
-namespace stillpoint {
+namespace stillpoint::segmenter_opencv_dnn {
 namespace {
 
 using ::testing::AllOf;
@@ -172,4 +172,4 @@ TEST_F(BadNetwork, CornersThatAreNoCells) {
 }
 
 }  // namespace
-}  // namespace stillpoint
+}  // namespace stillpoint::segmenter_opencv_dnn

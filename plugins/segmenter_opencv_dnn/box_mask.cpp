@@ -5,7 +5,7 @@
 #include <opencv2/imgproc.hpp>
 #include <vector>
 
-namespace stillpoint {
+namespace stillpoint::segmenter_opencv_dnn {
 namespace {
 
 constexpr double kNoiseSigmas = 3.0;
@@ -135,4 +135,4 @@ cv::Mat box_mask(const cv::Mat& depth, double noise, const cv::Rect& box,
   return ellipse(box.size());
 }
 
-}  // namespace stillpoint
+}  // namespace stillpoint::segmenter_opencv_dnn

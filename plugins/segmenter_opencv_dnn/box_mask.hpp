@@ -6,7 +6,7 @@
 
 #include "stillpoint/options.hpp"
 
-namespace stillpoint {
+namespace stillpoint::segmenter_opencv_dnn {
 
 struct BoxMaskOptions {
   double overlap = 0.4;       ///< intersection over union above which the lesser box is dropped
@@ -25,4 +25,4 @@ struct BoxMaskOptions {
 cv::Mat box_mask(const cv::Mat& depth, double noise, const cv::Rect& box,
                  const BoxMaskOptions& options);
 
-}  // namespace stillpoint
+}  // namespace stillpoint::segmenter_opencv_dnn

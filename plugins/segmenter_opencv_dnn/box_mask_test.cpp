@@ -4,7 +4,7 @@
 
 #include <opencv2/imgproc.hpp>
 
-namespace stillpoint {
+namespace stillpoint::segmenter_opencv_dnn {
 namespace {
 
 constexpr float kWall = 4.0f;     // metres
@@ -76,4 +76,4 @@ TEST(BoxMask, BoxesOfOnePixelWork) {
 }
 
 }  // namespace
-}  // namespace stillpoint
+}  // namespace stillpoint::segmenter_opencv_dnn

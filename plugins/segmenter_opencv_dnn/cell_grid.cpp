@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace stillpoint {
+namespace stillpoint::segmenter_opencv_dnn {
 namespace {
 
 std::vector<CellPosition> positions(CellAlignment alignment, int cells, int input, int pixels) {
@@ -32,4 +32,4 @@ CellGrid::CellGrid(CellAlignment alignment, cv::Size cells_, cv::Size input, cv:
       columns(positions(alignment, cells_.width, input.width, image_.width)),
       rows(positions(alignment, cells_.height, input.height, image_.height)) {}
 
-}  // namespace stillpoint
+}  // namespace stillpoint::segmenter_opencv_dnn

@@ -4,7 +4,7 @@
 #include <opencv2/core/types.hpp>
 #include <vector>
 
-namespace stillpoint {
+namespace stillpoint::segmenter_opencv_dnn {
 
 enum class CellAlignment {
   kCentres,  ///< the cells tile the input, as those of a network that ends at its input's size
@@ -29,4 +29,4 @@ struct CellGrid {
   std::vector<CellPosition> rows;     ///< one per row of the image
 };
 
-}  // namespace stillpoint
+}  // namespace stillpoint::segmenter_opencv_dnn

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-namespace stillpoint {
+namespace stillpoint::segmenter_opencv_dnn {
 namespace {
 
 /// Interpolates a quantity that is given per cell.
@@ -51,4 +51,4 @@ TEST(CellGrid, OneCellCoversEverything) {
 }
 
 }  // namespace
-}  // namespace stillpoint
+}  // namespace stillpoint::segmenter_opencv_dnn

@@ -4,7 +4,7 @@
 #include <array>
 #include <limits>
 
-namespace stillpoint {
+namespace stillpoint::segmenter_opencv_dnn {
 namespace {
 
 /// Pixels [first, end) that lie between the same two cells.
@@ -134,4 +134,4 @@ void score_objects(Segmentation& segmentation, const std::vector<cv::Mat>& proba
   }
 }
 
-}  // namespace stillpoint
+}  // namespace stillpoint::segmenter_opencv_dnn

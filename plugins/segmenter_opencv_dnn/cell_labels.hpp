@@ -7,7 +7,7 @@
 #include "segmenter_opencv_dnn/cell_grid.hpp"
 #include "stillpoint/contracts/segmentation.hpp"
 
-namespace stillpoint {
+namespace stillpoint::segmenter_opencv_dnn {
 
 /// Scores that speak for a label. A label may have several.
 struct ScorePlane {
@@ -24,4 +24,4 @@ cv::Mat label_pixels(const std::vector<ScorePlane>& planes, const CellGrid& grid
 void score_objects(Segmentation& segmentation, const std::vector<cv::Mat>& probabilities,
                    const CellGrid& grid);
 
-}  // namespace stillpoint
+}  // namespace stillpoint::segmenter_opencv_dnn

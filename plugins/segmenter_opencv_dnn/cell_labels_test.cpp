@@ -4,7 +4,7 @@
 
 #include <opencv2/core.hpp>
 
-namespace stillpoint {
+namespace stillpoint::segmenter_opencv_dnn {
 namespace {
 
 std::vector<ScorePlane> random_planes(int count, cv::Size cells) {
@@ -68,4 +68,4 @@ TEST(ScoreObjects, IsTheMeanProbabilityOfTheirPixels) {
 }
 
 }  // namespace
-}  // namespace stillpoint
+}  // namespace stillpoint::segmenter_opencv_dnn

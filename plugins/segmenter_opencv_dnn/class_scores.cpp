@@ -2,7 +2,7 @@
 
 #include <opencv2/core.hpp>
 
-namespace stillpoint {
+namespace stillpoint::segmenter_opencv_dnn {
 namespace {
 
 std::vector<cv::Mat> softmax(const std::vector<cv::Mat>& logits) {
@@ -76,4 +76,4 @@ std::vector<cv::Mat> probabilities(const std::vector<cv::Mat>& planes, ResultKin
   }
 }
 
-}  // namespace stillpoint
+}  // namespace stillpoint::segmenter_opencv_dnn

@@ -6,7 +6,7 @@
 
 #include "segmenter_opencv_dnn/cell_labels.hpp"
 
-namespace stillpoint {
+namespace stillpoint::segmenter_opencv_dnn {
 
 enum class ResultKind {
   kClassLogits,         ///< one plane per class, softmax still to be done
@@ -32,4 +32,4 @@ std::vector<ScorePlane> competing(const std::vector<cv::Mat>& planes, const Scor
 /// Probability of every class, by class id. That of the background may be empty.
 std::vector<cv::Mat> probabilities(const std::vector<cv::Mat>& planes, ResultKind result);
 
-}  // namespace stillpoint
+}  // namespace stillpoint::segmenter_opencv_dnn

@@ -5,7 +5,7 @@
 
 #include "segmenter_opencv_dnn/test_networks.hpp"
 
-namespace stillpoint {
+namespace stillpoint::segmenter_opencv_dnn {
 namespace {
 
 namespace fs = std::filesystem;
@@ -51,4 +51,4 @@ TEST(Conversion, RefusesOtherFiles) {
 }
 
 }  // namespace
-}  // namespace stillpoint
+}  // namespace stillpoint::segmenter_opencv_dnn

@@ -6,7 +6,7 @@
 
 #include "stillpoint/error.hpp"
 
-namespace stillpoint {
+namespace stillpoint::segmenter_opencv_dnn {
 namespace {
 
 constexpr int kSsdColumns = 7;
@@ -76,4 +76,4 @@ std::vector<Detection> detections(const std::vector<cv::Mat>& outputs, std::size
   return kept;
 }
 
-}  // namespace stillpoint
+}  // namespace stillpoint::segmenter_opencv_dnn

@@ -4,7 +4,7 @@
 #include <opencv2/core/mat.hpp>
 #include <vector>
 
-namespace stillpoint {
+namespace stillpoint::segmenter_opencv_dnn {
 
 struct Detection {
   int label = 0;       ///< class id, 0 is the background
@@ -23,4 +23,4 @@ bool holds_boxes(const cv::Mat& output, std::size_t classes);
 std::vector<Detection> detections(const std::vector<cv::Mat>& outputs, std::size_t classes,
                                   double threshold, double overlap);
 
-}  // namespace stillpoint
+}  // namespace stillpoint::segmenter_opencv_dnn

@@ -4,7 +4,7 @@
 
 #include "stillpoint/error.hpp"
 
-namespace stillpoint {
+namespace stillpoint::segmenter_opencv_dnn {
 namespace {
 
 cv::Mat ssd(std::vector<float> values) {
@@ -55,4 +55,4 @@ TEST(Detections, KnowsOtherShapes) {
 }
 
 }  // namespace
-}  // namespace stillpoint
+}  // namespace stillpoint::segmenter_opencv_dnn

@@ -7,7 +7,7 @@
 #include "segmenter_opencv_dnn/test_networks.hpp"
 #include "support/shared_data.hpp"
 
-namespace stillpoint {
+namespace stillpoint::segmenter_opencv_dnn {
 namespace {
 
 namespace fs = std::filesystem;
@@ -71,4 +71,4 @@ TEST_F(GetModels, KnowsItsNetworks) {
 }
 
 }  // namespace
-}  // namespace stillpoint
+}  // namespace stillpoint::segmenter_opencv_dnn

@@ -2,7 +2,7 @@
 
 #include <opencv2/imgproc.hpp>
 
-namespace stillpoint {
+namespace stillpoint::segmenter_opencv_dnn {
 
 void RefinementOptions::visit(OptionVisitor& v) {
   v("radius", radius,
@@ -36,4 +36,4 @@ cv::Mat GuidedFilter::mean(const cv::Mat& image) const {
   return result;
 }
 
-}  // namespace stillpoint
+}  // namespace stillpoint::segmenter_opencv_dnn

@@ -5,7 +5,7 @@
 
 #include "stillpoint/options.hpp"
 
-namespace stillpoint {
+namespace stillpoint::segmenter_opencv_dnn {
 
 struct RefinementOptions {
   int radius = 0;         ///< cells; 0: leave the scores as they are
@@ -33,4 +33,4 @@ class GuidedFilter {
   cv::Mat flatness_;  // variance of the guide in the window, plus epsilon
 };
 
-}  // namespace stillpoint
+}  // namespace stillpoint::segmenter_opencv_dnn

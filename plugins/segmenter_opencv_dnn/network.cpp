@@ -11,7 +11,7 @@
 #include "stillpoint/support/model_lookup.hpp"
 #include "stillpoint/support/size_text.hpp"
 
-namespace stillpoint {
+namespace stillpoint::segmenter_opencv_dnn {
 namespace {
 
 const char kOwnCode = 0;  // models lie beside the library that this is in
@@ -124,4 +124,4 @@ std::vector<cv::Mat> Network::forward(const cv::Mat& bgr) {
   return outputs;
 }
 
-}  // namespace stillpoint
+}  // namespace stillpoint::segmenter_opencv_dnn

@@ -8,7 +8,7 @@
 
 #include "stillpoint/options.hpp"
 
-namespace stillpoint {
+namespace stillpoint::segmenter_opencv_dnn {
 
 enum class ChannelOrder { kRgb, kBgr };
 
@@ -52,4 +52,4 @@ class Network {
   std::vector<cv::Mat> trial_outputs_;
 };
 
-}  // namespace stillpoint
+}  // namespace stillpoint::segmenter_opencv_dnn

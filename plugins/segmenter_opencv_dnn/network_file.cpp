@@ -8,7 +8,7 @@
 #include "segmenter_opencv_dnn/quiet_opencv.hpp"
 #include "stillpoint/error.hpp"
 
-namespace stillpoint {
+namespace stillpoint::segmenter_opencv_dnn {
 namespace {
 
 namespace fs = std::filesystem;
@@ -95,4 +95,4 @@ cv::dnn::Net read_network(const std::string& model, const std::string& config) {
   }
 }
 
-}  // namespace stillpoint
+}  // namespace stillpoint::segmenter_opencv_dnn

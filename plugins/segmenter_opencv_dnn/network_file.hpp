@@ -5,7 +5,7 @@
 #include <opencv2/dnn/dnn.hpp>
 #include <string>
 
-namespace stillpoint {
+namespace stillpoint::segmenter_opencv_dnn {
 
 /// Reads ONNX, Caffe, TensorFlow or Darknet files, told apart by the model's suffix; `config` is
 /// empty where the kind needs none. Throws Error(kUsage) or Error(kData).
@@ -14,4 +14,4 @@ cv::dnn::Net read_network(const std::string& model, const std::string& config);
 /// What OpenCV complains about, in one line, with the layer it cannot make.
 std::string reason(const cv::Exception& exception);
 
-}  // namespace stillpoint
+}  // namespace stillpoint::segmenter_opencv_dnn

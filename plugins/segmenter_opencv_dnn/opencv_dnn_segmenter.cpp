@@ -6,7 +6,7 @@
 #include "stillpoint/support/objects.hpp"
 #include "stillpoint/support/size_text.hpp"
 
-namespace stillpoint {
+namespace stillpoint::segmenter_opencv_dnn {
 namespace {
 
 std::string shape_text(const cv::Mat& output) {
@@ -213,4 +213,4 @@ Segmentation OpenCvDnnSegmenter::from_boxes(std::vector<Detection> found,
   return result;
 }
 
-}  // namespace stillpoint
+}  // namespace stillpoint::segmenter_opencv_dnn

@@ -12,7 +12,7 @@
 #include "segmenter_opencv_dnn/small_objects.hpp"
 #include "stillpoint/sdk.hpp"
 
-namespace stillpoint {
+namespace stillpoint::segmenter_opencv_dnn {
 
 /// The defaults are those of the small person network that comes with the plugin.
 class OpenCvDnnSegmenter final : public Segmenter {
@@ -53,4 +53,4 @@ class OpenCvDnnSegmenter final : public Segmenter {
   unsigned images_ = 0;  // seen so far
 };
 
-}  // namespace stillpoint
+}  // namespace stillpoint::segmenter_opencv_dnn

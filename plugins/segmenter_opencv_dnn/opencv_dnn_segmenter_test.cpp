@@ -7,7 +7,7 @@
 
 #include "segmenter_opencv_dnn/test_networks.hpp"
 
-namespace stillpoint {
+namespace stillpoint::segmenter_opencv_dnn {
 namespace {
 
 using ::testing::ElementsAre;
@@ -299,4 +299,4 @@ TEST(OpenCvDnnSegmenter, OpenCvFailingAtRunTimeNamesTheNetwork) {
 }
 
 }  // namespace
-}  // namespace stillpoint
+}  // namespace stillpoint::segmenter_opencv_dnn

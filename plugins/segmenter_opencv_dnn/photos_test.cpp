@@ -8,7 +8,7 @@
 #include "segmenter_opencv_dnn/test_networks.hpp"
 #include "support/shared_data.hpp"
 
-namespace stillpoint {
+namespace stillpoint::segmenter_opencv_dnn {
 namespace {
 
 namespace fs = std::filesystem;
@@ -155,4 +155,4 @@ TEST_F(Photos, YoloFastest) {
 }
 
 }  // namespace
-}  // namespace stillpoint
+}  // namespace stillpoint::segmenter_opencv_dnn

@@ -4,7 +4,7 @@
 #include <opencv2/core/utility.hpp>
 #include <opencv2/core/utils/logger.hpp>
 
-namespace stillpoint {
+namespace stillpoint::segmenter_opencv_dnn {
 
 /// OpenCV prints nothing while one of these lives; for the whole process, as OpenCV keeps it.
 class QuietOpenCv {
@@ -27,4 +27,4 @@ class QuietOpenCv {
   cv::ErrorCallback callback_;
 };
 
-}  // namespace stillpoint
+}  // namespace stillpoint::segmenter_opencv_dnn

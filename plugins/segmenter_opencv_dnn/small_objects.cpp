@@ -4,7 +4,7 @@
 #include <utility>
 #include <vector>
 
-namespace stillpoint {
+namespace stillpoint::segmenter_opencv_dnn {
 namespace {
 
 constexpr double kLeastMeasured = 0.25;  // of an object's pixels; else its area is not known
@@ -54,4 +54,4 @@ void remove_small_objects(Segmentation& segmentation, const Frame& frame,
   segmentation.objects = std::move(kept);
 }
 
-}  // namespace stillpoint
+}  // namespace stillpoint::segmenter_opencv_dnn

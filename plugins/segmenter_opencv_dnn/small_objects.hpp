@@ -6,7 +6,7 @@
 #include "stillpoint/contracts/frame.hpp"
 #include "stillpoint/contracts/segmentation.hpp"
 
-namespace stillpoint {
+namespace stillpoint::segmenter_opencv_dnn {
 
 struct SmallestObject {
   int pixels = 200;
@@ -23,4 +23,4 @@ std::optional<double> seen_area(const Segmentation& segmentation, std::size_t ob
 void remove_small_objects(Segmentation& segmentation, const Frame& frame,
                           const SmallestObject& smallest);
 
-}  // namespace stillpoint
+}  // namespace stillpoint::segmenter_opencv_dnn

@@ -6,7 +6,7 @@
 
 #include "stillpoint/support/objects.hpp"
 
-namespace stillpoint {
+namespace stillpoint::segmenter_opencv_dnn {
 namespace {
 
 constexpr double kNear = 1.0, kFar = 3.0;  // m
@@ -80,4 +80,4 @@ TEST_F(TwoParts, PixelsCountToo) {
 }
 
 }  // namespace
-}  // namespace stillpoint
+}  // namespace stillpoint::segmenter_opencv_dnn

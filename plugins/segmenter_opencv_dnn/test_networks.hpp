@@ -13,7 +13,7 @@
 #include "segmenter_opencv_dnn/opencv_dnn_segmenter.hpp"
 #include "support/recording_writer.hpp"
 
-namespace stillpoint {
+namespace stillpoint::segmenter_opencv_dnn {
 
 inline std::string read_file(const std::filesystem::path& file) {
   std::ifstream stream(file, std::ios::binary);
@@ -125,4 +125,4 @@ inline Frame blocks(const cv::Mat& rgb, int block) {
   return frame;
 }
 
-}  // namespace stillpoint
+}  // namespace stillpoint::segmenter_opencv_dnn

@@ -9,7 +9,7 @@
 #include "segmenter_segnet/wire_reader.hpp"
 #include "stillpoint/error.hpp"
 
-namespace stillpoint::segnet {
+namespace stillpoint::segmenter_segnet {
 namespace {
 
 static_assert(std::endian::native == std::endian::little, "as protocol buffers are");
@@ -159,4 +159,4 @@ std::string shape_text(const std::vector<int>& shape) {
 
 std::vector<int> shape_of(const cv::Mat& blob) { return {blob.size.p, blob.size.p + blob.dims}; }
 
-}  // namespace stillpoint::segnet
+}  // namespace stillpoint::segmenter_segnet

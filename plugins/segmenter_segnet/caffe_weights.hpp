@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace stillpoint::segnet {
+namespace stillpoint::segmenter_segnet {
 
 /// The blobs of each layer that has any: CV_32F, one dimension per dimension of the blob (1 x n for
 /// a blob of one dimension).
@@ -21,4 +21,4 @@ CaffeWeights read_caffe_weights(const std::filesystem::path& file);
 std::string shape_text(const std::vector<int>& shape);
 std::vector<int> shape_of(const cv::Mat& blob);
 
-}  // namespace stillpoint::segnet
+}  // namespace stillpoint::segmenter_segnet

@@ -7,12 +7,11 @@
 #include "stillpoint/error.hpp"
 #include "support/recording_writer.hpp"
 
-namespace stillpoint::segnet {
+namespace stillpoint::segmenter_segnet {
 namespace {
 
 using ::testing::AllOf;
 using ::testing::HasSubstr;
-using testing::MessageWriter;
 
 class CaffeWeightsTest : public ::testing::Test {
  protected:
@@ -86,4 +85,4 @@ TEST_F(CaffeWeightsTest, OtherFilesAreRefused) {
 }
 
 }  // namespace
-}  // namespace stillpoint::segnet
+}  // namespace stillpoint::segmenter_segnet

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <opencv2/core.hpp>
 
-namespace stillpoint::segnet {
+namespace stillpoint::segmenter_segnet {
 namespace {
 
 /// Scores of the classes at one pixel are `stride` numbers apart.
@@ -45,4 +45,4 @@ void score_objects(Segmentation& segmentation, const cv::Mat& probability) {
   }
 }
 
-}  // namespace stillpoint::segnet
+}  // namespace stillpoint::segmenter_segnet

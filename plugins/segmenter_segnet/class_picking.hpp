@@ -5,7 +5,7 @@
 
 #include "stillpoint/contracts/segmentation.hpp"
 
-namespace stillpoint::segnet {
+namespace stillpoint::segmenter_segnet {
 
 /// Both of the size of the scores.
 struct PickedClasses {
@@ -19,4 +19,4 @@ PickedClasses pick_classes(const cv::Mat& scores);
 /// Gives each object the mean of `probability` (of the frame's size) over its pixels as its score.
 void score_objects(Segmentation& segmentation, const cv::Mat& probability);
 
-}  // namespace stillpoint::segnet
+}  // namespace stillpoint::segmenter_segnet

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-namespace stillpoint::segnet {
+namespace stillpoint::segmenter_segnet {
 namespace {
 
 /// Three classes at four pixels.
@@ -45,4 +45,4 @@ TEST(ScoreObjects, ScoreIsTheMeanOverTheObjectOnly) {
 }
 
 }  // namespace
-}  // namespace stillpoint::segnet
+}  // namespace stillpoint::segmenter_segnet

@@ -10,7 +10,7 @@
 #include "stillpoint/error.hpp"
 #include "stillpoint/support/did_you_mean.hpp"
 
-namespace stillpoint::segnet {
+namespace stillpoint::segmenter_segnet {
 namespace {
 
 using Blobs = std::vector<cv::Mat>;
@@ -259,4 +259,4 @@ bool ends_with_scores(const LayerDefinition& layer) {
   return layer.type == "ArgMax" || layer.type == "Softmax";
 }
 
-}  // namespace stillpoint::segnet
+}  // namespace stillpoint::segmenter_segnet

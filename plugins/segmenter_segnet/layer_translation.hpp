@@ -7,7 +7,7 @@
 
 #include "segmenter_segnet/network_definition.hpp"
 
-namespace stillpoint::segnet {
+namespace stillpoint::segmenter_segnet {
 
 /// A blob that a layer reads.
 struct BlobShape {
@@ -31,4 +31,4 @@ TranslatedLayer translate(const LayerDefinition& layer, const std::vector<cv::Ma
 /// Whether the network's scores are what goes into this layer: it only picks or scales them.
 bool ends_with_scores(const LayerDefinition& layer);
 
-}  // namespace stillpoint::segnet
+}  // namespace stillpoint::segmenter_segnet

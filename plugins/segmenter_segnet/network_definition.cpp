@@ -5,7 +5,7 @@
 
 #include "stillpoint/error.hpp"
 
-namespace stillpoint::segnet {
+namespace stillpoint::segmenter_segnet {
 namespace {
 
 constexpr int kLargestSide = 8192;  // px
@@ -100,4 +100,4 @@ NetworkDefinition read_definition(const std::filesystem::path& file) {
   return network;
 }
 
-}  // namespace stillpoint::segnet
+}  // namespace stillpoint::segmenter_segnet

@@ -7,7 +7,7 @@
 
 #include "segmenter_segnet/text_node.hpp"
 
-namespace stillpoint::segnet {
+namespace stillpoint::segmenter_segnet {
 
 struct LayerDefinition {
   std::string name;
@@ -32,4 +32,4 @@ struct NetworkDefinition {
 /// definition of a network for inference.
 NetworkDefinition read_definition(const std::filesystem::path& file);
 
-}  // namespace stillpoint::segnet
+}  // namespace stillpoint::segmenter_segnet

@@ -9,7 +9,7 @@
 #include "stillpoint/error.hpp"
 #include "stillpoint/support/did_you_mean.hpp"
 
-namespace stillpoint::segnet {
+namespace stillpoint::segmenter_segnet {
 namespace {
 
 /// A blob of the network, and which output of which layer of OpenCV's holds it.
@@ -131,4 +131,4 @@ cv::Mat SegnetNetwork::scores(const cv::Mat& image) {
   return net_.forward(output_);
 }
 
-}  // namespace stillpoint::segnet
+}  // namespace stillpoint::segmenter_segnet

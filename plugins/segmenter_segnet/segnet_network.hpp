@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <opencv2/dnn.hpp>
 
-namespace stillpoint::segnet {
+namespace stillpoint::segmenter_segnet {
 
 class SegnetNetwork {
  public:
@@ -26,4 +26,4 @@ class SegnetNetwork {
   std::string output_;  // layer
 };
 
-}  // namespace stillpoint::segnet
+}  // namespace stillpoint::segmenter_segnet

@@ -12,16 +12,12 @@
 #include "stillpoint/error.hpp"
 #include "support/recording_writer.hpp"
 
-namespace stillpoint::segnet {
+namespace stillpoint::segmenter_segnet {
 namespace {
 
 using stillpoint::testing::TemporaryFolder;
 using ::testing::AllOf;
 using ::testing::HasSubstr;
-using testing::ModelFormat;
-using testing::reference_scores;
-using testing::Tensor;
-using testing::TestNetwork;
 
 class SegnetNetworkTest : public ::testing::Test {
  protected:
@@ -79,18 +75,17 @@ class SeedTest : public SegnetNetworkTest, public ::testing::WithParamInterface<
 INSTANTIATE_TEST_SUITE_P(Seeds, SeedTest, ::testing::Range(1, 6));
 
 TEST_P(SeedTest, SegnetBasicIsExact) {
-  TestNetwork network = testing::segnet_basic(32, 48, 6, 4, static_cast<std::uint64_t>(GetParam()));
+  TestNetwork network = segnet_basic(32, 48, 6, 4, static_cast<std::uint64_t>(GetParam()));
   EXPECT_LT(error_of(network), 1e-4);
 }
 
 TEST_P(SeedTest, Vgg16IsExact) {
-  TestNetwork network =
-      testing::segnet_vgg16(64, 96, 16, 5, static_cast<std::uint64_t>(GetParam()));
+  TestNetwork network = segnet_vgg16(64, 96, 16, 5, static_cast<std::uint64_t>(GetParam()));
   EXPECT_LT(error_of(network), 1e-4);
 }
 
 TEST_P(SeedTest, OddSizesAreExact) {  // 45 → 23 → 45, as at 360 x 480
-  TestNetwork network = testing::segnet_basic(45, 51, 4, 3, static_cast<std::uint64_t>(GetParam()));
+  TestNetwork network = segnet_basic(45, 51, 4, 3, static_cast<std::uint64_t>(GetParam()));
   EXPECT_LT(error_of(network), 1e-4);
 }
 
@@ -148,7 +143,7 @@ TEST_F(SegnetNetworkTest, InputLayersAndLayersForTrainingAreUnderstood) {
 }
 
 TEST_F(SegnetNetworkTest, ScoresAreTheSameEveryTime) {
-  TestNetwork network = testing::segnet_basic(45, 60, 8, 3, 1);
+  TestNetwork network = segnet_basic(45, 60, 8, 3, 1);
   const cv::Mat image = network.image();
   const Tensor expected = reference_scores(network, image);
   const int threads_before = cv::getNumThreads();
@@ -166,7 +161,7 @@ TEST_F(SegnetNetworkTest, ScoresAreTheSameEveryTime) {
 }
 
 TEST_F(SegnetNetworkTest, SegnetBasicRunsAtItsPublishedSize) {
-  TestNetwork published = testing::segnet_basic(360, 480, 64, 11, 1);
+  TestNetwork published = segnet_basic(360, 480, 64, 11, 1);
   SegnetNetwork network = load(published);
   EXPECT_EQ(network.input_size(), cv::Size(480, 360));
   EXPECT_EQ(network.output_size(), cv::Size(480, 360));
@@ -176,7 +171,7 @@ TEST_F(SegnetNetworkTest, SegnetBasicRunsAtItsPublishedSize) {
 }
 
 TEST_F(SegnetNetworkTest, Vgg16FitsThePaperSize) {
-  const SegnetNetwork network = load(testing::segnet_vgg16(360, 480, 4, 21, 1));
+  const SegnetNetwork network = load(segnet_vgg16(360, 480, 4, 21, 1));
   EXPECT_EQ(network.output_size(), cv::Size(480, 360));
   EXPECT_EQ(network.channels(), 21);
 }
@@ -321,4 +316,4 @@ TEST_F(SegnetNetworkTest, ValuesThatAreNotFiniteEndTheRunCleanly) {
 }
 
 }  // namespace
-}  // namespace stillpoint::segnet
+}  // namespace stillpoint::segmenter_segnet

@@ -8,7 +8,7 @@
 #include "stillpoint/support/model_lookup.hpp"
 #include "stillpoint/support/objects.hpp"
 
-namespace stillpoint {
+namespace stillpoint::segmenter_segnet {
 namespace {
 
 const char kOwnCode = 0;  // models may lie beside the library that this is in
@@ -57,10 +57,10 @@ SegnetSegmenter::SegnetSegmenter(Options options, const StageContext& context)
 }
 
 Segmentation SegnetSegmenter::segment(const Frame& frame) {
-  const segnet::PickedClasses picked = segnet::pick_classes(scores(frame.bgr));
+  const PickedClasses picked = pick_classes(scores(frame.bgr));
   Segmentation result{.labels = enlarged(picked.labels, frame.bgr.size()), .frame = frame.index};
   find_objects(result, options_.min_object_pixels);
-  segnet::score_objects(result, enlarged(picked.probability, frame.bgr.size()));
+  score_objects(result, enlarged(picked.probability, frame.bgr.size()));
   return result;
 }
 
@@ -79,4 +79,4 @@ cv::Mat SegnetSegmenter::scores(const cv::Mat& bgr) {
   throw Error(Fault::kStage, "its scores are not finite", options_.prototxt);
 }
 
-}  // namespace stillpoint
+}  // namespace stillpoint::segmenter_segnet

@@ -8,7 +8,7 @@
 #include "segmenter_segnet/segnet_network.hpp"
 #include "stillpoint/sdk.hpp"
 
-namespace stillpoint {
+namespace stillpoint::segmenter_segnet {
 
 /// Labels of the network's size are enlarged to the frame's with the nearest pixel, as SegNet's own
 /// programs do.
@@ -39,7 +39,7 @@ class SegnetSegmenter final : public Segmenter {
 
   Options options_;
   ClassNames classes_;
-  segnet::SegnetNetwork network_;
+  SegnetNetwork network_;
 };
 
-}  // namespace stillpoint
+}  // namespace stillpoint::segmenter_segnet

@@ -9,10 +9,9 @@
 #include "segmenter_segnet/test_reference.hpp"
 #include "support/recording_writer.hpp"
 
-namespace stillpoint {
+namespace stillpoint::segmenter_segnet {
 namespace {
 
-using segnet::testing::TestNetwork;
 using ::testing::AllOf;
 using ::testing::HasSubstr;
 
@@ -37,7 +36,7 @@ class SegnetSegmenterTest : public ::testing::Test {
     return "nothing was thrown";
   }
 
-  testing::TemporaryFolder folder_;
+  stillpoint::testing::TemporaryFolder folder_;
 };
 
 /// The scores are the colours themselves: class 0 blue, 1 green, 2 red.
@@ -60,7 +59,7 @@ cv::Mat noise(cv::Size size) {
 }
 
 TEST_F(SegnetSegmenterTest, LabelsAreThoseOfTheReference) {
-  TestNetwork network = segnet::testing::segnet_vgg16(45, 60, 16, 21, 2);
+  TestNetwork network = segnet_vgg16(45, 60, 16, 21, 2);
   SegnetSegmenter::Options options = options_for(network);
   options.min_object_pixels = 1;
   options.scale = 1.0 / 64;
@@ -75,7 +74,7 @@ TEST_F(SegnetSegmenterTest, LabelsAreThoseOfTheReference) {
       for (int x = 0; x < 60; ++x)
         input.at<float>(cv::Vec4i(0, c, y, x)) = static_cast<float>(
             (image.at<cv::Vec3b>(y, x)[c] - options.mean[static_cast<std::size_t>(c)]) / 64);
-  const segnet::testing::Tensor scores = segnet::testing::reference_scores(network, input);
+  const Tensor scores = reference_scores(network, input);
   EXPECT_EQ(found.frame, 7u);
   for (int y = 0; y < 45; ++y)
     for (int x = 0; x < 60; ++x) {
@@ -141,8 +140,7 @@ TEST_F(SegnetSegmenterTest, ChannelOrderIsThatOfTheNetwork) {
 }
 
 TEST_F(SegnetSegmenterTest, SameImagesGiveSameLabels) {
-  const SegnetSegmenter::Options options =
-      options_for(segnet::testing::segnet_basic(45, 60, 8, 5, 4));
+  const SegnetSegmenter::Options options = options_for(segnet_basic(45, 60, 8, 5, 4));
   SegnetSegmenter first(options, StageContext{}), second(options, StageContext{});
   const cv::Mat image = noise({160, 120});
   const Segmentation a = first.segment(frame_of(image)), b = second.segment(frame_of(image)),
@@ -156,7 +154,7 @@ TEST_F(SegnetSegmenterTest, SameImagesGiveSameLabels) {
 }
 
 TEST_F(SegnetSegmenterTest, ClassesAreVocUnlessNamed) {
-  SegnetSegmenter::Options options = options_for(segnet::testing::segnet_vgg16(32, 32, 32, 21, 1));
+  SegnetSegmenter::Options options = options_for(segnet_vgg16(32, 32, 32, 21, 1));
   options.classes = SegnetSegmenter::Options().classes;
   EXPECT_EQ(SegnetSegmenter(options, StageContext{}).classes(), named_classes("voc21"));
   options.classes = named_classes("voc21");
@@ -165,7 +163,7 @@ TEST_F(SegnetSegmenterTest, ClassesAreVocUnlessNamed) {
 }
 
 TEST_F(SegnetSegmenterTest, ClassesThatDoNotFitAreRefusedAtTheStart) {
-  SegnetSegmenter::Options options = options_for(segnet::testing::segnet_basic(32, 32, 4, 11, 1));
+  SegnetSegmenter::Options options = options_for(segnet_basic(32, 32, 4, 11, 1));
   options.classes = {"voc21"};
   EXPECT_THAT(message_of(options, Fault::kUsage),
               AllOf(HasSubstr("tells 11 classes apart"), HasSubstr("'classes' has 21 names")));
@@ -183,4 +181,4 @@ TEST_F(SegnetSegmenterTest, FailuresWhileRunningEndTheRunCleanly) {
 }
 
 }  // namespace
-}  // namespace stillpoint
+}  // namespace stillpoint::segmenter_segnet

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-namespace stillpoint::segnet::testing {
+namespace stillpoint::segmenter_segnet {
 
 struct TestBlob {
   std::vector<int> shape;
@@ -291,4 +291,4 @@ inline TestNetwork segnet_vgg16(int height, int width, int divisor, int classes,
       .plain("Softmax", "prob", false, "softmax_param {engine: CAFFE}\n");
 }
 
-}  // namespace stillpoint::segnet::testing
+}  // namespace stillpoint::segmenter_segnet

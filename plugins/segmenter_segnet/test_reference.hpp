@@ -12,7 +12,7 @@
 
 #include "segmenter_segnet/test_network.hpp"
 
-namespace stillpoint::segnet::testing {
+namespace stillpoint::segmenter_segnet {
 
 struct Tensor {
   Tensor() = default;
@@ -151,4 +151,4 @@ inline Tensor reference_scores(const TestNetwork& network, const cv::Mat& image)
   return blobs.at(last);
 }
 
-}  // namespace stillpoint::segnet::testing
+}  // namespace stillpoint::segmenter_segnet

@@ -8,7 +8,7 @@
 
 #include "stillpoint/error.hpp"
 
-namespace stillpoint::segnet {
+namespace stillpoint::segmenter_segnet {
 namespace {
 
 constexpr int kDeepest = 100;  // nested messages; Caffe's have five
@@ -178,4 +178,4 @@ TextNode parse_text(std::string_view text, const std::string& file) {
   return TextParser(text, file).parse();
 }
 
-}  // namespace stillpoint::segnet
+}  // namespace stillpoint::segmenter_segnet

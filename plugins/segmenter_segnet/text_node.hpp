@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-namespace stillpoint::segnet {
+namespace stillpoint::segmenter_segnet {
 
 /// One field: a scalar with its `value`, or a message with its fields.
 struct TextNode {
@@ -35,4 +35,4 @@ TextNode read_text_file(const std::filesystem::path& file);
 
 TextNode parse_text(std::string_view text, const std::string& file);
 
-}  // namespace stillpoint::segnet
+}  // namespace stillpoint::segmenter_segnet

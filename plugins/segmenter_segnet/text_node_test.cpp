@@ -5,7 +5,7 @@
 
 #include "stillpoint/error.hpp"
 
-namespace stillpoint::segnet {
+namespace stillpoint::segmenter_segnet {
 namespace {
 
 using ::testing::HasSubstr;
@@ -75,4 +75,4 @@ TEST(TextNode, NumbersAreChecked) {
 }
 
 }  // namespace
-}  // namespace stillpoint::segnet
+}  // namespace stillpoint::segmenter_segnet

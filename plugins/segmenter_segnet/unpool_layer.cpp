@@ -6,7 +6,7 @@
 
 #include "stillpoint/error.hpp"
 
-namespace stillpoint::segnet {
+namespace stillpoint::segmenter_segnet {
 namespace {
 
 cv::Ptr<cv::dnn::Layer> create(cv::dnn::LayerParams& parameters) {
@@ -56,4 +56,4 @@ void UnpoolLayer::forward(cv::InputArrayOfArrays inputs_, cv::OutputArrayOfArray
       throw Error(Fault::kStage, "its values are not finite", "layer '" + name + "'");
 }
 
-}  // namespace stillpoint::segnet
+}  // namespace stillpoint::segmenter_segnet

@@ -4,7 +4,7 @@
 
 #include <opencv2/dnn.hpp>
 
-namespace stillpoint::segnet {
+namespace stillpoint::segmenter_segnet {
 
 /// Inputs: values and the mask of the pooling layer, whose numbers are indices into a channel of
 /// the output. Parameters: output_height, output_width.
@@ -29,4 +29,4 @@ class UnpoolLayer final : public cv::dnn::Layer {
   int width_;
 };
 
-}  // namespace stillpoint::segnet
+}  // namespace stillpoint::segmenter_segnet

@@ -2,7 +2,7 @@
 
 #include "stillpoint/error.hpp"
 
-namespace stillpoint::segnet {
+namespace stillpoint::segmenter_segnet {
 
 std::uint64_t WireReader::varint() {
   std::uint64_t value = 0;
@@ -43,4 +43,4 @@ std::optional<WireField> WireReader::next() {
   throw Error(Fault::kData, "it holds a field of an unknown kind");
 }
 
-}  // namespace stillpoint::segnet
+}  // namespace stillpoint::segmenter_segnet

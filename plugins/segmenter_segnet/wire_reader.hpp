@@ -6,7 +6,7 @@
 #include <optional>
 #include <span>
 
-namespace stillpoint::segnet {
+namespace stillpoint::segmenter_segnet {
 
 /// One field of a message. Which member holds its value depends on its wire type.
 struct WireField {
@@ -35,4 +35,4 @@ class WireReader {
   std::span<const std::byte> rest_;
 };
 
-}  // namespace stillpoint::segnet
+}  // namespace stillpoint::segmenter_segnet

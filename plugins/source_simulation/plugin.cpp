@@ -2,6 +2,7 @@
 
 #include "source_simulation/simulation_source.hpp"
 
-STILLPOINT_PLUGIN(source_simulation, "0.1.0",
-                  stillpoint::provide<stillpoint::Source, stillpoint::SimulationSource>(
-                      "simulation", "a simulated room with people, rendered while it runs"));
+STILLPOINT_PLUGIN(
+    source_simulation, "0.1.0",
+    stillpoint::provide<stillpoint::Source, stillpoint::source_simulation::SimulationSource>(
+        "simulation", "a simulated room with people, rendered while it runs"));

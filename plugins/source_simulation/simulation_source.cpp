@@ -2,7 +2,7 @@
 
 #include <opencv2/imgproc.hpp>
 
-namespace stillpoint {
+namespace stillpoint::source_simulation {
 
 SimulationSource::SimulationSource(const Options& options, const StageContext& context)
     : simulator_(options, context.camera.value_or(simulation::default_camera()), context.threads),
@@ -24,4 +24,4 @@ std::optional<std::size_t> SimulationSource::size() const {
   return static_cast<std::size_t>(simulator_.size());
 }
 
-}  // namespace stillpoint
+}  // namespace stillpoint::source_simulation

@@ -5,7 +5,7 @@
 
 #include "simulation/simulator.hpp"
 
-namespace stillpoint {
+namespace stillpoint::source_simulation {
 
 class SimulationSource final : public Source {
  public:
@@ -22,4 +22,4 @@ class SimulationSource final : public Source {
   int next_ = 0;
 };
 
-}  // namespace stillpoint
+}  // namespace stillpoint::source_simulation

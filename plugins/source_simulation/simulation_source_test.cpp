@@ -4,7 +4,7 @@
 
 #include <opencv2/core.hpp>
 
-namespace stillpoint {
+namespace stillpoint::source_simulation {
 namespace {
 
 TEST(SimulationSource, GivesTheFramesOfTheSimulator) {
@@ -33,4 +33,4 @@ TEST(SimulationSource, GivesTheFramesOfTheSimulator) {
 }
 
 }  // namespace
-}  // namespace stillpoint
+}  // namespace stillpoint::source_simulation

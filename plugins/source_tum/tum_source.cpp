@@ -4,8 +4,11 @@
 #include <opencv2/core.hpp>
 #include "stillpoint/support/size_text.hpp"
 
-namespace stillpoint {
+namespace stillpoint::source_tum {
 namespace {
+
+using tum_recording::open_recording;
+using tum_recording::PairsFrom;
 
 constexpr std::size_t kHopelessStart = 10;  // unusable pairs before the first usable one
 constexpr std::size_t kReportedImages = 20;
@@ -122,4 +125,4 @@ void TumSource::skip(const Error& reason) {
     report_.warnings.push_back("more images were skipped; the log names them");
 }
 
-}  // namespace stillpoint
+}  // namespace stillpoint::source_tum

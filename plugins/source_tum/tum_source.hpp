@@ -10,7 +10,12 @@
 #include "tum_recording/image_reader.hpp"
 #include "tum_recording/recording.hpp"
 
-namespace stillpoint {
+namespace stillpoint::source_tum {
+
+using tum_recording::ImagePair;
+using tum_recording::ImageReader;
+using tum_recording::Recording;
+using tum_recording::RecordingOptions;
 
 /// Images that cannot be used are skipped and reported. Gives up with Error(kData) when the first
 /// ten are all unusable, or more than half.
@@ -48,4 +53,4 @@ class TumSource final : public Source {
   SourceReport report_;
 };
 
-}  // namespace stillpoint
+}  // namespace stillpoint::source_tum

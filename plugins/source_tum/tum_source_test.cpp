@@ -12,8 +12,11 @@
 #include "support/recording_writer.hpp"
 #include "support/shared_data.hpp"
 
-namespace stillpoint {
+namespace stillpoint::source_tum {
 namespace {
+
+using tum_recording::open_recording;
+using tum_recording::PairsFrom;
 
 using ::testing::AllOf;
 using ::testing::HasSubstr;
@@ -309,4 +312,4 @@ TEST(TumSourceOnRealData, ReadsFreiburg1Xyz) {
 }
 
 }  // namespace
-}  // namespace stillpoint
+}  // namespace stillpoint::source_tum

@@ -19,6 +19,12 @@
 namespace stillpoint {
 namespace {
 
+using segmenter_label_images::LabelImageSegmenter;
+using semantic_octree::ClassBelief;
+using semantic_octree::ScanBrick;
+using semantic_octree::ScanBricks;
+using semantic_octree::VoxelLook;
+
 constexpr int kEvery = 15, kEveryOfTruth = 5;
 constexpr int kKeyOfZero = 32768;
 

@@ -25,6 +25,16 @@
 namespace stillpoint {
 namespace {
 
+using map_octomap::OctomapBackend;
+using semantic_octree::CostMap;
+using semantic_octree::floor_of;
+using semantic_octree::for_each_occupied_voxel;
+using semantic_octree::project;
+using semantic_octree::read_octree;
+using semantic_octree::SavedOctree;
+using semantic_octree::SemanticOctree;
+using semantic_octree::SemanticVoxel;
+
 constexpr int kEvery = 5;  // frames of the truth
 
 double ratio(double part, double whole) { return whole > 0 ? part / whole : 0; }

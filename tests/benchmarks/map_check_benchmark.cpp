@@ -22,6 +22,8 @@
 namespace stillpoint {
 namespace {
 
+using map_checks::DepthConsistency;
+
 namespace fs = std::filesystem;
 
 constexpr int kPerson = 15;  // PASCAL VOC

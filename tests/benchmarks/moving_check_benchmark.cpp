@@ -27,6 +27,13 @@
 namespace stillpoint {
 namespace {
 
+using moving_checks::EpipolarChecker;
+using moving_checks::LkEpipolar;
+using moving_checks::LkHomography;
+using moving_checks::LkMagsac;
+using moving_checks::LkUsac;
+using moving_checks::RgbdChecker;
+
 namespace fs = std::filesystem;
 
 constexpr int kPerson = 15;                            // PASCAL VOC
@@ -154,7 +161,7 @@ const bool kRegistered = [] {
     for (const std::size_t stride : {1, 3}) {
       LkEpipolar::Options released;
       released.lk.consensus.ransac_threshold = 0.1;
-      released.lk.follow = {.corners = {.corners = moving::CornerOptions::Method::kShiTomasi,
+      released.lk.follow = {.corners = {.corners = moving_checks::CornerOptions::Method::kShiTomasi,
                                         .max_corners = 1000,
                                         .corner_quality = 0.01},
                             .window = 22,

@@ -14,6 +14,10 @@
 namespace stillpoint {
 namespace {
 
+using map_octomap::OctomapBackend;
+using semantic_octree::ScanBricks;
+using semantic_octree::SemanticOctree;
+
 constexpr double kRange = 4.0;  // metres
 constexpr int kEvery = 30;
 

@@ -8,7 +8,7 @@
 
 #include "orb_slam/orb_extractor.hpp"
 
-namespace stillpoint::orb {
+namespace stillpoint::orb_slam {
 namespace {
 
 constexpr char kRecordedImage[] =
@@ -56,4 +56,4 @@ void extract_by_opencv(benchmark::State& state) {
 BENCHMARK(extract_by_opencv)->Unit(benchmark::kMillisecond);
 
 }  // namespace
-}  // namespace stillpoint::orb
+}  // namespace stillpoint::orb_slam

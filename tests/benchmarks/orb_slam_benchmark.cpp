@@ -6,7 +6,7 @@
 #include "orb_slam/pose_solver.hpp"
 #include "orb_slam/test_world.hpp"
 
-namespace stillpoint::orb {
+namespace stillpoint::orb_slam {
 namespace {
 
 bool all(std::uint32_t) { return true; }
@@ -172,4 +172,4 @@ void edit_3000_landmarks_of_a_copy(benchmark::State& state) {
 BENCHMARK(edit_3000_landmarks_of_a_copy)->Unit(benchmark::kMicrosecond);
 
 }  // namespace
-}  // namespace stillpoint::orb
+}  // namespace stillpoint::orb_slam

@@ -30,7 +30,7 @@
 #include "orb_slam/orb_extractor.hpp"
 #include "orb_slam/place_index.hpp"
 
-namespace stillpoint::orb {
+namespace stillpoint::orb_slam {
 namespace {
 
 namespace fs = std::filesystem;
@@ -302,4 +302,4 @@ const bool kRegistered = [] {
 }();
 
 }  // namespace
-}  // namespace stillpoint::orb
+}  // namespace stillpoint::orb_slam

@@ -18,6 +18,10 @@
 namespace stillpoint {
 namespace {
 
+using propagator_flow_depth::FlowDepthPropagator;
+using segmenter_label_images::LabelImageSegmenter;
+using source_tum::TumSource;
+
 constexpr int kPerson = 15;
 
 struct LabelledRecording {

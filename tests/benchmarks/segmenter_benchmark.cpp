@@ -12,6 +12,11 @@
 namespace stillpoint {
 namespace {
 
+using segmenter_opencv_dnn::CellAlignment;
+using segmenter_opencv_dnn::Network;
+using segmenter_opencv_dnn::OpenCvDnnSegmenter;
+using segmenter_opencv_dnn::ResultKind;
+
 constexpr char kModels[] = STILLPOINT_SOURCE_DIR "/plugins/segmenter_opencv_dnn/models/";
 constexpr char kSharedModels[] = STILLPOINT_SOURCE_DIR "/../shared/models/";
 constexpr char kRecordedImage[] =

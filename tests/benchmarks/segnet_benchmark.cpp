@@ -9,7 +9,9 @@
 namespace stillpoint {
 namespace {
 
-using segnet::testing::TestNetwork;
+using segmenter_segnet::SegnetSegmenter;
+
+using segmenter_segnet::TestNetwork;
 
 void segment(benchmark::State& state, const TestNetwork& network) {
   const testing::TemporaryFolder folder;
@@ -26,20 +28,20 @@ void segment(benchmark::State& state, const TestNetwork& network) {
 }
 
 void segnet_basic(benchmark::State& state) {
-  segment(state, segnet::testing::segnet_basic(360, 480, 64, 11, 1));
+  segment(state, segmenter_segnet::segnet_basic(360, 480, 64, 11, 1));
 }
 void segnet_vgg16(benchmark::State& state) {
-  segment(state, segnet::testing::segnet_vgg16(360, 480, 1, 21, 1));
+  segment(state, segmenter_segnet::segnet_vgg16(360, 480, 1, 21, 1));
 }
 void segnet_vgg16_small_input(benchmark::State& state) {
-  segment(state, segnet::testing::segnet_vgg16(224, 224, 1, 21, 1));
+  segment(state, segmenter_segnet::segnet_vgg16(224, 224, 1, 21, 1));
 }
 void load_segnet_vgg16(benchmark::State& state) {
-  const TestNetwork network = segnet::testing::segnet_vgg16(224, 224, 1, 21, 1);
+  const TestNetwork network = segmenter_segnet::segnet_vgg16(224, 224, 1, 21, 1);
   const testing::TemporaryFolder folder;
   const auto prototxt = folder.write("net.prototxt", network.prototxt());
   const auto model = folder.write("net.caffemodel", network.caffemodel());
-  for ([[maybe_unused]] auto _ : state) segnet::SegnetNetwork(prototxt, model);
+  for ([[maybe_unused]] auto _ : state) segmenter_segnet::SegnetNetwork(prototxt, model);
 }
 BENCHMARK(segnet_basic)->Arg(1)->Arg(2)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime();
 BENCHMARK(segnet_vgg16)->Arg(1)->Arg(2)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime();

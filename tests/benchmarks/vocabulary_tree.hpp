@@ -15,7 +15,7 @@
 #include "orb_slam/matcher.hpp"
 #include "orb_slam/place_index.hpp"
 
-namespace stillpoint::orb {
+namespace stillpoint::orb_slam {
 
 class VocabularyTree {
  public:
@@ -149,4 +149,4 @@ class TreeIndex {
   std::size_t views_ = 0;
 };
 
-}  // namespace stillpoint::orb
+}  // namespace stillpoint::orb_slam

@@ -27,6 +27,12 @@
 namespace stillpoint::testing {
 namespace {
 
+using semantic_octree::read_octree;
+using semantic_octree::TestMap;
+using tum_recording::PngDecoder;
+using tum_recording::read_image_list;
+using tum_recording::stated_size;
+
 namespace fs = std::filesystem;
 
 Bytes bytes_of(const fs::path& file) {
@@ -139,15 +145,15 @@ FuzzTarget octree() {
 }
 
 FuzzTarget caffe_weights() {
-  const auto network = segnet::testing::segnet_basic(32, 32, 1, 2, 1);
+  const auto network = segmenter_segnet::segnet_basic(32, 32, 1, 2, 1);
   return {.seeds = {bytes_of_text(network.caffemodel()),
-                    bytes_of_text(network.caffemodel(segnet::testing::ModelFormat::kV1))},
-          .parse = [](const fs::path& file) { segnet::read_caffe_weights(file); }};
+                    bytes_of_text(network.caffemodel(segmenter_segnet::ModelFormat::kV1))},
+          .parse = [](const fs::path& file) { segmenter_segnet::read_caffe_weights(file); }};
 }
 
 FuzzTarget network_definition() {
-  return {.seeds = {bytes_of_text(segnet::testing::segnet_basic(32, 32, 1, 2, 1).prototxt())},
-          .parse = [](const fs::path& file) { segnet::read_definition(file); },
+  return {.seeds = {bytes_of_text(segmenter_segnet::segnet_basic(32, 32, 1, 2, 1).prototxt())},
+          .parse = [](const fs::path& file) { segmenter_segnet::read_definition(file); },
           .words = {"layer {", "}", "{", ":", "\"", "input_dim: 4294967296", "#", "include {",
                     "phase: TRAIN", "\\"}};
 }

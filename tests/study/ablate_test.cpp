@@ -104,7 +104,7 @@ TEST_F(Ablate, CtrlCKeepsWhatIsDone) {
   program.send(SIGINT);
   const Outcome outcome = program.finish();
   EXPECT_EQ(outcome.signal, SIGINT);
-  EXPECT_THAT(outcome.err, HasSubstr("stopped; the same command goes on from here"));
+  EXPECT_THAT(outcome.err, HasSubstr("stopped; the same command resumes the study"));
   EXPECT_THAT(outcome.out, HasSubstr("**Not finished:**"));
   EXPECT_THAT(text_of(out() / "results.csv"),
               AllOf(HasSubstr("\ns,v,0,1,done,"), HasSubstr("\ns,v,1,2,done,"),

@@ -47,8 +47,8 @@ TEST_F(Report, AsMarkdown) {
   EXPECT_EQ(markdown_report(results_, "demo"),
             "# demo\n"
             "\n"
-            "Median (smallest–largest) of 2 runs, seeds 7 to 8. Behind an error stands the "
-            "coverage where it is not complete.\n"
+            "Median (smallest–largest) of 2 runs, seeds 7 to 8. Coverage is given after an error "
+            "where it is below 100 %.\n"
             "\n"
             "**Not finished:** 1 of 8 runs are missing.\n"
             "\n"

@@ -13,6 +13,11 @@
 namespace stillpoint::dense_map {
 namespace {
 
+using semantic_octree::read_octree;
+using semantic_octree::TestMap;
+using semantic_octree::TestMapOptions;
+using semantic_octree::TestRoom;
+
 namespace fs = std::filesystem;
 
 // Maps of the test room, with and without its pillar, a chair by its class.

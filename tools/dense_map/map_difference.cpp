@@ -9,6 +9,11 @@
 namespace stillpoint::dense_map {
 namespace {
 
+using semantic_octree::for_each_occupied_voxel;
+using semantic_octree::MapClasses;
+using semantic_octree::SemanticOctree;
+using semantic_octree::SemanticVoxel;
+
 bool is_near(const SemanticOctree& tree, const octomap::OcTreeKey& key) {
   for (int x = -1; x <= 1; ++x)
     for (int y = -1; y <= 1; ++y)

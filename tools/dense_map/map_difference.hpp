@@ -11,6 +11,8 @@
 
 namespace stillpoint::dense_map {
 
+using semantic_octree::SavedOctree;
+
 /// Counts of voxels.
 struct MapDifference {
   std::size_t both = 0;                         ///< occupied in both

@@ -18,6 +18,12 @@
 namespace stillpoint::dense_map {
 namespace {
 
+using semantic_octree::ahead_on_floor;
+using semantic_octree::floor_of;
+using semantic_octree::for_each_occupied_voxel;
+using semantic_octree::SemanticOctree;
+using semantic_octree::SemanticVoxel;
+
 constexpr int kOversampling = 2;       // drawn larger and scaled down
 constexpr double kFieldOfView = 35.0;  // degrees, of the shorter side
 constexpr double kNear = 0.05;         // metres
@@ -92,8 +98,8 @@ Scene scene_of(const SavedOctree& map, const PictureOptions& options) {
   const SemanticOctree& tree = *map.tree;
   const auto floor = floor_of(tree, {.floor = options.floor});
   if (!floor && options.highest)
-    throw Error(Fault::kUsage, "no floor is in the map, above which something could be left out",
-                {}, "say where it is: --floor=X,Y,Z,HEIGHT");
+    throw Error(Fault::kUsage, "no floor was found in the map; --below is a height above it", {},
+                "say where it is: --floor=X,Y,Z,HEIGHT");
   Scene scene{.faces = {},
               .edge = tree.getResolution(),
               .up = floor ? floor->up : Eigen::Vector3d(0, -1, 0),
@@ -168,8 +174,7 @@ View view_of(const Scene& scene, const PictureOptions& options) {
   if (options.eye && options.target) {
     view.eye = *options.eye;
     const Eigen::Vector3d forward = *options.target - *options.eye;
-    if (forward.norm() < 1e-9)
-      throw Error(Fault::kUsage, "cannot look from a point at the same point");
+    if (forward.norm() < 1e-9) throw Error(Fault::kUsage, "--eye and --look-at are the same point");
     view.view_from_world = looking_along(forward.normalized(), scene.up, scene.ahead);
     return view;
   }

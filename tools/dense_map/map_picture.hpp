@@ -11,6 +11,8 @@
 
 namespace stillpoint::dense_map {
 
+using semantic_octree::SavedOctree;
+
 struct PictureOptions {
   enum class Mode { kColor, kClass } mode = Mode::kColor;
   cv::Size size{1280, 960};       ///< px

@@ -12,6 +12,11 @@
 namespace stillpoint::dense_map {
 namespace {
 
+using semantic_octree::floor_of;
+using semantic_octree::for_each_occupied_voxel;
+using semantic_octree::SemanticOctree;
+using semantic_octree::SemanticVoxel;
+
 // 1,234,567.
 std::string grouped(std::size_t number) {
   std::string digits = std::to_string(number);

@@ -13,6 +13,10 @@
 
 namespace stillpoint::dense_map {
 
+using semantic_octree::CostMapOptions;
+using semantic_octree::FloorPlane;
+using semantic_octree::SavedOctree;
+
 struct ClassShare {
   std::string name;
   std::size_t voxels = 0;  ///< occupied ones

@@ -10,6 +10,9 @@
 namespace stillpoint::inspection {
 namespace {
 
+using tum_recording::ImageReader;
+using tum_recording::open_recording;
+
 constexpr std::size_t kStretches = 5;  // consecutive images, spread over the recording
 
 /// Begin and end of evenly spread stretches with at most `samples` pairs together.

@@ -16,6 +16,9 @@
 
 namespace stillpoint::inspection {
 
+using tum_recording::Recording;
+using tum_recording::RecordingOptions;
+
 struct AuditOptions {
   RecordingOptions pairing;
   std::optional<CameraModel> camera;  ///< to compare image sizes and scale depth with

@@ -8,6 +8,8 @@
 
 namespace stillpoint::inspection {
 
+using tum_recording::StampedImage;
+
 struct Gap {
   double begin = 0.0;   ///< seconds, stamp of the last image before it
   double length = 0.0;  ///< seconds

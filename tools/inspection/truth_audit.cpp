@@ -5,6 +5,10 @@
 namespace stillpoint::inspection {
 namespace {
 
+using tum_recording::ListLine;
+using tum_recording::parse_number;
+using tum_recording::read_list_lines;
+
 constexpr double kNear = 0.02;  // seconds, as in the benchmark's scripts
 
 /// Time, position and quaternion, all finite.

@@ -10,6 +10,8 @@
 
 namespace stillpoint::inspection {
 
+using tum_recording::ImagePair;
+
 struct TruthAudit {
   std::size_t poses = 0;           ///< usable lines
   std::size_t unusable_lines = 0;  ///< not finite, or not eight numbers

@@ -12,7 +12,7 @@ namespace stillpoint::people {
 /// the specks at edges. CV_32F, metres; 0: nothing measured anywhere.
 cv::Mat filled_depth(const cv::Mat& depth);
 
-/// Who is to be seen where.
+/// Which layer is visible in which pixel.
 struct Composition {
   std::vector<cv::Mat> shares;  ///< CV_32F per layer: its share in the colour of each pixel
   cv::Mat owner;                ///< CV_8U: number of the layer from 1; 0: the scene

@@ -65,7 +65,7 @@ class Ablation {
       signal = Interrupt::signal();
       if (signal == 0) return throw_if_failed(results);
     }
-    console_.line("stopped; the same command goes on from here");
+    console_.line("stopped; the same command resumes the study");
     std::raise(signal);  // so that a calling script sees that it was interrupted
   }
 
@@ -231,10 +231,9 @@ void add_ablate(CLI::App& app) {
       ->required();
   command
       ->add_option("-o,--output", arguments->output,
-                   "Folder of runs and tables, gone on with when it is there; out/ and the study's "
-                   "name when left out")
+                   "Folder for runs and tables; a study in it is resumed; default: out/STUDY")
       ->type_name("DIR");
-  command->add_option("-j,--jobs", arguments->jobs, "Runs at a time; for times, 1")
+  command->add_option("-j,--jobs", arguments->jobs, "Runs in parallel; use 1 to measure times")
       ->capture_default_str()
       ->check(CLI::Range(1, 1024))
       ->type_name("N");

@@ -60,7 +60,7 @@ void add_evaluate(CLI::App& app) {
        "List of the recording's frames (rgb.txt, associations.txt) for the coverage");
   evaluation::EvaluationOptions& options = arguments->options;
   number("--max-difference", options.max_difference,
-         "Poses further apart in time do not belong together, s", 1e-6, 1.0);
+         "Largest time difference of poses that are compared, s", 1e-6, 1.0);
   number("--offset", options.offset, "Added to the times of the estimate, s", -1e10, 1e10);
   number("--delta", options.delta.length, "Interval of the relative pose error", 1e-3, 1e6);
   command->add_option("--delta-unit", arguments->delta_unit, "Of --delta: s (seconds), f (frames)")

@@ -47,10 +47,10 @@ void add_inspect(CLI::App& app) {
                    "Camera file, or the name of one in configs/cameras; default: the camera.yaml "
                    "beside the recording")
       ->type_name("NAME|FILE");
-  RecordingOptions& pairing = arguments->options.pairing;
+  inspection::RecordingOptions& pairing = arguments->options.pairing;
   command
       ->add_option("--max-difference", pairing.max_difference,
-                   "Colour and depth farther apart in time are no pair, s")
+                   "Largest time difference of colour and depth in a pair, s")
       ->capture_default_str()
       ->check(CLI::Range(0.0, 10.0));
   command->add_option("--time-offset", pairing.time_offset, "Added to the depth stamps, s")

@@ -83,7 +83,7 @@ int main(int argc, char** argv) {
   std::signal(SIGPIPE, SIG_IGN);  // a reader such as `head` that goes early must cost no results
   const stillpoint::StageGuard guard;
   const int exit_code = run_and_say_why_not(argc, argv);
-  if (!stillpoint::StageGuard::has_ended_one()) return exit_code;
+  if (!stillpoint::StageGuard::has_ended_a_call()) return exit_code;
   std::cout << std::flush;
   std::_Exit(exit_code);  // nothing more of that plugin is to be run
 }

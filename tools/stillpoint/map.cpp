@@ -22,6 +22,14 @@
 namespace stillpoint {
 namespace {
 
+using semantic_octree::floor_of;
+using semantic_octree::project;
+using semantic_octree::read_octree;
+using semantic_octree::write_cost_map;
+using semantic_octree::write_occupancy;
+using semantic_octree::write_octree;
+using semantic_octree::write_point_cloud;
+
 namespace fs = std::filesystem;
 using namespace dense_map;
 
@@ -53,8 +61,8 @@ std::vector<double> numbers_from(const std::string& text, const std::string& opt
 void add_floor(CLI::App& command, std::string& floor) {
   command
       .add_option("--floor", floor,
-                  "Which way is up in the map, and the floor's height that way, m; without the "
-                  "height, or without all, it is found, up being about -y")
+                  "Up direction in the map and the floor's height along it, m; what is left out is "
+                  "estimated from the map, with up assumed to be near -y")
       ->type_name("X,Y,Z[,H]");
 }
 
@@ -122,7 +130,7 @@ void add_project(CLI::App& map) {
       "project", "Make the 2-D cost map of a map: where a robot may drive (PGM and YAML)");
   add_map_argument(*command, "map", arguments->map);
   add_file(*command, "-o,--output", arguments->output,
-           "Without extension: .pgm and .yaml are added; default: as the map");
+           "Name without extension; .pgm and .yaml are added; default: the map's name");
   const auto number = [&](const char* name, double& value, const char* help) {
     command->add_option(name, value, help)
         ->capture_default_str()
@@ -226,13 +234,13 @@ void add_render(CLI::App& map) {
       ->capture_default_str();
   number("--elevation", options.elevation, -90, 90, "Degrees above the floor; 90: from above")
       ->capture_default_str();
-  command->add_option("--below", options.highest, "Leave out what is higher above the floor, m")
+  command->add_option("--below", options.highest, "Draw only what is lower above the floor, m")
       ->check(CLI::Range(-100.0, 100.0))
       ->type_name("NUMBER");
   const auto point = [&](const char* name, std::string& value, const char* help) {
     command->add_option(name, value, help)->type_name("X,Y,Z");
   };
-  point("--eye", arguments->eye, "Look from this point of the map, m, not at the whole of it");
+  point("--eye", arguments->eye, "Look from this point of the map, m; default: see the whole map");
   point("--look-at", arguments->target, "Look at this point of the map, m");
   add_floor(*command, arguments->floor);
   command->add_option("--size", arguments->size, "Of the picture, px")

@@ -141,7 +141,7 @@ void add_plugins(CLI::App& app) {
   CLI::App* describe_command =
       command->add_subcommand("describe", "The options of a type, as in 'describe octomap'");
   auto name = std::make_shared<std::string>();
-  describe_command->add_option("type", *name, "TYPE, or KIND/TYPE for one of several stages")
+  describe_command->add_option("type", *name, "TYPE, or KIND/TYPE when several kinds have the type")
       ->type_name("TYPE")
       ->required();
   describe_command->callback([folders, name] { describe_all(search_plugins(*folders), *name); });

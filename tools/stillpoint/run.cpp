@@ -66,7 +66,7 @@ void run_and_print(Stages stages, const PipelineConfig& config, const RunFolder&
   } catch (const Error& error) {
     print();
     folder.log(LogLevel::kInfo, std::string("failed: ") + error.what());
-    if (StageGuard::has_ended_one()) {  // nothing more of its plugin is to be run
+    if (StageGuard::has_ended_a_call()) {  // nothing more of its plugin is to be run
       std::cerr << "error: " << error.what() << std::endl;
       std::_Exit(error.exit_code());
     }
@@ -87,8 +87,8 @@ void warn_of_labels(const PipelineConfig& config, const RunFolder& folder) {
   if (latest && config.segmenter && !config.propagator)
     folder.log(
         LogLevel::kWarning,
-        "schedule 'latest' without a propagator: labels stay where they were in the frame "
-        "that they belong to; 'propagator: {type: flow_depth}' brings them to the current one");
+        "schedule 'latest' without a propagator: labels of earlier frames are used where they "
+        "were in those; 'propagator: {type: flow_depth}' moves them to the current frame");
   if (!latest && config.segmentation.interval > 1)
     folder.log(
         LogLevel::kWarning,
@@ -139,7 +139,7 @@ void add_run(CLI::App& app) {
   add_pipeline_options(*command, arguments->request);
   command
       ->add_option("-o,--output", arguments->output,
-                   "Run folder; out/ and the pipeline's name when left out")
+                   "Folder for the results; default: out/PIPELINE")
       ->type_name("DIR");
   command->add_option("--save-map", arguments->save_map, "Keep the sparse map in this file")
       ->type_name("FILE");
@@ -149,7 +149,7 @@ void add_run(CLI::App& app) {
                           ->type_name("FILE");
   command
       ->add_flag("--localise-only", arguments->localise_only,
-                 "Find the camera in the loaded map, which stays as it is")
+                 "Only localise in the loaded map, without changing it")
       ->needs(load);
   command->callback([arguments] { run(*arguments); });
 }

@@ -49,7 +49,7 @@ void RunTable::print_run(std::ostream& stream) const {
                    tracking_.tracked, 100.0 * tracking_.coverage(), tracking_.times_lost,
                    tracking_.times_lost == 1 ? "" : "s");
   if (tracking_.poorly_constrained > 0)
-    stream << format("            %zu poorly constrained: the camera may have slid unseen\n",
+    stream << format("            %zu poorly constrained: some motion was unobservable\n",
                      tracking_.poorly_constrained);
   if (dropped_ > 0)
     stream << format("            %d dropped to keep the sensor's pace\n", dropped_);

@@ -101,7 +101,7 @@ std::string introduction(const StudyResults& results) {
                          : "Median (smallest–largest) of " + std::to_string(study.repeats) +
                                " runs, seeds " + std::to_string(study.seed) + " to " +
                                std::to_string(last) + ".";
-  text += " Behind an error stands the coverage where it is not complete.\n";
+  text += " Coverage is given after an error where it is below 100 %.\n";
   if (results.missing() > 0)
     text += "\n**Not finished:** " + std::to_string(results.missing()) + " of " +
             std::to_string(results.cells.size()) + " runs are missing.\n";

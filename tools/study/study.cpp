@@ -30,7 +30,7 @@ void Sequence::visit(OptionVisitor& v) {
   v.require(dataset.empty() != scene.empty(),
             "needs either 'dataset', the folder of a recording, or 'scene', to be simulated");
   v.require(dataset.empty() || (frames == 0 && set.empty()),
-            "'frames' and 'set' are for a 'scene'; a recording is what it is");
+            "'frames' and 'set' are for a 'scene'; they cannot change a recording");
 }
 
 void Variant::visit(OptionVisitor& v) {

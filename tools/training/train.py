@@ -59,7 +59,7 @@ def arguments():
     parser.add_argument('--hints', type=float, default=0, metavar='WEIGHT', help=
                         "with --cache: of the teachers' features in the loss; falls as the rate")
     parser.add_argument('--hints-only', type=int, default=0, metavar='ITERATIONS',
-                        help='at first only hints: the decoder rests')
+                        help='train only the encoder, on hints, at first')
     parser.add_argument('--save-every', type=int, default=100, help='iterations')
     args = parser.parse_args()
     args.size = tuple(args.size or KINDS[args.network].size)

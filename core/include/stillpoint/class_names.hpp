@@ -17,8 +17,8 @@ using ClassNames = std::vector<std::string>;
 /// `person` (background, person). Throws Error(kUsage) for another name.
 STILLPOINT_EXPORT ClassNames named_classes(const std::string& list);
 
-/// What an option `classes` says: the one name of a list, or the names themselves, the background
-/// first. Throws Error(kUsage) unless there are 2 to 256.
+/// The classes that an option `classes` gives: the name of one list, or the class names
+/// themselves, background first. Throws Error(kUsage) unless there are 2 to 256.
 STILLPOINT_EXPORT ClassNames classes_of(const std::vector<std::string>& option);
 
 /// The id of a class. Throws Error(kUsage) that suggests a name when there is none.

@@ -1,5 +1,5 @@
-// How a library tells what it provides: a constant descriptor, and a stamp that says what it was
-// built for. The stamp is read from the file: nothing of a library that does not fit is ever run.
+// What a plugin library exports: a constant descriptor of its contents, and a stamp that says what
+// it was built for. The stamp is read from the file, so no code of an incompatible library runs.
 #pragma once
 
 #include <Eigen/Core>
@@ -21,9 +21,9 @@
 
 namespace stillpoint {
 
-/// Of what all kinds share: this header, options.hpp, frames, cameras and class names. Each
-/// contract has a number of its own besides, kApi, for its functions and what they take and give. A
-/// number goes up with any change after which libraries have to be built anew
+/// API version of what all kinds share: this header, options.hpp, frames, cameras and class names.
+/// Each contract also has a version of its own, kApi, for its functions, their arguments and their
+/// results. A version is raised by every change that requires plugins to be rebuilt
 /// (docs/writing_a_plugin.md).
 inline constexpr std::uint32_t kPluginApi = 10;
 
@@ -41,8 +41,9 @@ inline constexpr std::uint32_t kPluginApi = 10;
 #define STILLPOINT_EIGEN_ORDER_ ""
 #endif
 
-/// What must be equal for C++ objects to cross the border: compiler, language, standard library and
-/// its debug mode, Eigen with its alignment (it changes with -mavx) and order, OpenCV.
+/// What must match so that program and plugin can exchange C++ objects: compiler, language,
+/// standard library and its debug mode, Eigen with its alignment (-mavx changes it) and storage
+/// order, OpenCV.
 inline constexpr const char* kAbiTag = "gcc" STILLPOINT_TEXT(__GNUC__)             //
     "-c++" STILLPOINT_TEXT(__cplusplus)                                            //
     "-cxx11abi" STILLPOINT_TEXT(_GLIBCXX_USE_CXX11_ABI) STILLPOINT_STD_DEBUG_      //

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <utility>
 
-namespace stillpoint {
+namespace stillpoint::semantic_octree {
 
 /// Dirichlet counts of the few classes seen most: the expected probability of a class is its count
 /// over their sum. Old observations fade once a count is full. 6 bytes, as every voxel has one.
@@ -61,4 +61,4 @@ class ClassBelief {
   std::array<std::uint8_t, kClasses> counts_{};
 };
 
-}  // namespace stillpoint
+}  // namespace stillpoint::semantic_octree

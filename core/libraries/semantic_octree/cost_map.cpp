@@ -11,14 +11,14 @@
 #include "stillpoint/error.hpp"
 #include "stillpoint/support/atomic_file.hpp"
 
-namespace stillpoint {
+namespace stillpoint::semantic_octree {
 namespace {
 
-constexpr double kLow = 0.3;  // metres above `from`: no low obstacle hides under free space there
-constexpr double kLeastObstacle = 0.02;  // m² of surface: less is left of a shoe or a hand
-constexpr float kSure = 0.75F;  // log-odds; with the map's own defaults, more than one key frame's
+constexpr double kLow = 0.3;  // metres above `from`: free space there rules out low obstacles
+constexpr double kMinObstacleArea = 0.02;  // m² of surface; less may be remains of a shoe or hand
+constexpr float kConfirmed = 0.75F;  // log-odds; by default, takes hits of more than one key frame
 constexpr double kMostCells = 1e8;
-constexpr double kSeenThrough = 0.5;  // of a column: what is free below a table top is not free
+constexpr double kMinFreeShare = 0.5;  // of a column: free space below a table top is not enough
 
 Pose floor_from_world(const FloorPlane& floor) {
   const Eigen::Vector3d ahead = ahead_on_floor(floor.up);
@@ -61,9 +61,9 @@ class Projection {
         add(map_.floor_from_world * part, log_odds);
       });
     });
-    doubt_obstacles();
+    classify_obstacles();
     decide();
-    grow_obstacles();
+    inflate_obstacles();
     return std::move(map_);
   }
 
@@ -116,16 +116,16 @@ class Projection {
         columns_[static_cast<std::size_t>((map_.cells.rows - 1 - row) * map_.cells.cols + column)];
     const bool inside = at.z() >= options_.from && at.z() < options_.to;
     cell.obstacle += occupied && inside;
-    cell.sure += occupied && inside && log_odds > kSure;
+    cell.sure += occupied && inside && log_odds > kConfirmed;
     cell.low |=
         occupied ? std::abs(at.z()) < options_.from : inside && at.z() < options_.from + kLow;
     cell.free += !occupied && inside;
     carved_ |= !occupied;
   }
 
-  // Of obstacles that touch each other: what is too small is none, and of what was seen but once it
-  // is not known: an undetected person may have stood there.
-  void doubt_obstacles() {
+  // For each connected group of obstacles: one that is too small is ignored, and one that was seen
+  // only once stays unknown, since an undetected person may have stood there.
+  void classify_obstacles() {
     cv::Mat obstacles(map_.cells.size(), CV_8UC1), labels;
     for (std::size_t i = 0; i < columns_.size(); ++i) obstacles.data[i] = columns_[i].obstacle > 0;
     const int count = cv::connectedComponents(obstacles, labels, 8, CV_32S);
@@ -135,7 +135,7 @@ class Projection {
       parts[label[i]] += columns_[i].obstacle;
       sure[label[i]] += columns_[i].sure;
     }
-    const double least = 8 * kLeastObstacle / (map_.resolution * map_.resolution);
+    const double least = 8 * kMinObstacleArea / (map_.resolution * map_.resolution);
     for (std::size_t i = 0; i < columns_.size(); ++i) {
       Column& column = columns_[i];
       column.doubtful = column.obstacle > 0 && parts[label[i]] >= least;
@@ -151,13 +151,13 @@ class Projection {
       if (column.obstacle > 0)
         *cell = CostMap::kOccupied;
       else if (!column.doubtful && column.low &&
-               (!carved_ || column.free > kSeenThrough * parts_per_column))
+               (!carved_ || column.free > kMinFreeShare * parts_per_column))
         *cell = CostMap::kFree;
       ++cell;
     }
   }
 
-  void grow_obstacles() {
+  void inflate_obstacles() {
     if (options_.robot_radius <= 0) return;
     const cv::Mat elsewhere = map_.cells != CostMap::kOccupied;
     cv::Mat distance;  // in cells, to the next obstacle
@@ -243,4 +243,4 @@ void write_cost_map(const CostMap& map, const std::filesystem::path& stem) {
   description.commit();
 }
 
-}  // namespace stillpoint
+}  // namespace stillpoint::semantic_octree

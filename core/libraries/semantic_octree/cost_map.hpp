@@ -13,7 +13,7 @@
 #include "stillpoint/contracts/frame.hpp"
 #include "stillpoint/options.hpp"
 
-namespace stillpoint {
+namespace stillpoint::semantic_octree {
 
 struct CostMapOptions {
   double from = 0.1;  ///< metres above the floor: what is lower is driven over; at least a voxel
@@ -47,11 +47,11 @@ struct CostMap {
 /// first camera, whose frame is the world, was held upright to within 50°.
 std::optional<FloorPlane> floor_of(const SemanticOctree& tree, const CostMapOptions& options);
 
-/// Occupied: a voxel between the two heights is, and those that touch it are 2 dm² of surface that
-/// more than one key frame has seen. Free: none is, at least half of what is between them was
-/// looked through, and its lower end as well, or the floor itself was seen: no low obstacle is
-/// there. All else is unknown. Throws Error(kData) for a map so wide that it would have more than
-/// 10⁸ cells.
+/// Occupied: a voxel between the two heights is, in a connected group of at least 2 dm² of surface
+/// that more than one key frame has seen. Free: no group of that size is there, at least half of
+/// the space between the heights was seen to be free, and so was its lower end, or the floor itself
+/// was seen, so that there is no low obstacle. All else is unknown. Throws Error(kData) for a map
+/// so wide that it would have more than 10⁸ cells.
 CostMap project(const SemanticOctree& tree, const FloorPlane& floor, const CostMapOptions& options);
 
 /// `stem`.pgm and `stem`.yaml (mode trinary; besides map_server's keys `world_from_map`: position
@@ -59,4 +59,4 @@ CostMap project(const SemanticOctree& tree, const FloorPlane& floor, const CostM
 /// throw Error(kUsage).
 void write_cost_map(const CostMap& map, const std::filesystem::path& stem);
 
-}  // namespace stillpoint
+}  // namespace stillpoint::semantic_octree

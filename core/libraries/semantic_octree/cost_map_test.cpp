@@ -12,7 +12,7 @@
 #include "stillpoint/error.hpp"
 #include "support/recording_writer.hpp"
 
-namespace stillpoint {
+namespace stillpoint::semantic_octree {
 namespace {
 
 const Eigen::Vector3d kUp = Eigen::Vector3d::UnitZ();
@@ -239,4 +239,4 @@ TEST_F(CostMapOfRoom, AFolderThatCannotBeMadeIsAnError) {
 }
 
 }  // namespace
-}  // namespace stillpoint
+}  // namespace stillpoint::semantic_octree

@@ -8,13 +8,13 @@
 #include <unordered_set>
 #include <vector>
 
-namespace stillpoint {
+namespace stillpoint::semantic_octree {
 namespace {
 
 constexpr double kMinArea = 0.5;         // m², of a floor
 constexpr double kShareOfLargest = 0.2;  // of the largest horizontal surface: less is furniture
 constexpr double kMaxTilt = 50.0;        // degrees, between the hint and the normal
-constexpr int kTrials = 5000;            // of three points; with a tenth of all, 5 are of the plane
+constexpr int kTrials = 5000;            // of three points; 5 hit a plane with a tenth of all
 constexpr std::size_t kSample = 10000;   // points that the trials are judged by
 
 using Points = std::span<const Eigen::Vector3f>;
@@ -31,18 +31,19 @@ class Layers {
  public:
   Layers(std::span<const Eigen::Vector3f> points, const Eigen::Vector3d& up, double edge)
       : up_(up), edge_(edge), side_(up.unitOrthogonal()), other_(up.cross(side_)) {
-    for (const Eigen::Vector3f& point : points) taken_.insert(key_of(point.cast<double>()));
+    for (const Eigen::Vector3f& point : points) occupied_.insert(key_of(point.cast<double>()));
   }
 
   /// Nothing stands on it, and it goes on in all directions: no wall, no edge.
   bool is_surface(const Eigen::Vector3d& point) const {
     const Key key = key_of(point);
-    if (taken({key[0], key[1], key[2] + 1}) || taken({key[0], key[1], key[2] + 2})) return false;
+    if (is_occupied({key[0], key[1], key[2] + 1}) || is_occupied({key[0], key[1], key[2] + 2}))
+      return false;
     int around = 0;
     for (int x = -1; x <= 1; ++x)
       for (int y = -1; y <= 1; ++y)
         for (int z = -1; z <= 1; ++z)
-          if ((x != 0 || y != 0) && taken({key[0] + x, key[1] + y, key[2] + z})) {
+          if ((x != 0 || y != 0) && is_occupied({key[0] + x, key[1] + y, key[2] + z})) {
             ++around;
             break;
           }
@@ -66,12 +67,12 @@ class Layers {
     return {cell(side_.dot(point) / width), cell(other_.dot(point) / width),
             cell(up_.dot(point) / edge_)};
   }
-  bool taken(const Key& key) const { return taken_.contains(key); }
+  bool is_occupied(const Key& key) const { return occupied_.contains(key); }
 
   Eigen::Vector3d up_;
   double edge_;
   Eigen::Vector3d side_, other_;
-  std::unordered_set<Key, Hash> taken_;
+  std::unordered_set<Key, Hash> occupied_;
 };
 
 bool is_on(const Eigen::Vector3f& point, const FloorPlane& plane, double tolerance) {
@@ -169,4 +170,4 @@ std::optional<FloorPlane> find_floor(std::span<const Eigen::Vector3f> points,
   return change < 5 * M_PI / 180 ? fit : *floor;
 }
 
-}  // namespace stillpoint
+}  // namespace stillpoint::semantic_octree

@@ -5,7 +5,7 @@
 #include <optional>
 #include <span>
 
-namespace stillpoint {
+namespace stillpoint::semantic_octree {
 
 /// All points x with up · x = height are on the floor.
 struct FloorPlane {
@@ -32,4 +32,4 @@ std::optional<FloorPlane> find_floor(std::span<const Eigen::Vector3f> points,
 std::optional<FloorPlane> find_floor_below(std::span<const Eigen::Vector3f> points,
                                            const Eigen::Vector3d& up, double spacing);
 
-}  // namespace stillpoint
+}  // namespace stillpoint::semantic_octree

@@ -7,7 +7,7 @@
 #include "stillpoint/support/atomic_file.hpp"
 #include "stillpoint/support/point_cloud_file.hpp"
 
-namespace stillpoint {
+namespace stillpoint::semantic_octree {
 
 namespace {
 
@@ -66,4 +66,4 @@ void write_point_cloud(const SemanticOctree& tree, const MapClasses& classes,
   write_ply(occupied_points(tree), classes.names, file);
 }
 
-}  // namespace stillpoint
+}  // namespace stillpoint::semantic_octree

@@ -10,7 +10,7 @@
 #include "stillpoint/class_names.hpp"
 #include "stillpoint/contracts/labelled_point.hpp"
 
-namespace stillpoint {
+namespace stillpoint::semantic_octree {
 
 /// What the class ids in a map mean.
 struct MapClasses {
@@ -53,4 +53,4 @@ void write_point_cloud(const SemanticOctree& tree, const MapClasses& classes,
 /// A point at the centre of each occupied voxel.
 std::vector<LabelledPoint> occupied_points(const SemanticOctree& tree);
 
-}  // namespace stillpoint
+}  // namespace stillpoint::semantic_octree

@@ -13,7 +13,7 @@
 
 #include "stillpoint/error.hpp"
 
-namespace stillpoint {
+namespace stillpoint::semantic_octree {
 namespace {
 
 constexpr unsigned kTreeDepth = 16;
@@ -217,4 +217,4 @@ SavedOctree read_octree(const std::filesystem::path& file) {
   return saved;
 }
 
-}  // namespace stillpoint
+}  // namespace stillpoint::semantic_octree

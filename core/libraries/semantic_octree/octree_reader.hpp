@@ -7,7 +7,7 @@
 #include "semantic_octree/map_files.hpp"
 #include "semantic_octree/semantic_octree.hpp"
 
-namespace stillpoint {
+namespace stillpoint::semantic_octree {
 
 struct SavedOctree {
   std::unique_ptr<SemanticOctree> tree;  ///< never empty
@@ -20,4 +20,4 @@ struct SavedOctree {
 /// never return. Throws Error(kData) for a file that is none of these, damaged or empty.
 SavedOctree read_octree(const std::filesystem::path& file);
 
-}  // namespace stillpoint
+}  // namespace stillpoint::semantic_octree

@@ -12,7 +12,7 @@
 #include "stillpoint/error.hpp"
 #include "support/recording_writer.hpp"
 
-namespace stillpoint {
+namespace stillpoint::semantic_octree {
 namespace {
 
 namespace fs = std::filesystem;
@@ -188,4 +188,4 @@ TEST_F(OctreeReader, WhatIsNoMapIsNamed) {
 }
 
 }  // namespace
-}  // namespace stillpoint
+}  // namespace stillpoint::semantic_octree

@@ -6,7 +6,7 @@
 
 #include "stillpoint/error.hpp"
 
-namespace stillpoint {
+namespace stillpoint::semantic_octree {
 namespace {
 
 constexpr int kEdge = ScanBrick::kEdge;
@@ -249,4 +249,4 @@ void ScanBricks::finish() {
   for (const auto& [code, brick] : order) sorted_.push_back(brick);
 }
 
-}  // namespace stillpoint
+}  // namespace stillpoint::semantic_octree

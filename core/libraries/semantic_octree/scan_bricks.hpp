@@ -11,7 +11,7 @@
 #include "stillpoint/contracts/map_backend.hpp"
 #include "stillpoint/support/majority_vote.hpp"
 
-namespace stillpoint {
+namespace stillpoint::semantic_octree {
 
 /// What a scan saw of a voxel.
 struct VoxelLook {
@@ -46,10 +46,10 @@ struct ScanOptions {
   /// Free space ends so many standard deviations of the depth (Camera::surface_noise) before what
   /// was measured.
   double sigmas_before_surface = 0.0;
-  /// Pixels of a lower map weight hit nothing; what is before them is free all the same.
+  /// Pixels of a lower map weight are no hits; the space in front of them is free nevertheless.
   std::uint8_t min_weight = 128;
-  /// Voxels to each side of such a pixel's that are beside something moving: what is found of a
-  /// person may end a little inside the person. 0: none is.
+  /// Voxels within this distance of such a pixel's voxel, in voxels, are beside something moving:
+  /// the mask of a person may be a little too small. 0: none are.
   int margin = 0;
 };
 
@@ -112,4 +112,4 @@ class ScanBricks {
   std::vector<VoxelLook> looks_;
 };
 
-}  // namespace stillpoint
+}  // namespace stillpoint::semantic_octree

@@ -4,7 +4,7 @@
 #include <limits>
 #include <span>
 
-namespace stillpoint {
+namespace stillpoint::semantic_octree {
 namespace {
 
 constexpr unsigned kBrickDepth = 13;      // of 16: its voxels are three levels below
@@ -202,4 +202,4 @@ void SemanticOctree::remove_children(SemanticVoxel& node) {
   node.free_children();
 }
 
-}  // namespace stillpoint
+}  // namespace stillpoint::semantic_octree

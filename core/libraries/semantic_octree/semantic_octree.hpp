@@ -10,7 +10,7 @@
 #include "semantic_octree/class_belief.hpp"
 #include "semantic_octree/scan_bricks.hpp"
 
-namespace stillpoint {
+namespace stillpoint::semantic_octree {
 
 /// Log-odds of one scan, and their limits.
 struct OccupancyModel {
@@ -18,7 +18,7 @@ struct OccupancyModel {
   float miss = -0.4F;  ///< 0: free space is not carved (the paper)
   float min = -2.0F;   ///< clamped, so that things may appear …
   float max = 3.5F;    ///< … and disappear again
-  /// With what a voxel begins that is first hit beside something moving.
+  /// Initial log-odds of a voxel whose first hit is beside something moving.
   float doubt = 0.0F;
 };
 
@@ -83,4 +83,4 @@ class SemanticOctree : public octomap::OccupancyOcTreeBase<SemanticVoxel> {
   void remove_children(SemanticVoxel& node);
 };
 
-}  // namespace stillpoint
+}  // namespace stillpoint::semantic_octree

@@ -9,7 +9,7 @@
 
 #include "semantic_octree/test_room.hpp"
 
-namespace stillpoint {
+namespace stillpoint::semantic_octree {
 namespace {
 
 constexpr double kResolution = 0.05;
@@ -169,4 +169,4 @@ TEST(SemanticOctree, NothingSeenChangesNothing) {
 }
 
 }  // namespace
-}  // namespace stillpoint
+}  // namespace stillpoint::semantic_octree

@@ -9,7 +9,7 @@
 #include "semantic_octree/semantic_octree.hpp"
 #include "semantic_octree/test_room.hpp"
 
-namespace stillpoint {
+namespace stillpoint::semantic_octree {
 
 struct TestMapOptions {
   double resolution = 0.05;     ///< metres
@@ -54,4 +54,4 @@ class TestMap {
   SemanticOctree tree_;
 };
 
-}  // namespace stillpoint
+}  // namespace stillpoint::semantic_octree

@@ -10,7 +10,7 @@
 
 #include "stillpoint/contracts/map_backend.hpp"
 
-namespace stillpoint {
+namespace stillpoint::semantic_octree {
 
 struct RoomSurface {
   std::uint8_t label = 0;
@@ -93,4 +93,4 @@ class TestRoom {
   std::shared_ptr<const Camera> camera_ = make_camera();
 };
 
-}  // namespace stillpoint
+}  // namespace stillpoint::semantic_octree

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace stillpoint {
+namespace stillpoint::semantic_octree {
 namespace {
 
 constexpr int kLanes = 8;                      // rays at once
@@ -112,4 +112,4 @@ void VoxelBits::set_rays(const Eigen::Vector3f& origin, std::span<const Index> e
   Marcher(*this, origin, ends).run(bytes_.data());
 }
 
-}  // namespace stillpoint
+}  // namespace stillpoint::semantic_octree

@@ -9,7 +9,7 @@
 #include <span>
 #include <vector>
 
-namespace stillpoint {
+namespace stillpoint::semantic_octree {
 
 /// A cube of `edge`³ voxels; z runs fastest. `edge` must be a multiple of 64, at most 1280.
 class VoxelBits {
@@ -53,4 +53,4 @@ class VoxelBits {
   std::vector<std::uint8_t> bytes_;  // one more, of nowhere()
 };
 
-}  // namespace stillpoint
+}  // namespace stillpoint::semantic_octree

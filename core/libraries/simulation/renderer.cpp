@@ -186,7 +186,7 @@ struct Renderer::Job {
     return differs(x - 1, y) || differs(x + 1, y) || differs(x, y - 1) || differs(x, y + 1);
   }
 
-  /// Nothing in sight moves farther than eyes can tell.
+  /// No surface in the range moves by more than a pixel during the exposure.
   static bool is_still(const MotionRange& range) { return range.fastest() <= 1; }
   /// Surfaces move past each other: a shifted image would not show what comes into view.
   static bool is_torn(const MotionRange& range) {

@@ -14,7 +14,7 @@ void RoomOptions::visit(OptionVisitor& v) {
   v("texture", texture,
     {.min = 0,
      .max = 1,
-     .help = "contrast of plaster, carpet and ceiling, against the usual; 0: of one colour each"});
+     .help = "relative contrast of plaster, carpet and ceiling; 1: as usual, 0: uniform colours"});
   v("alike", alike, {.help = "every room of a suite is furnished as the others are"});
   v("seed", seed, {.min = 0, .help = "of what is printed on posters, papers and books"});
   v("photographs", photographs,
@@ -106,7 +106,7 @@ void SceneOptions::visit(OptionVisitor& v) {
   v("seed", seed, {.min = 0, .help = "of the noise and of the hand's trembling"});
   v("room", room, {.help = "the room and what stands in it"});
   v("motion", motion, {.help = "of the camera"});
-  v("sensor", sensor, {.help = "what the camera makes of it"});
+  v("sensor", sensor, {.help = "noise, exposure, range and timing of the camera"});
   v("people", people, {.help = "who walks or sits in the room"});
   v("balls", balls, {.help = "thrown to and fro"});
 }

@@ -1,4 +1,4 @@
-// A closed smooth way over the floor by its length.
+// A smooth closed path on the floor, parametrised by arc length.
 #pragma once
 
 #include <Eigen/Core>

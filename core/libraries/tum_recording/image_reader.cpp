@@ -12,7 +12,7 @@
 #include "stillpoint/support/size_text.hpp"
 #include "tum_recording/image_size.hpp"
 
-namespace stillpoint {
+namespace stillpoint::tum_recording {
 namespace {
 
 constexpr std::uintmax_t kLargestFile = 256 << 20;  // bytes
@@ -96,4 +96,4 @@ cv::Mat ImageReader::depth(const std::filesystem::path& file) {
   return image;
 }
 
-}  // namespace stillpoint
+}  // namespace stillpoint::tum_recording

@@ -8,7 +8,7 @@
 
 #include "tum_recording/png_decoder.hpp"
 
-namespace stillpoint {
+namespace stillpoint::tum_recording {
 
 /// Throws Error(kData) naming the file and the reason when an image is missing, truncated, damaged
 /// or of the wrong kind. One per thread.
@@ -27,4 +27,4 @@ class ImageReader {
   std::vector<std::uint8_t> bytes_;
 };
 
-}  // namespace stillpoint
+}  // namespace stillpoint::tum_recording

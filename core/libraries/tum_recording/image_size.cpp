@@ -2,7 +2,7 @@
 
 #include "tum_recording/png_decoder.hpp"
 
-namespace stillpoint {
+namespace stillpoint::tum_recording {
 namespace {
 
 int big_endian(std::uint8_t high, std::uint8_t low) { return high << 8 | low; }
@@ -33,4 +33,4 @@ std::optional<cv::Size> stated_size(std::span<const std::uint8_t> file) {
   return std::nullopt;
 }
 
-}  // namespace stillpoint
+}  // namespace stillpoint::tum_recording

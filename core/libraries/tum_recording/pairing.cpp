@@ -5,7 +5,7 @@
 #include <queue>
 #include <tuple>
 
-namespace stillpoint {
+namespace stillpoint::tum_recording {
 namespace {
 
 /// All stamps in order of time, as a linked list from which pairs are taken out. What lies between
@@ -94,4 +94,4 @@ std::vector<IndexPair> pair_by_time(std::span<const double> color, std::span<con
   return pairs;
 }
 
-}  // namespace stillpoint
+}  // namespace stillpoint::tum_recording

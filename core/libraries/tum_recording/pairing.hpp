@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-namespace stillpoint {
+namespace stillpoint::tum_recording {
 
 struct IndexPair {
   std::size_t color = 0;
@@ -19,4 +19,4 @@ struct IndexPair {
 std::vector<IndexPair> pair_by_time(std::span<const double> color, std::span<const double> depth,
                                     double max_difference);
 
-}  // namespace stillpoint
+}  // namespace stillpoint::tum_recording

@@ -8,7 +8,7 @@
 #include <random>
 #include <tuple>
 
-namespace stillpoint {
+namespace stillpoint::tum_recording {
 namespace {
 
 using ::testing::ElementsAre;
@@ -67,4 +67,4 @@ TEST(PairByTime, PairsNothingBeyondTheLimit) {
 }
 
 }  // namespace
-}  // namespace stillpoint
+}  // namespace stillpoint::tum_recording

@@ -10,7 +10,7 @@
 #include <stdexcept>
 #include <string_view>
 
-namespace stillpoint {
+namespace stillpoint::tum_recording {
 namespace {
 
 constexpr std::uint8_t kSignature[] = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'};
@@ -205,4 +205,4 @@ cv::Mat PngDecoder::decode(std::span<const std::uint8_t> file) {
   return image;
 }
 
-}  // namespace stillpoint
+}  // namespace stillpoint::tum_recording

@@ -10,7 +10,7 @@
 
 struct libdeflate_decompressor;
 
-namespace stillpoint {
+namespace stillpoint::tum_recording {
 
 /// Decodes 8-bit gray, 8-bit RGB and 16-bit gray images that are not interlaced, in half the time
 /// of cv::imdecode (libpng and zlib): 2.0 and 0.8 ms for colour and depth of a simulated frame of
@@ -43,4 +43,4 @@ class PngDecoder {
   std::vector<std::uint8_t> rows_[2];  // the current and the previous one, unfiltered
 };
 
-}  // namespace stillpoint
+}  // namespace stillpoint::tum_recording

@@ -9,7 +9,7 @@
 #include <string>
 #include <utility>
 
-namespace stillpoint {
+namespace stillpoint::tum_recording {
 namespace {
 
 /// Noise above, smooth below: rows of both kinds.
@@ -110,4 +110,4 @@ TEST(PngDecoder, RefusesTruncatedAndDamagedFilesWhereverTheyAreHit) {
 }
 
 }  // namespace
-}  // namespace stillpoint
+}  // namespace stillpoint::tum_recording

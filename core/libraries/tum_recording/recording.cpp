@@ -6,7 +6,7 @@
 #include "stillpoint/error.hpp"
 #include "tum_recording/pairing.hpp"
 
-namespace stillpoint {
+namespace stillpoint::tum_recording {
 namespace {
 
 namespace fs = std::filesystem;
@@ -118,4 +118,4 @@ Recording open_recording(const fs::path& folder, const RecordingOptions& options
   return recording;
 }
 
-}  // namespace stillpoint
+}  // namespace stillpoint::tum_recording

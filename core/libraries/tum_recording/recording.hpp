@@ -7,7 +7,7 @@
 
 #include "tum_recording/stamp_list.hpp"
 
-namespace stillpoint {
+namespace stillpoint::tum_recording {
 
 /// Which of a recording's descriptions to use where it has both.
 enum class PairsFrom { kLists /* rgb.txt and depth.txt */, kAssociations };
@@ -36,4 +36,4 @@ struct Recording {
 /// Reads lists only, no images. Throws Error(kData) naming file and line.
 Recording open_recording(const std::filesystem::path& folder, const RecordingOptions& options = {});
 
-}  // namespace stillpoint
+}  // namespace stillpoint::tum_recording

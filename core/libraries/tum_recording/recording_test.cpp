@@ -8,7 +8,7 @@
 #include "stillpoint/error.hpp"
 #include "support/recording_writer.hpp"
 
-namespace stillpoint {
+namespace stillpoint::tum_recording {
 namespace {
 
 using ::testing::AllOf;
@@ -138,4 +138,4 @@ TEST(Recording, NamesTheLineThatCannotBeUnderstood) {
 }
 
 }  // namespace
-}  // namespace stillpoint
+}  // namespace stillpoint::tum_recording

@@ -7,7 +7,7 @@
 
 #include "stillpoint/error.hpp"
 
-namespace stillpoint {
+namespace stillpoint::tum_recording {
 namespace {
 
 std::vector<std::string> split(const std::string& line) {
@@ -83,4 +83,4 @@ std::vector<StampedImage> read_image_list(const std::filesystem::path& file,
   return images;
 }
 
-}  // namespace stillpoint
+}  // namespace stillpoint::tum_recording

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-namespace stillpoint {
+namespace stillpoint::tum_recording {
 
 /// An image and when it was taken.
 struct StampedImage {
@@ -37,4 +37,4 @@ double stamp_of(const ListLine& line, std::size_t column, const std::filesystem:
 std::vector<StampedImage> read_image_list(const std::filesystem::path& file,
                                           std::vector<std::string>& warnings);
 
-}  // namespace stillpoint
+}  // namespace stillpoint::tum_recording

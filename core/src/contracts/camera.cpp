@@ -6,18 +6,29 @@ void CameraModel::visit(OptionVisitor& v) {
   v("name", name, {.help = "for messages and summaries"});
   v("width", width, {.min = 16, .max = 16384, .unit = "px", .help = "of the recorded images"});
   v("height", height, {.min = 16, .max = 16384, .unit = "px", .help = "of the recorded images"});
-  v("fx", fx, {.min = 1, .unit = "px", .help = "focal length along x", .required = true});
-  v("fy", fy, {.min = 1, .unit = "px", .help = "focal length along y", .required = true});
+  v("fx", fx,
+    {.min = 1, .max = 1e6, .unit = "px", .help = "focal length along x", .required = true});
+  v("fy", fy,
+    {.min = 1, .max = 1e6, .unit = "px", .help = "focal length along y", .required = true});
   v("cx", cx,
-    {.unit = "px",
+    {.min = -1e6,
+     .max = 1e6,
+     .unit = "px",
      .help = "principal point, from the centre of the left column",
      .required = true});
   v("cy", cy,
-    {.unit = "px", .help = "principal point, from the centre of the top row", .required = true});
+    {.min = -1e6,
+     .max = 1e6,
+     .unit = "px",
+     .help = "principal point, from the centre of the top row",
+     .required = true});
   v("distortion", distortion, {.help = "Brown–Conrady k1, k2, p1, p2[, k3]; empty for none"});
-  v("depth_factor", depth_factor, {.min = 1e-6, .help = "depth image value of one metre"});
-  v("min_depth", min_depth, {.min = 0, .unit = "m", .help = "nearer measurements are dropped"});
-  v("max_depth", max_depth, {.min = 0.01, .unit = "m", .help = "farther ones are dropped"});
+  v("depth_factor", depth_factor,
+    {.min = 1e-6, .max = 1e9, .help = "depth image value of one metre"});
+  v("min_depth", min_depth,
+    {.min = 0, .max = 1e6, .unit = "m", .help = "nearer measurements are dropped"});
+  v("max_depth", max_depth,
+    {.min = 0.01, .max = 1e6, .unit = "m", .help = "farther ones are dropped"});
   v("depth_noise", depth_noise,
     {.min = 1e-6,
      .unit = "m",

@@ -43,7 +43,7 @@ void SteadyClock::wait_until(double time, std::stop_token stop) {
 FrameFeed::FrameFeed(Stage<Source> source, const RuntimeOptions& options, PaceClock& clock,
                      StopSignal& stop, TimeLog& times)
     : pace_(options.pace),
-      thorough_(options.validate == RuntimeOptions::Validate::kFull),
+      thorough_(options.validates_fully()),
       clock_(clock),
       stop_(stop),
       times_(times),

@@ -23,7 +23,7 @@ namespace fs = std::filesystem;
               "check the folder's permissions and the free space");
 }
 
-// To the disk, so that after a power cut the name stands for a whole file.
+// Writes to the disk, so that the renamed file is complete even after a power cut.
 void flush(const fs::path& file) {
   const int descriptor = ::open(file.c_str(), O_RDONLY | O_CLOEXEC);
   const bool flushed = descriptor >= 0 && ::fsync(descriptor) == 0;

@@ -8,13 +8,13 @@
 namespace stillpoint {
 namespace {
 
-constexpr int kMostPixels = 16384;     // of a side
-constexpr double kLongestFocal = 1e6;  // px
-constexpr double kFarthest = 1e7;      // m
-constexpr double kNoRotation = 1e-6;   // from R Rᵀ = 1, det R = 1
-constexpr double kMostScale = 4;       // between two levels
+constexpr int kMaxImageSide = 16384;         // px
+constexpr double kLongestFocal = 1e6;        // px
+constexpr double kFarthest = 1e7;            // m
+constexpr double kRotationTolerance = 1e-6;  // from R Rᵀ = 1, det R = 1
+constexpr double kMostScale = 4;             // between two levels
 constexpr int kMostLevels = 64;
-constexpr double kBeyondTheImage = 1;  // px, of corners refined to fractions of a pixel
+constexpr double kImageMargin = 1;  // px, of corners refined to fractions of a pixel
 
 bool within(double value, double low, double high) { return value >= low && value <= high; }
 
@@ -26,10 +26,10 @@ bool possible(const Features& features, const Camera& camera) {
   const bool pyramid =
       within(features.scale_factor, 1, kMostScale) && within(features.levels, 1, kMostLevels);
   const auto inside = [&](const cv::KeyPoint& k) {
-    return within(k.pt.x, -kBeyondTheImage, camera.width + kBeyondTheImage) &&
-           within(k.pt.y, -kBeyondTheImage, camera.height + kBeyondTheImage) &&
-           within(k.size, 0, kMostPixels) && std::isfinite(k.angle) && std::isfinite(k.response) &&
-           within(k.octave, 0, features.levels - 1);
+    return within(k.pt.x, -kImageMargin, camera.width + kImageMargin) &&
+           within(k.pt.y, -kImageMargin, camera.height + kImageMargin) &&
+           within(k.size, 0, kMaxImageSide) && std::isfinite(k.angle) &&
+           std::isfinite(k.response) && within(k.octave, 0, features.levels - 1);
   };
   const auto depth = [](float z) { return within(z, 0, kFarthest); };
   return pyramid && std::ranges::all_of(features.keypoints, inside) &&
@@ -39,14 +39,14 @@ bool possible(const Features& features, const Camera& camera) {
 bool possible(const Pose& pose) {
   const Eigen::Matrix3d rotation = pose.linear();
   return pose.matrix().allFinite() && pose.translation().norm() <= kFarthest &&
-         (rotation * rotation.transpose()).isIdentity(kNoRotation) && rotation.determinant() > 0 &&
-         pose.matrix().row(3) == Eigen::RowVector4d(0, 0, 0, 1);
+         (rotation * rotation.transpose()).isIdentity(kRotationTolerance) &&
+         rotation.determinant() > 0 && pose.matrix().row(3) == Eigen::RowVector4d(0, 0, 0, 1);
 }
 
 }  // namespace
 
 void check_values(const Camera& camera) {
-  require(within(camera.width, 1, kMostPixels) && within(camera.height, 1, kMostPixels) &&
+  require(within(camera.width, 1, kMaxImageSide) && within(camera.height, 1, kMaxImageSide) &&
               within(camera.fx, 1, kLongestFocal) && within(camera.fy, 1, kLongestFocal) &&
               within(camera.cx, -kLongestFocal, kLongestFocal) &&
               within(camera.cy, -kLongestFocal, kLongestFocal) &&

@@ -20,7 +20,7 @@ std::span<const std::byte> bytes_of(const std::vector<T>& values) {
   return std::as_bytes(std::span(values));
 }
 
-// Numbers in the file: 0, 1, 2 … of what is there.
+// Number of each element in the file, by id: 0, 1, 2 …; -1 when it was removed.
 template <class Id>
 std::vector<std::int64_t> numbered(std::size_t id_end, const auto& is_there) {
   std::vector<std::int64_t> number(id_end, -1);

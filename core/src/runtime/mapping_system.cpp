@@ -58,7 +58,7 @@ MappingSystem::MappingSystem(Stage<LocalMapper> local_mapper, Stage<LoopCloser> 
                              Stage<MapBackend> map_backend, SparseMap known_map,
                              const RuntimeOptions& options, StopSignal& stop, TimeLog& times)
     : threaded_(options.mode == Mode::kThreaded),
-      thorough_(options.validate == RuntimeOptions::Validate::kFull),
+      thorough_(options.validates_fully()),
       stop_(stop),
       local_mapper_(std::move(local_mapper), "local mapping", times),
       loop_closer_(std::move(loop_closer), "loop closing", times),
@@ -101,8 +101,8 @@ void MappingSystem::push(NewKeyFrame keyframe) {
 }
 
 void MappingSystem::end() {
-  // Local mapping asks for loops, whose corrections come back to it; then it asks for an
-  // adjustment.
+  // Two rounds: local mapping sends loop queries, whose corrections come back to it. Then it asks
+  // for an adjustment of the whole map, which comes back as well.
   for (int round = 0; round < 2; ++round) {
     local_mapping_.wait_idle();
     loop_closing_.wait_idle();

@@ -88,8 +88,8 @@ Pipeline::Pipeline(Stages stages, const RuntimeOptions& runtime,
       tracker_(std::move(stages.tracker), "tracking", times_),
       segmentation_(std::move(stages.segmenter), std::move(stages.propagator), segmentation,
                     runtime.mode, stop_, times_),
-      moving_check_(std::move(stages.moving_checker), runtime.validate, times_),
-      map_check_(std::move(stages.map_checker), runtime.validate, times_),
+      moving_check_(std::move(stages.moving_checker), runtime, times_),
+      map_check_(std::move(stages.map_checker), runtime, times_),
       beside_(moving_check_.present() || map_check_.present() ? runtime.mode : Mode::kInline, stop_,
               times_),
       mapping_(std::move(stages.local_mapper), std::move(stages.loop_closer),
@@ -125,8 +125,8 @@ FrameReportPtr Pipeline::push(Frame frame) {
   frame.index = pushed_ ? pushed_->index + 1 : 0;
   if (frame.gray.empty() && !frame.bgr.empty() && frame.bgr.type() == CV_8UC3)
     cv::cvtColor(frame.bgr, frame.gray, cv::COLOR_BGR2GRAY);
-  check_pushed(frame, pushed_.get(), thorough());
-  if (thorough()) frame = with_read_only_images(std::move(frame));
+  check_pushed(frame, pushed_.get(), options_.validates_fully());
+  if (options_.validates_fully()) frame = with_read_only_images(std::move(frame));
   pushed_ = std::make_shared<const Frame>(std::move(frame));
   FrameReportPtr report;
   keep_failure_of([&] { report = process(pushed_); });
@@ -136,7 +136,7 @@ FrameReportPtr Pipeline::push(Frame frame) {
 
 void Pipeline::run(std::stop_token stop) {
   if (finished_ || feed_ || pushed_)
-    throw Error(Fault::kUsage, "run() comes once, instead of frames that are pushed");
+    throw Error(Fault::kUsage, "run() can be called once, and not after process()");
   const std::stop_callback forward(std::move(stop), [this] { stop_.request(); });
   feed_.emplace(std::move(source_), options_, *clock_, stop_, times_);
   keep_failure_of([this] {
@@ -172,7 +172,7 @@ FrameReportPtr Pipeline::process(const FramePtr& frame) {
                     TrackHints{.next_keyframe = mapping_.next_keyframe(),
                                .mapping_waiting = mapping_.waiting(),
                                .localise_only = localise_only_},
-                    thorough());
+                    options_.validates_fully());
   const auto tracked = tracked_frame(frame, weights, result);
   moving_check_.tracked(tracked);
   if (result.keyframe) add(new_keyframe(*result.keyframe, frame, *labels, weights));

@@ -173,7 +173,7 @@ class PipelineReader {
     try {
       describe_options(*plugin, reader);
     } catch (const std::exception& error) {
-      if (StageGuard::has_ended_one()) throw;
+      if (StageGuard::has_ended_a_call()) throw;
       faults_.add(type->location, path + " (" + plugin->type + "): " + error.what());
       return std::nullopt;
     }
@@ -215,9 +215,9 @@ void RuntimeOptions::visit(OptionVisitor& v) {
   v("seed", seed, {.min = 0, .help = "of everything random"});
   v("threads", threads, {.min = 1, .max = 256, .help = "of each solver; inline uses 1"});
   v("stage_timeout", stage_timeout,
-    {.min = 0, .max = 1e6, .unit = "s", .help = "a stage that takes longer is named; 0: none"});
+    {.min = 0, .max = 1e6, .unit = "s", .help = "a stage that takes longer is reported; 0: never"});
   v.choice("validate", validate, {{"cheap", Validate::kCheap}, {"full", Validate::kFull}},
-           {.help = "how thoroughly what stages give is checked; full is for authors of plugins"});
+           {.help = "checks of the stages' results; full: of every value, for authors of plugins"});
 }
 
 void SegmentationOptions::visit(OptionVisitor& v) {
@@ -227,16 +227,16 @@ void SegmentationOptions::visit(OptionVisitor& v) {
     {.min = 1,
      .max = 1000,
      .unit = "frames",
-     .help = "with 'latest', the network labels every so many frames at most; more cost less"});
+     .help = "n: with 'latest', the network takes at most every n-th frame; more cost less"});
   v("latency", latency,
     {.min = 0,
      .max = 1000,
      .unit = "frames",
-     .help = "of 'latest' in mode inline, which has no clock"});
+     .help = "simulated delay of labels with 'latest' in mode inline"});
   v("max_labelled", max_labelled,
     {.min = 0,
      .max = 1,
-     .help = "of the image that may be of one class; labels with more are not used"});
+     .help = "largest share of the image for one class; labels above it are discarded"});
 }
 
 void SegmentationOptions::visit_in_segmenter(OptionVisitor& v) {

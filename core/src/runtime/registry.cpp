@@ -33,7 +33,7 @@ void describe(const PluginEntry& entry, const fs::path& library, OptionVisitor& 
   try {
     call_guarded(name, std::nullopt, visit);
   } catch (const std::exception& error) {
-    if (!StageGuard::has_ended_one()) throw;
+    if (!StageGuard::has_ended_a_call()) throw;
     throw Error(Fault::kStage, error.what(), library.string() + ": " + name,
                 "fix the plugin, or remove it from the folder");
   }
@@ -46,7 +46,7 @@ std::string fault_of_options(const PluginEntry& entry, const fs::path& library) 
     describe(entry, library, describer);
     return join(describer.faults());
   } catch (const std::exception& error) {
-    if (StageGuard::has_ended_one()) throw;
+    if (StageGuard::has_ended_a_call()) throw;
     return error.what();
   } catch (...) {
     return "describing them threw something that is not a std::exception";

@@ -92,11 +92,12 @@ Segmentation SegmentationStage::labels_of(const Frame& frame) {
         segmenter_.call("segmentation", frame.index, stillpoint::segment, frame, classes_);
     if (!labels.known()) return labels;
     if (labels.instances.empty()) find_objects(labels, kMinObjectPixels);
-    // Nothing would be left to track by, and there is hardly such a thing.
+    // Too little would be left to track, and such labels are hardly ever right.
     if (largest_share(labels) > options_.max_labelled) return {.frame = frame.index};
     return labels;
   } catch (const StageError& error) {
-    if (options_.on_failure == SegmentationOptions::OnFailure::kStop || StageGuard::has_ended_one())
+    if (options_.on_failure == SegmentationOptions::OnFailure::kStop ||
+        StageGuard::has_ended_a_call())
       throw;
     if (failures_++ == 0) first_failure_ = error.what();
     return {.frame = frame.index};

@@ -31,16 +31,16 @@ constexpr int kGiveUp = SIGUSR2;
 constexpr int kExited = 1000;  // beyond all signals, like the next
 constexpr int kWroteToImage = 1001;
 constexpr unsigned kSecondsToSave = 30;
-constexpr std::size_t kStackOfHandlers = 64 * 1024;  // bytes
+constexpr std::size_t kHandlerStackSize = 64 * 1024;  // bytes
 
 struct Call {
   const std::string& stage;
   std::optional<std::uint32_t> frame;
   Clock::time_point start = Clock::now();
   pthread_t thread = pthread_self();
-  bool told = false;        // that it is late
-  Call* outer = nullptr;    // of the same thread
-  sigjmp_buf way_out = {};  // back to call_guarded()
+  bool reported = false;         // that it is late
+  Call* outer = nullptr;         // of the same thread
+  sigjmp_buf return_point = {};  // back to call_guarded()
 };
 
 // Of a thread; read by signal handlers, hence no lazy allocation.
@@ -49,8 +49,8 @@ STILLPOINT_OF_THREAD Call* current = nullptr;
 STILLPOINT_OF_THREAD volatile sig_atomic_t bookkeeping = 0;
 
 std::atomic<bool> guarded{false};
-std::atomic<bool> ended_one{false};
-std::array<char, 256> last_words{};  // of the handler of SIGALRM
+std::atomic<bool> ended_a_call{false};
+std::array<char, 256> final_message{};  // of the handler of SIGALRM
 std::mutex calls_mutex;
 std::vector<Call*> calls;  // guarded by calls_mutex
 
@@ -81,50 +81,50 @@ class Registered {
   Registered& operator=(const Registered&) = delete;
 };
 
-/// A stack that has overflowed is none for a handler.
-class StackOfHandlers {
+/// An alternate stack: after a stack overflow, signal handlers cannot use the thread's own.
+class HandlerStack {
  public:
-  StackOfHandlers() : memory_(std::make_unique<char[]>(kStackOfHandlers)) {
+  HandlerStack() : memory_(std::make_unique<char[]>(kHandlerStackSize)) {
     stack_t stack{};
     stack.ss_sp = memory_.get();
-    stack.ss_size = kStackOfHandlers;
+    stack.ss_size = kHandlerStackSize;
     sigaltstack(&stack, nullptr);
   }
-  ~StackOfHandlers() {
+  ~HandlerStack() {
     stack_t none{};
     none.ss_flags = SS_DISABLE;
     sigaltstack(&none, nullptr);
   }
-  StackOfHandlers(const StackOfHandlers&) = delete;
-  StackOfHandlers& operator=(const StackOfHandlers&) = delete;
+  HandlerStack(const HandlerStack&) = delete;
+  HandlerStack& operator=(const HandlerStack&) = delete;
 
  private:
   std::unique_ptr<char[]> memory_;
 };
 
-void say(const char* words) {  // for signal handlers
+void write_to_stderr(const char* words) {  // for signal handlers
   [[maybe_unused]] const auto written = ::write(STDERR_FILENO, words, std::strlen(words));
 }
 
 extern "C" void on_crash(int signal, siginfo_t* info, void*) {
   const bool wrote_to_image = signal == SIGSEGV && in_read_only_image(info->si_addr);
   if (current && !bookkeeping)
-    siglongjmp(current->way_out, wrote_to_image ? kWroteToImage : signal);
-  if (wrote_to_image) say("error: a thread of a plugin wrote to an image of a frame\n");
+    siglongjmp(current->return_point, wrote_to_image ? kWroteToImage : signal);
+  if (wrote_to_image) write_to_stderr("error: a thread of a plugin wrote to an image of a frame\n");
   ::signal(signal, SIG_DFL);
   ::raise(signal);
 }
 
 extern "C" void on_give_up(int signal) {
-  if (current && !bookkeeping) siglongjmp(current->way_out, signal);
+  if (current && !bookkeeping) siglongjmp(current->return_point, signal);
 }
 
 extern "C" void on_exit_of_process() {
-  if (guarded && current && !bookkeeping) siglongjmp(current->way_out, kExited);
+  if (guarded && current && !bookkeeping) siglongjmp(current->return_point, kExited);
 }
 
 extern "C" void on_saving_hangs(int) {
-  say(last_words.data());
+  write_to_stderr(final_message.data());
   ::_exit(1);
 }
 
@@ -138,11 +138,11 @@ std::string reason_of(int what) {
 
 [[noreturn]] void fail(const Call& call, int what) {
   const std::string reason = reason_of(what);
-  std::snprintf(last_words.data(), last_words.size(),
+  std::snprintf(final_message.data(), final_message.size(),
                 "error: %s: %s; what was computed could not be saved\n", call.stage.c_str(),
                 reason.c_str());
   ::alarm(kSecondsToSave);
-  ended_one = true;
+  ended_a_call = true;
   throw std::runtime_error(reason);
 }
 
@@ -168,8 +168,8 @@ void watch(const std::stop_token& stop, double patience, const LateCalls::Late& 
     {
       const std::lock_guard all(calls_mutex);
       for (Call* call : calls)
-        if (!call->told && seconds_since(call->start) > patience) {
-          call->told = true;
+        if (!call->reported && seconds_since(call->start) > patience) {
+          call->reported = true;
           texts.push_back(text_of(*call));
         }
     }
@@ -198,7 +198,7 @@ StageGuard::StageGuard() {
   handle(kGiveUp, on_give_up);
   handle(SIGALRM, on_saving_hangs);
   std::atexit(on_exit_of_process);
-  ended_one = false;
+  ended_a_call = false;
   guarded = true;
 }
 
@@ -228,7 +228,7 @@ std::size_t StageGuard::give_up() {
   return calls.size();
 }
 
-bool StageGuard::has_ended_one() { return ended_one; }
+bool StageGuard::has_ended_a_call() { return ended_a_call; }
 
 LateCalls::LateCalls(double patience_seconds, Late late) {
   if (patience_seconds > 0)
@@ -241,10 +241,10 @@ LateCalls::LateCalls(double patience_seconds, Late late) {
 void call_guarded(const std::string& stage, std::optional<std::uint32_t> frame,
                   void (*function)(void*), void* argument) {
   if (!guarded) return function(argument);
-  thread_local const StackOfHandlers kStack;
+  thread_local const HandlerStack kStack;
   Call call{.stage = stage, .frame = frame};
   const Registered registered(call);
-  const int what = sigsetjmp(call.way_out, 1);
+  const int what = sigsetjmp(call.return_point, 1);
   if (what != 0) fail(call, what);
   function(argument);
 }

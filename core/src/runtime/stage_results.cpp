@@ -182,7 +182,7 @@ void check_tracking(const TrackResult& result, const Frame& frame, const SparseM
   require_of_stage(
       is_pose(result.world_from_camera) && is_pose(result.reference_from_camera),
       "the pose is no rigid motion",
-      "it must be finite, with an orthonormal rotation; say kLost where there is none");
+      "it must be finite, with an orthonormal rotation; return kLost where there is none");
   const KeyFrameId end = next + (result.keyframe ? 1 : 0);
   require_of_stage(result.reference < end,
                    "the reference is key frame " +

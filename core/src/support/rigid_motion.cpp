@@ -10,7 +10,7 @@
 namespace stillpoint {
 namespace {
 
-constexpr double kBound = 7.815;   // of the squared error: 95 % of chi-square with 3 degrees
+constexpr double kBound = 7.815;   // of the squared error: 95 % of chi-square, 3 degrees of freedom
 constexpr int kSampleSteps = 2;    // Gauss–Newton, on three matches
 constexpr int kRounds = 4;         // of deciding who is an inlier
 constexpr int kSteps = 3;          // Gauss–Newton, per round

@@ -29,13 +29,14 @@ class IcpTracker final : public Tracker {
 
     void visit(OptionVisitor& v) {
       v("step", step, {.min = 1, .max = 32, .unit = "px", .help = "between pixels that are used"});
-      v("reach", reach, {.min = 0.001, .max = 1, .unit = "m", .help = "farther is no partner"});
+      v("reach", reach,
+        {.min = 0.001, .max = 1, .unit = "m", .help = "largest distance of correspondences"});
       v("keyframe_distance", keyframe_distance,
         {.min = 0, .unit = "m", .help = "from the last key frame to the next"});
       v("keyframe_angle", keyframe_angle,
         {.min = 0, .max = 180, .unit = "degrees", .help = "likewise"});
       v("keyframe_share", keyframe_share,
-        {.min = 0, .max = 1, .help = "of the image with partners, below which a key frame is due"});
+        {.min = 0, .max = 1, .help = "share of correspondences; below it, a key frame is made"});
     }
   };
   explicit IcpTracker(Options options) : options_(options) {}
@@ -59,7 +60,7 @@ class IcpTracker final : public Tracker {
         .reference = reference_id_,
         .reference_from_camera = found->reference_from_current,
         .world_from_camera = world_from_reference(map) * found->reference_from_current,
-        .inliers = found->partners};
+        .inliers = found->correspondences};
     if (!hints.localise_only && keyframe_is_due(*found)) begin_keyframe(result, current, hints);
     return result;
   }
@@ -93,7 +94,7 @@ class IcpTracker final : public Tracker {
     result.keyframe = std::move(keyframe);
   }
 
-  /// As the map has it, once it has it.
+  /// Its pose in the map or, while it is not there yet, its tracked pose.
   Pose world_from_reference(const SparseMap& map) const {
     return reference_id_ < map.keyframe_id_end() ? map.world_from_keyframe(reference_id_)
                                                  : world_from_new_reference_;
@@ -104,7 +105,7 @@ class IcpTracker final : public Tracker {
   KeyFrameId reference_id_ = kNoId;
   Pose world_from_new_reference_ = Pose::Identity();
   Pose reference_from_last_ = Pose::Identity();
-  Pose motion_ = Pose::Identity();  // last_from_current of the frame before: it goes on
+  Pose motion_ = Pose::Identity();  // last_from_current of the previous frame: constant velocity
 };
 
 }  // namespace

@@ -11,10 +11,10 @@ using stillpoint::Vector6d;
 namespace {
 
 constexpr double kLargestStep = 0.05;   // of the depth, between neighbours on one surface
-constexpr double kSameDirection = 0.8;  // cosine between normals of partners
+constexpr double kSameDirection = 0.8;  // cosine between normals of correspondences
 constexpr int kIterations = 20;
 constexpr double kConverged = 1e-5;  // metres and radians
-constexpr int kFewestPartners = 300;
+constexpr int kMinCorrespondences = 300;
 
 std::optional<Eigen::Vector3d> point_at(const Frame& frame, int u, int v) {
   if (u < 0 || v < 0 || u >= frame.depth.cols || v >= frame.depth.rows) return {};
@@ -35,22 +35,22 @@ Eigen::Vector3d normal_at(const Frame& frame, const Eigen::Vector3d& point, int 
   return normal.dot(point) < 0 ? normal : Eigen::Vector3d(-normal);
 }
 
-/// Normal equations of what is left of the distances to the partners' planes.
+/// Normal equations of the point-to-plane distances.
 struct Equations {
   Matrix6d matrix = Matrix6d::Zero();
   Vector6d vector = Vector6d::Zero();
-  int partners = 0;
-  double weighed = 0.0;  // elements, by their weights
+  int correspondences = 0;
+  double total_weight = 0.0;  // elements, by their weights
 
-  void add(const Eigen::Vector3d& point, const Surface::Element& partner, double weight) {
+  void add(const Eigen::Vector3d& point, const Surface::Element& correspondence, double weight) {
     Vector6d jacobian;
-    jacobian << partner.normal, point.cross(partner.normal);
-    const double distance = partner.normal.dot(point - partner.point);
+    jacobian << correspondence.normal, point.cross(correspondence.normal);
+    const double distance = correspondence.normal.dot(point - correspondence.point);
     // Depth noise grows with the square of the distance.
-    const double precision = weight / std::pow(partner.point.z(), 4);
+    const double precision = weight / std::pow(correspondence.point.z(), 4);
     matrix += precision * jacobian * jacobian.transpose();
     vector -= precision * distance * jacobian;
-    ++partners;
+    ++correspondences;
   }
 };
 
@@ -61,12 +61,13 @@ Equations equations(const Surface& reference, const Surface& current, const cv::
     if (!element.known()) continue;
     const double weight =
         weights.empty() ? 1.0 : weights.at<std::uint8_t>(element.v, element.u) / 255.0;
-    equations.weighed += weight;
+    equations.total_weight += weight;
     const Eigen::Vector3d point = reference_from_current * element.point;
-    const Surface::Element* partner = reference.seen_at(point);
-    if (!partner || weight == 0 || (partner->point - point).norm() > reach) continue;
+    const Surface::Element* correspondence = reference.seen_at(point);
+    if (!correspondence || weight == 0 || (correspondence->point - point).norm() > reach) continue;
     const Eigen::Vector3d normal = reference_from_current.linear() * element.normal;
-    if (normal.dot(partner->normal) > kSameDirection) equations.add(point, *partner, weight);
+    if (normal.dot(correspondence->normal) > kSameDirection)
+      equations.add(point, *correspondence, weight);
   }
   return equations;
 }
@@ -106,9 +107,9 @@ std::optional<Registration> registered(const Surface& reference, const Surface& 
   for (int i = 0; i < kIterations; ++i) {
     const Equations found =
         equations(reference, current, weights, result.reference_from_current, reach);
-    result.partners = found.partners;
-    result.share = found.weighed > 0 ? found.partners / found.weighed : 0.0;
-    if (found.partners < kFewestPartners) return std::nullopt;
+    result.correspondences = found.correspondences;
+    result.share = found.total_weight > 0 ? found.correspondences / found.total_weight : 0.0;
+    if (found.correspondences < kMinCorrespondences) return std::nullopt;
     const Vector6d change = found.matrix.ldlt().solve(found.vector);
     if (!change.allFinite()) return std::nullopt;  // the surfaces do not hold the pose
     result.reference_from_current = stillpoint::exp_se3(change) * result.reference_from_current;

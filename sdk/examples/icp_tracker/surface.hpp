@@ -29,13 +29,14 @@ class Surface {
 
 struct Registration {
   stillpoint::Pose reference_from_current = stillpoint::Pose::Identity();
-  double share = 0.0;  ///< of the current surface's elements that found a partner
-  int partners = 0;
+  double share = 0.0;  ///< of the current surface's elements that found a correspondence
+  int correspondences = 0;
 };
 
-/// Point-to-plane ICP with projective partners (Chen and Medioni 1992; Newcombe et al., ISMAR 2011,
-/// III-E). `weights` as StaticWeights::track, of the current frame: what may move does not count.
-/// Partners are nearer than `reach` metres. Nothing when too little is seen of both.
+/// Point-to-plane ICP with projective correspondences (Chen and Medioni 1992; Newcombe et al.,
+/// ISMAR 2011, III-E). `weights` as StaticWeights::track, of the current frame: what may move does
+/// not count. Correspondences are nearer than `reach` metres. Nothing when too little is seen of
+/// both.
 std::optional<Registration> registered(const Surface& reference, const Surface& current,
                                        const cv::Mat& weights, const stillpoint::Pose& guess,
                                        double reach);

@@ -164,7 +164,7 @@ TEST_P(FaultOfAStage, WrongResultsEndTheRunWithTheStageThatGaveThem) {
   EXPECT_EQ(
       message(diverging, std::move(stages)),
       "tracking (mine) failed on frame 3: the pose is no rigid motion; it must be finite, with "
-      "an orthonormal rotation; say kLost where there is none");
+      "an orthonormal rotation; return kLost where there is none");
   EXPECT_EQ(diverging.output->poses.size(), 3u);
   EngineFixture misjudging;
   stages = misjudging.stages();

@@ -16,7 +16,7 @@ struct MapCheckFixture {
   SparseMap map;
   std::shared_ptr<testing::FakeMapChecker> checker =
       std::make_shared<testing::FakeMapChecker>(journal);
-  MapCheck check{{checker, "depth"}, RuntimeOptions::Validate::kCheap, times};
+  MapCheck check{{checker, "depth"}, RuntimeOptions(), times};
 
   MapEvidence at(std::uint32_t index) {
     frame = std::make_shared<const Frame>(testing::make_frame(index));
@@ -72,7 +72,7 @@ TEST(MapCheck, AFailureIsNamed) {
 
 TEST(MapCheck, WithoutACheckerNothingIsKnown) {
   TimeLog times;
-  MapCheck check({}, RuntimeOptions::Validate::kCheap, times);
+  MapCheck check({}, RuntimeOptions(), times);
   EXPECT_FALSE(check.present());
   EXPECT_TRUE(check.at(testing::make_frame(0), {}, {}).log_odds.empty());
   EXPECT_TRUE(times.take().empty());

@@ -9,7 +9,6 @@ namespace {
 
 using testing::Journal;
 using Strings = std::vector<std::string>;
-constexpr auto kCheap = RuntimeOptions::Validate::kCheap;
 
 MovingPoints check(MovingCheck& stage, std::uint32_t index) {
   return stage.at(std::make_shared<const Frame>(testing::make_frame(index)), SparseMap());
@@ -18,7 +17,8 @@ MovingPoints check(MovingCheck& stage, std::uint32_t index) {
 TEST(MovingCheck, ComparesEachFrameWithTheOneBefore) {
   Journal journal;
   TimeLog times;
-  MovingCheck stage({std::make_shared<testing::FakeChecker>(journal), "lk"}, kCheap, times);
+  MovingCheck stage({std::make_shared<testing::FakeChecker>(journal), "lk"}, RuntimeOptions(),
+                    times);
   for (std::uint32_t i = 0; i < 3; ++i) EXPECT_EQ(check(stage, i).reliable, i > 0);
   EXPECT_EQ(journal.entries("check"), (Strings{"check 0 1", "check 1 2"}));
   EXPECT_EQ(times.take().size(), 2u);
@@ -40,7 +40,7 @@ TEST(MovingCheck, ShowsWhatWasTrackedAtThePosesOfTheMap) {
   TimeLog times;
   const auto checker = std::make_shared<testing::FakeChecker>(journal);
   checker->wanted = 2;
-  MovingCheck stage({checker, "lk"}, kCheap, times);
+  MovingCheck stage({checker, "lk"}, RuntimeOptions(), times);
   check(stage, 0);
   for (KeyFrameId id = 0; id < 4; ++id) stage.keyframe(make_keyframe(id));
   TrackedFrame previous{.frame = std::make_shared<const Frame>(testing::make_frame(0))};
@@ -74,7 +74,8 @@ TEST(MovingCheck, AFailureIsNamed) {
   Journal journal;
   TimeLog times;
   journal.failing = "check 0 1";
-  MovingCheck stage({std::make_shared<testing::FakeChecker>(journal), "lk"}, kCheap, times);
+  MovingCheck stage({std::make_shared<testing::FakeChecker>(journal), "lk"}, RuntimeOptions(),
+                    times);
   check(stage, 0);
   try {
     check(stage, 1);
@@ -86,7 +87,7 @@ TEST(MovingCheck, AFailureIsNamed) {
 
 TEST(MovingCheck, WithoutACheckerNothingIsKnown) {
   TimeLog times;
-  MovingCheck stage({}, kCheap, times);
+  MovingCheck stage({}, RuntimeOptions(), times);
   EXPECT_FALSE(stage.present());
   for (std::uint32_t i = 0; i < 2; ++i) EXPECT_TRUE(check(stage, i).points.empty());
   EXPECT_TRUE(times.take().empty());

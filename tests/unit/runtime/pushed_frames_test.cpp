@@ -152,7 +152,7 @@ TEST_P(PushedFrames, AreNotMixedWithRunsAndNotWantedAfterTheEnd) {
   Engine engine = this->engine();
   engine.process(make_frame(0));
   EXPECT_EQ(message_of([&] { engine.run(); }, Fault::kUsage),
-            "run() comes once, instead of frames that are pushed");
+            "run() can be called once, and not after process()");
   engine.finish();
   EXPECT_EQ(message_of([&] { engine.process(make_frame(1)); }, Fault::kUsage),
             "no frame can be pushed during run() or after finish()");

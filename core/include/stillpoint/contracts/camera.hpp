@@ -19,11 +19,11 @@ struct STILLPOINT_EXPORT Camera {
   double fy = 525.0;  ///< px
   double cx = 319.5;  ///< px
   double cy = 239.5;  ///< px
-  /// Standard deviations of depth at 1 m, in metres. That of a structured-light sensor grows with
-  /// the square of the distance, which is a constant one of the inverse depth, in 1/m (Khoshelham
-  /// and Elberink, Sensors 2012). `surface_noise` is the sensor's own, on a smooth surface.
-  /// `depth_noise` is what a point feature suffers in a recording: besides that, depth edges,
-  /// registration, and depth images taken some milliseconds off the colour images.
+  /// Standard deviations of depth at 1 m, in metres. For a structured-light sensor they grow with
+  /// the square of the distance; that of the inverse depth is then constant, in 1/m (Khoshelham and
+  /// Elberink, Sensors 2012). `surface_noise` is that of the sensor alone, on a smooth surface.
+  /// `depth_noise` is that of a point feature in a recording: it includes depth edges, registration
+  /// errors, and the time offset between colour and depth images.
   double depth_noise = 0.02;
   double surface_noise = 0.002;
 

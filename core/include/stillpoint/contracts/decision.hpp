@@ -1,4 +1,4 @@
-// Contract: from what could move and what does move to what is used (paper III-D). Thread 1.
+// Contract: weights per pixel from labels, moving points and map evidence (paper III-D). Thread 1.
 #pragma once
 
 #include <cstdint>

@@ -21,7 +21,7 @@ struct DenseKeyFrame {
 
   /// CV_8UC1, class id per pixel; empty when nothing is known.
   cv::Mat labels() const { return segmentation ? segmentation->labels : cv::Mat(); }
-  /// CV_8UC1, how far each pixel may be mapped; empty: 255 everywhere.
+  /// CV_8UC1, as StaticWeights::map: 255 static … 0 do not map; empty: 255 everywhere.
   cv::Mat map_weights() const { return weights ? weights->map : cv::Mat(); }
 };
 

@@ -32,8 +32,8 @@ struct KeyFrame {
   std::uint32_t frame = 0;  ///< index of its Frame
   double time = 0.0;        ///< seconds
   Pose world_from_camera = Pose::Identity();
-  /// Of the pose against the key frames before it, as in PoseUncertainty, where landmarks alone did
-  /// not hold it; 0 otherwise, and in maps from files.
+  /// Covariance of the pose relative to the previous key frames, as in PoseUncertainty, when the
+  /// landmarks alone did not constrain it; 0 otherwise, and in maps loaded from files.
   Matrix6d covariance = Matrix6d::Zero();
   std::shared_ptr<const Camera> camera;
   FeaturesPtr features;
@@ -42,7 +42,7 @@ struct KeyFrame {
   std::vector<LandmarkId> landmarks;        ///< per feature, kNoId = none
   KeyFrameId parent = kNoId;                ///< spanning tree; kNoId for the first
   std::vector<Covisibility> covisible;      ///< most shared landmarks first
-  std::vector<LandmarkEvidence> evidence;   ///< used up when the key frame is inserted
+  std::vector<LandmarkEvidence> evidence;   ///< added to the landmarks at insertion, then empty
 };
 
 }  // namespace stillpoint

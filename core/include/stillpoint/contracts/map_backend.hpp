@@ -24,8 +24,8 @@ class STILLPOINT_EXPORT MapBackend {
   virtual void move(std::span<const MovedKeyFrame> moved) = 0;
   /// Writes the map's files into an existing folder; may bring the map up to date before.
   virtual void save(const std::filesystem::path& directory) = 0;
-  /// What is occupied by what was integrated so far, a point per cell. Nothing for a map that is no
-  /// set of points. Between other calls, on any thread.
+  /// One point per occupied cell of the map so far. Empty for a map that is not made of points.
+  /// Called on any thread, but never during another call.
   virtual std::vector<LabelledPoint> occupied() const;
 };
 

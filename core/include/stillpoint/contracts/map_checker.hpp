@@ -1,5 +1,5 @@
-// Contract: does what is seen stand where earlier frames saw it? (DynaSLAM's multi-view geometry;
-// not in the DS-SLAM paper.) Beside thread 1.
+// Contract: compares each depth image with earlier frames to find what has moved (DynaSLAM's
+// multi-view geometry; not in the DS-SLAM paper). Beside thread 1.
 #pragma once
 
 #include <cstdint>

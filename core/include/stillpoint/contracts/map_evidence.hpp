@@ -1,4 +1,4 @@
-// Where a depth image agrees with what was seen before, and where it does not.
+// Where a depth image agrees with earlier frames, and where it violates their free space.
 #pragma once
 
 #include <opencv2/core/mat.hpp>
@@ -6,9 +6,10 @@
 namespace stillpoint {
 
 struct MapEvidence {
-  /// CV_32FC1, log-odds that the surface in a cell moves, from its place alone: > 0 where something
-  /// stands that earlier frames looked through, < 0 where it stands as they saw it, 0 where nothing
-  /// is known. Cells are squares of pixels that cover the frame. Empty: nothing is known anywhere.
+  /// CV_32FC1, log-odds that the surface in a cell moves, from its position alone: > 0 for a
+  /// free-space violation (earlier frames saw free space there), < 0 where earlier frames saw the
+  /// same surface, 0 where nothing is known. Cells are squares of pixels that cover the frame.
+  /// Empty: nothing is known anywhere.
   cv::Mat log_odds;
 };
 

@@ -13,14 +13,14 @@ namespace stillpoint {
 struct PointMotion {
   cv::Point2f previous;   ///< px
   cv::Point2f current;    ///< px
-  float residual = 0.0f;  ///< px off the place that the camera's motion alone explains
+  float residual = 0.0f;  ///< px from where the camera's motion alone predicts it
   bool moving = false;
 };
 
 struct MovingPoints {
   std::vector<PointMotion> points;
-  /// False when the check could not tell (first frame, too few points, degenerate motion); nothing
-  /// may be decided from such points.
+  /// False when the check was inconclusive (first frame, too few points, degenerate motion); such
+  /// points must not be used.
   bool reliable = false;
   /// The camera's own motion, current_from_previous, where the check has found it.
   std::optional<Pose> camera_motion;

@@ -1,4 +1,4 @@
-// Contract: what a run leaves behind (paper IV). A thread of its own, behind a queue.
+// Contract: writes or shows the results of a run (paper IV). A thread of its own, behind a queue.
 #pragma once
 
 #include <cstdint>
@@ -21,7 +21,7 @@ namespace stillpoint {
 /// Time one stage took for one frame.
 struct StageTime {
   std::string stage;        ///< "source", "prepare", "moving_check", "track", "map_insert", …
-  double wall_ms = 0.0;     ///< milliseconds of the clock on the wall
+  double wall_ms = 0.0;     ///< milliseconds of wall-clock time
   double cpu_ms = 0.0;      ///< milliseconds of processor time of the stage's own thread
   std::uint32_t frame = 0;  ///< index of the frame the work was for
 };
@@ -34,7 +34,7 @@ struct FrameReport {
   MapEvidence evidence;
   std::shared_ptr<const StaticWeights> weights;
   TrackResult result;
-  /// What ended since the last report: stages of this frame, and of other threads.
+  /// Of the calls that ended since the last report: of this frame, and on other threads.
   std::vector<StageTime> times;
 };
 using FrameReportPtr = std::shared_ptr<const FrameReport>;

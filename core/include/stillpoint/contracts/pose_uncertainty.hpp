@@ -6,10 +6,10 @@
 
 namespace stillpoint {
 
-/// As if what the pose was measured against, the map, were exact.
+/// Relative to the map: errors of the map itself are not included.
 struct PoseUncertainty {
   /// Of the camera in its own frame: x, y, z (metres), then the rotation about them (radians).
-  /// What nothing measures has a standard deviation of 1 m or 1 rad.
+  /// A direction that no measurement constrains has a standard deviation of 1 m or 1 rad.
   Matrix6d covariance = Matrix6d::Identity();
 
   /// A pose is poorly constrained when its standard deviation in any direction is larger than 5 cm,

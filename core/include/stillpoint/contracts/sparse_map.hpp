@@ -86,7 +86,8 @@ class STILLPOINT_EXPORT MapEdit {
   KeyFrame& keyframe(KeyFrameId id);
   Landmark& landmark(LandmarkId id);
 
-  /// Does nothing when that feature or that key frame already has one.
+  /// False, without a change, when the feature already has a landmark or the key frame already
+  /// observes this landmark.
   bool add_observation(LandmarkId landmark, Observation observation);
   void remove_observation(LandmarkId landmark, KeyFrameId keyframe);
   /// Removes the landmark and every observation of it.

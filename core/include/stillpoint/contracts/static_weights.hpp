@@ -1,4 +1,4 @@
-// How far each pixel may be trusted to be part of the static world (paper III-D).
+// Weights per pixel: the confidence that it shows the static world (paper III-D).
 #pragma once
 
 #include <opencv2/core/mat.hpp>

@@ -17,7 +17,7 @@
 namespace stillpoint {
 
 enum class TrackState { kWaiting /* no map yet and no start possible */, kTracking, kLost };
-/// "waiting", "tracking" or "LOST", for people.
+/// "waiting", "tracking" or "LOST", for messages.
 STILLPOINT_EXPORT const char* name_of(TrackState state);
 
 /// A feature as tracking used it, for pictures and statistics.
@@ -37,7 +37,7 @@ struct TrackResult {
   int matches = 0;                             ///< with a landmark
   int inliers = 0;                             ///< of those, fitting the pose
   std::optional<PoseUncertainty> uncertainty;  ///< of the pose; nothing: not known
-  bool held_by_depth = false;                  ///< landmarks alone would not have been enough
+  bool held_by_depth = false;                  ///< landmarks alone did not constrain the pose
   std::vector<TrackedFeature> tracked;         ///< per feature
   std::optional<KeyFrame> keyframe;            ///< to be inserted
 };

@@ -29,9 +29,9 @@ STILLPOINT_EXPORT void log_to_stderr(LogLevel level, std::string_view text);
 /// What an engine is made from, a pipeline file above all.
 struct EngineSetup {
   PipelineRequest request;
-  /// Made when it is not there, and no other engine's or run's meanwhile. The pipeline's outputs
-  /// write into it, and the dense map into its folder `map`; empty: no outputs, and the dense map
-  /// is not saved.
+  /// Created when missing, and locked: no other engine or run can use it meanwhile. The pipeline's
+  /// outputs write into it, the dense map into its folder `map`. Empty: no outputs, and the dense
+  /// map is not saved.
   std::filesystem::path output_directory;
   SparseMap known_map;         ///< to begin with, see load_map(); empty: the first frame begins one
   bool localise_only = false;  ///< the known map stays as it is
@@ -42,8 +42,8 @@ struct EngineSetup {
 /// One run of a pipeline. process(), run(), finish() and poses() are called from one thread, which
 /// is thread 1 of the paper's Fig. 2, tracking; `runtime.mode: threaded` has the others behind it.
 ///
-/// A failure of a stage, on whatever thread, ends the run: it leaves process(), run() or finish()
-/// as an Error that names the stage and the frame, and what was computed until then is there.
+/// A failure of a stage, on any thread, ends the run: process(), run() or finish() throws an Error
+/// that names the stage and the frame. What was computed until then stays available.
 class STILLPOINT_EXPORT Engine {
  public:
   /// Throws ConfigError with every fault of the configuration, or Error when a stage cannot be
@@ -52,7 +52,7 @@ class STILLPOINT_EXPORT Engine {
   /// From objects. `clock` is what `pace: sensor` goes by; null: the steady clock.
   Engine(Stages stages, const RuntimeOptions& runtime, const SegmentationOptions& segmentation,
          std::shared_ptr<PaceClock> clock = nullptr);
-  /// Without finish() before, stops like Ctrl-C: outputs are finished, failures are not told.
+  /// Without finish() before, stops like Ctrl-C: outputs are finished, failures are not reported.
   ~Engine();
   Engine(Engine&&) noexcept;
   Engine& operator=(Engine&&) = delete;
@@ -60,12 +60,12 @@ class STILLPOINT_EXPORT Engine {
   /// Estimates the pose of the next frame. Its `index` is given here; a missing `gray` is made from
   /// `bgr`. The images are shared with other threads, not copied: never write them afterwards.
   ///
-  /// In mode `inline`, everything of the frame is done at return. `threaded`, mapping goes on, so
-  /// that world_from_camera of the report is where the camera was on the map of that moment, and
-  /// trajectory() may know better later.
+  /// In mode `inline`, the frame is processed completely at return. In mode `threaded`, mapping
+  /// goes on: world_from_camera of the report is the pose in the map of that moment, and
+  /// trajectory() may give a better one later.
   ///
   /// Throws Error(kData) for a frame that cannot be used (other size than its camera, depth that is
-  /// not CV_32FC1, time that runs backwards); it counts for nothing, and the next may follow.
+  /// not CV_32FC1, time that runs backwards); it is ignored, and the next may follow.
   FrameReportPtr process(Frame frame);
 
   /// Feeds all frames of the pipeline's source, then finish(). Ends early after a stop, with what
@@ -85,7 +85,7 @@ class STILLPOINT_EXPORT Engine {
   const ClassNames& classes() const;
   /// Of every frame processed, in order.
   const std::vector<TrackedPose>& poses() const;
-  /// Of the frames that were tracked, by what the map says now.
+  /// Of the frames that were tracked, in the current map.
   std::vector<StampedPose> trajectory() const;
 
  private:

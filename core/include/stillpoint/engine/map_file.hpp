@@ -8,9 +8,9 @@
 
 namespace stillpoint {
 
-/// Puts the map into `file`, in place of the file that is there, at once and as a whole: whenever
-/// the process dies, the file is the earlier or the new one. Throws Error(kUsage) when it cannot be
-/// written or what is there is no file; it then stays.
+/// Writes the map to `file` and replaces an existing file atomically: if the process dies, the file
+/// is the earlier or the new one. Throws Error(kUsage) when it cannot be written or the path is no
+/// regular file; what is there then stays.
 STILLPOINT_EXPORT void save_map(const SparseMap& map, const std::filesystem::path& file);
 
 /// Throws what save_map would throw, before anything is computed.

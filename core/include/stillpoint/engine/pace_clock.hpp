@@ -1,4 +1,4 @@
-// Time as `pace: sensor` sees it, so that tests need none.
+// The clock of `pace: sensor`. Tests replace it, so that they need not wait.
 #pragma once
 
 #include <stop_token>
@@ -15,7 +15,7 @@ class STILLPOINT_EXPORT PaceClock {
   virtual void wait_until(double time, std::stop_token stop) = 0;
 };
 
-/// The clock that runs evenly, whatever happens to the clock on the wall.
+/// std::chrono::steady_clock: changes of the system time do not affect it.
 class STILLPOINT_EXPORT SteadyClock final : public PaceClock {
  public:
   double now() override;

@@ -39,19 +39,20 @@ struct STILLPOINT_EXPORT RuntimeOptions {
   enum class Pace { kFree, kSensor } pace = Pace::kFree;
   int seed = 1;
   int threads = 1;            ///< of each solver; always 1 inline
-  double stage_timeout = 60;  ///< seconds after which the program names a stage; 0: never
-  /// Of what stages give; full: all of it, and images of frames cannot be written to.
+  double stage_timeout = 60;  ///< seconds after which a call of a stage is reported; 0: never
+  /// Checks of the stages' results; full: of every value, and the images of frames are read-only.
   enum class Validate { kCheap, kFull } validate = Validate::kCheap;
 
+  bool validates_fully() const { return validate == Validate::kFull; }
   void visit(OptionVisitor& visitor);
 };
 
-/// The `segmentation:` section, and `segmenter.on_failure`: how labels meet frames.
+/// The `segmentation:` section, and `segmenter.on_failure`: which labels each frame gets.
 struct STILLPOINT_EXPORT SegmentationOptions {
   enum class Schedule { kWait, kLatest } schedule = Schedule::kWait;
-  int interval = 1;           ///< frames; with `latest`, the network labels every so many at most
-  int latency = 3;            ///< frames; of `latest` in mode inline, instead of the clock
-  double max_labelled = 0.9;  ///< share of the image that one class may have
+  int interval = 1;           ///< with `latest`, the network takes at most every interval-th frame
+  int latency = 3;            ///< frames; simulated delay of labels with `latest` in mode inline
+  double max_labelled = 0.9;  ///< largest share of the image that one class may cover
   enum class OnFailure { kStop, kContinue } on_failure = OnFailure::kStop;
 
   void visit(OptionVisitor& visitor);

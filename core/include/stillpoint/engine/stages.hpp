@@ -19,7 +19,7 @@ struct Stage {
 };
 
 /// What becomes of a report when an output is too slow to take it.
-enum class WhenFull { kWait /* tracking waits */, kDrop /* the report that waited longest goes */ };
+enum class WhenFull { kWait /* tracking waits */, kDrop /* the oldest report is dropped */ };
 
 struct OutputSetup {
   Stage<Output> stage;

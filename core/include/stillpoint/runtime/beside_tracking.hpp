@@ -16,7 +16,7 @@ namespace stillpoint {
 
 /// What a stage beside tracking gives; there once BesideTracking::wait() has returned true.
 template <class Result>
-class Later {
+class FutureResult {
  public:
   const Result& operator*() const { return **result_; }
   const Result* operator->() const { return &**result_; }
@@ -36,8 +36,8 @@ class BesideTracking {
 
   /// `call` has to own or outlive what it uses: wait() may never be reached.
   template <class Function>
-  auto start(Function call) -> Later<std::invoke_result_t<Function&>> {
-    Later<std::invoke_result_t<Function&>> later;
+  auto start(Function call) -> FutureResult<std::invoke_result_t<Function&>> {
+    FutureResult<std::invoke_result_t<Function&>> later;
     add([call = std::move(call), result = later.result_] { result->emplace(call()); });
     return later;
   }

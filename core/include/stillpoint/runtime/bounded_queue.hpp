@@ -28,7 +28,8 @@ class BoundedQueue {
     return true;
   }
 
-  /// Never waits and never refuses: for the edge that closes a cycle of queues.
+  /// Never waits and never refuses, even when full: for one edge of a cycle of queues, which could
+  /// deadlock otherwise.
   void push_past_limit(T item) {
     const std::lock_guard lock(mutex_);
     append(std::move(item));

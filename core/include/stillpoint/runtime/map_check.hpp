@@ -12,15 +12,14 @@ namespace stillpoint {
 
 class MapCheck {
  public:
-  MapCheck(Stage<MapChecker> checker, RuntimeOptions::Validate validate, TimeLog& times)
-      : checker_(std::move(checker), "map check", times),
-        thorough_(validate == RuntimeOptions::Validate::kFull) {}
+  MapCheck(Stage<MapChecker> checker, const RuntimeOptions& options, TimeLog& times)
+      : checker_(std::move(checker), "map check", times), thorough_(options.validates_fully()) {}
 
   bool present() const { return checker_.present(); }
   /// Once per frame, in order. Nothing is known while nothing has been tracked.
   MapEvidence at(const Frame& frame, const MovingPoints& moving, const SparseMap& map);
-  /// What became of the frame that at() was asked for last, nothing: not tracked; before it is
-  /// asked for the next one.
+  /// The frame that at() was called for last, once it has been tracked; nothing: it was not. Before
+  /// at() is called for the next one.
   void tracked(const std::optional<TrackedFrame>& frame, const SparseMap& map);
 
  private:

@@ -8,7 +8,7 @@
 
 namespace stillpoint {
 
-/// Something in a map's file cannot be.
+/// The file of a map is damaged or holds impossible values.
 class DamagedMap : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;

@@ -1,4 +1,4 @@
-// Where the versions of the sparse map change hands: the only mutex of the mapping system.
+// Passes each new version of the sparse map from its writer to all readers.
 #pragma once
 
 #include <condition_variable>

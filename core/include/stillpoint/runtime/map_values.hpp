@@ -1,4 +1,4 @@
-// Which values the parts of a saved map may have: a file may be made to harm, with right checksums.
+// Valid values in a saved map: a malicious file may have correct checksums.
 #pragma once
 
 #include "stillpoint/contracts/camera.hpp"
@@ -7,8 +7,9 @@
 
 namespace stillpoint {
 
-/// Each throws DamagedMap when a value is not finite or beyond what can be: images up to 16,384 px,
-/// positions within 10,000 km, rotations that are none, features outside the image or the pyramid.
+/// Each throws DamagedMap when a value is not finite or not valid: images larger than 16,384 px,
+/// positions beyond 10,000 km, matrices that are no rotations, features outside the image or the
+/// pyramid.
 void check_values(const Camera& camera);
 void check_values(const Landmark& landmark);
 void check_values(const KeyFrame& keyframe);

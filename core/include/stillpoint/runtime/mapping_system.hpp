@@ -86,7 +86,7 @@ class MappingSystem {
   std::mutex dense_mutex_;         // held while the dense map is called: anybody may read it
   std::uint32_t dense_frame_ = 0;  // given last to the dense map, for messages and times
   int loops_ = 0;
-  // Of the loop thread: maps of the queries that wait do not show yet what it found last.
+  // Used by the loop thread: a correction was sent that the maps of waiting queries do not have.
   bool correction_pending_ = false;
 
   Hurry mapping_hurry_;     // of the local adjustment under way

@@ -13,17 +13,18 @@ namespace stillpoint {
 
 class MovingCheck {
  public:
-  MovingCheck(Stage<MovingChecker> checker, RuntimeOptions::Validate validate, TimeLog& times)
+  MovingCheck(Stage<MovingChecker> checker, const RuntimeOptions& options, TimeLog& times)
       : checker_(std::move(checker), "moving check", times),
-        thorough_(validate == RuntimeOptions::Validate::kFull),
+        thorough_(options.validates_fully()),
         wanted_keyframes_(checker_.call_unmeasured({}, &MovingChecker::wanted_keyframes)) {}
 
   bool present() const { return checker_.present(); }
   /// Once per frame, in order. Nothing is known of the first, which has none before it.
   MovingPoints at(const FramePtr& frame, const SparseMap& map);
-  /// What became of the frame that at() was asked for last; before it is asked for the next one.
+  /// The frame that at() was called for last, once it has been tracked; nothing: it was not. Before
+  /// at() is called for the next one.
   void tracked(const std::optional<TrackedFrame>& frame) { previous_tracked_ = frame; }
-  /// That it became a key frame.
+  /// The same frame, when it became a key frame.
   void keyframe(const DenseKeyFrame& keyframe);
 
  private:

@@ -8,9 +8,8 @@
 
 namespace stillpoint {
 
-/// No labels; no propagation; no moving points; no evidence of the map; full
-/// weights; no tracking; a map of key frames and
-/// the landmarks they come with; no loops; no dense map.
+/// No labels; no propagation; no moving points; no map evidence; full weights; no tracking; a map
+/// of the key frames with the landmarks that they come with; no loops; no dense map.
 template <class Interface>
 std::shared_ptr<Interface> make_null_stage() {
   throw Error(Fault::kUsage, std::string("a pipeline needs a ") + Interface::kKind);

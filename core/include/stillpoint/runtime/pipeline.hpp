@@ -51,8 +51,6 @@ class Pipeline {
   void keep_failure_of(const std::function<void()>& step);
   void throw_failure() const;
 
-  bool thorough() const { return options_.validate == RuntimeOptions::Validate::kFull; }
-
   const RuntimeOptions options_;
   const std::filesystem::path map_directory_;
   const bool localise_only_;

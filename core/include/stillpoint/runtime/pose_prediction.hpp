@@ -15,8 +15,8 @@ class PosePrediction {
   /// After each frame; nothing when it has no pose.
   void tracked(const std::optional<TrackedFrame>& frame, const SparseMap& map);
 
-  /// Possible world_from_camera at `time` (seconds): by the motion that the moving check has found,
-  /// with the velocity of before, without motion. Empty when the last frame has no pose.
+  /// Possible world_from_camera at `time` (seconds): from the camera motion of the moving check,
+  /// from constant velocity, and without motion. Empty when the last frame has no pose.
   std::vector<Pose> guesses(double time, const MovingPoints& moving, const SparseMap& map) const;
 
  private:

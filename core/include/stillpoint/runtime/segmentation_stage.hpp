@@ -1,4 +1,4 @@
-// Thread 2: how the labels of the network meet the frames (paper III-B).
+// Thread 2: runs the network and gives each frame its labels (paper III-B).
 #pragma once
 
 #include <atomic>
@@ -13,9 +13,9 @@
 namespace stillpoint {
 
 /// Schedule `wait`: every frame has its own labels, as in the paper. `latest`: the newest finished
-/// labels are brought forward by the propagator; the network takes a frame every `interval`, and
-/// those that come while it is busy replace each other. The first labels are always waited for,
-/// because the map begins with them.
+/// labels are brought to the current frame by the propagator; the network takes at most every
+/// `interval`-th frame, and of those that come while it is busy only the newest waits. The first
+/// labels are always waited for, because the map begins with them.
 ///
 /// `latest` inline imitates a network that takes `latency` frames per image, so that its effect can
 /// be studied without the clock.

@@ -1,4 +1,4 @@
-// A thin hold on SQLite: every failure is an exception, nothing is left open.
+// A thin wrapper around SQLite: every failure is an exception, nothing is left open.
 #pragma once
 
 #include <cstddef>

@@ -15,12 +15,12 @@
 
 namespace stillpoint {
 
-/// While it lives, a plugin that SIGSEGV, SIGBUS, SIGFPE, SIGILL or SIGABRT hits, or that calls
-/// std::exit(), fails as if it had thrown: in a stage, in a constructor, or while it is loaded.
-/// Only for programs whose signal handlers are their own; one at a time.
+/// While a guard exists, a plugin that raises SIGSEGV, SIGBUS, SIGFPE, SIGILL or SIGABRT, or calls
+/// std::exit(), fails as if it had thrown an exception: in a stage, in a constructor, or while it
+/// is loaded. Only for programs that own their signal handlers; one guard at a time.
 ///
-/// What the plugin held stays as it was, locks and memory included: that is enough to save what was
-/// computed, not to go on. Should saving hang, too, the process ends after half a minute.
+/// Locks and memory that the plugin held are not released: results can be saved, but the run cannot
+/// go on. If saving hangs as well, the process ends after half a minute.
 class STILLPOINT_EXPORT StageGuard {
  public:
   StageGuard();
@@ -28,16 +28,16 @@ class STILLPOINT_EXPORT StageGuard {
   StageGuard(const StageGuard&) = delete;
   StageGuard& operator=(const StageGuard&) = delete;
 
-  /// After each library: std::exit() destroys first what came last, and would destroy the statics
-  /// of a library that came after the guard before the guard learns of it.
+  /// To be called after each library is loaded: std::exit() destroys in reverse order, so that the
+  /// statics of a library loaded after the guard would go before the guard notices the exit.
   static void library_was_loaded();
   /// The calls of plugins that take longer than that: "tracking (orb) has not returned for 12 s,
   /// frame 3".
   static std::vector<std::string> calls_longer_than(double seconds);
   /// Ends the calls under way where they are: they fail. Gives their number.
   static std::size_t give_up();
-  /// Whether it had to end one. Destructors of that plugin may do as much harm as it did.
-  static bool has_ended_one();
+  /// Whether it had to end a call. Destructors of that plugin may crash or hang as well.
+  static bool has_ended_a_call();
 };
 
 /// While it lives, says which calls of plugins take long; one at a time.

@@ -1,4 +1,4 @@
-// What a stage has to keep to.
+// Requirements on the results of a stage.
 #pragma once
 
 #include <string>

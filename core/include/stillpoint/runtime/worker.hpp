@@ -42,7 +42,8 @@ class Worker {
     else
       handler_(std::move(item));
   }
-  /// Never waits: for the edge that closes a cycle of workers.
+  /// Never waits, even when full: for one edge of a cycle of workers, which could deadlock
+  /// otherwise.
   void push_past_limit(T item) {
     if (threaded_)
       queue_.push_past_limit(std::move(item));

@@ -22,8 +22,8 @@ struct RigidMatch {
 
 /// Standard deviations of a match; see Camera for that of depth.
 struct RigidNoise {
-  double pixel = 0.4;            ///< px
-  double inverse_depth = 0.004;  ///< 1/m
+  double pixel;          ///< px
+  double inverse_depth;  ///< 1/m
 };
 
 struct RigidMotion {

@@ -8,9 +8,9 @@
 
 namespace stillpoint {
 
-/// Where the camera was, by what the map says now of the pose's reference key frame, and as it was
-/// tracked when that is not in the map: not yet, or never, after a stop. Nothing while it was not
-/// tracked.
+/// The camera's pose from the current pose of its reference key frame; the pose at the time of
+/// tracking when that key frame is not in the map (not yet, or never, after a stop). Nothing when
+/// the frame was not tracked.
 STILLPOINT_EXPORT std::optional<Pose> world_from_camera(const SparseMap& map,
                                                         const TrackedPose& pose);
 
