@@ -11,9 +11,9 @@
 namespace stillpoint::decision_objects {
 namespace {
 
-constexpr double kUnlikelyLogOdds = -2;  // of moving, at which a surface has its full weight
-// Not 0: without any doubt of it, whoever stands before the camera would be mapped at once.
-constexpr double kLeastTrust = 0.05;
+constexpr double kUnlikelyLogOdds = -2;  // of moving, below which the weight is surely full
+// Not 0: without any trust in labels, a person in front of the camera would be mapped at once.
+constexpr double kMinLabelTrust = 0.05;
 
 std::vector<PointCount> count_points(const Segmentation& segmentation, const MovingPoints& moving) {
   std::vector<PointCount> counts(segmentation.objects.size());
@@ -30,7 +30,7 @@ std::vector<PointCount> count_points(const Segmentation& segmentation, const Mov
   return counts;
 }
 
-/// The evidence of the map on the cells of a motion field; 0 without any.
+/// The map evidence, resampled to the cells of a motion field; 0 without any.
 cv::Mat on_cells(const MapEvidence& evidence, cv::Size cells) {
   if (evidence.log_odds.empty()) return cv::Mat::zeros(cells, CV_32F);
   cv::Mat resized;
@@ -38,8 +38,8 @@ cv::Mat on_cells(const MapEvidence& evidence, cv::Size cells) {
   return resized;
 }
 
-/// Pixels where the evidence of the map is below a limit, not 0. Single cells may be chance.
-cv::Mat standing(const cv::Mat& from_map, double limit, cv::Size size) {
+/// Mask of the pixels with map evidence below a limit; single cells are removed as noise.
+cv::Mat static_mask(const cv::Mat& from_map, double limit, cv::Size size) {
   cv::Mat cells = from_map < limit;
   cv::morphologyEx(cells, cells, cv::MORPH_OPEN, cv::Mat::ones(3, 3, CV_8U));
   cv::Mat pixels;
@@ -55,32 +55,38 @@ void ClassPolicy::visit(OptionVisitor& v) {
            {.help = "whether it may be mapped"});
 }
 
+void SurfacePolicy::visit(OptionVisitor& v) {
+  v("prior", prior,
+    {.min = 0.001, .max = 0.14, .help = "probability that a surface moves without evidence"});
+  field.visit(v);
+}
+
 void Bayes::Options::visit(OptionVisitor& v) {
   v("classes", classes, {.help = "policies by class name"});
   v("other", other, {.help = "policy of all other classes"});
-  v("objects", objects, {.help = "belief that a labelled object moves"});
+  v("objects", objects, {.help = "log-odds that a labelled object moves"});
   v("unlabelled", unlabelled, {.help = "evidence of single points on surfaces"});
   v("contradiction", contradiction,
     {.min = 0,
      .max = 100,
      .unit = "log-odds",
-     .help = "of the map for standing still, from which on a surface is none of a class that is "
+     .help = "map evidence for static from which a surface is mapped in spite of a label that is "
              "never mapped"});
   v("trusted_share", trusted_share,
     {.min = 0,
      .max = 1,
-     .help = "of the image that is labelled as what may move: up to it labels count in full"});
+     .help = "of the image with labels of movable classes, up to which labels count in full"});
   v("doubted_share", doubted_share,
     {.min = 0,
      .max = 1,
-     .help = "from it on labels hardly count, as they leave little to track by"});
+     .help = "from which labels hardly count, as too little is left to track on"});
   v.require(trusted_share < doubted_share, "trusted_share is not below doubted_share");
   v("margin", margin,
-    {.min = 0, .max = 50, .unit = "px", .help = "around what moves that is not used either"});
+    {.min = 0, .max = 50, .unit = "px", .help = "around moving objects that is excluded as well"});
 }
 
 Bayes::Bayes(const Options& options, const StageContext& context)
-    : options_(options), beliefs_(options.objects), field_(options.unlabelled) {
+    : options_(options), beliefs_(options.objects), field_(options.unlabelled.field) {
   policies_.fill(options.other);
   for (const auto& [name, policy] : options.classes)
     if (const int id = find_class(context.classes, name); id >= 0)
@@ -100,7 +106,7 @@ StaticWeights Bayes::decide(const Frame& frame, const Segmentation& segmentation
 
 void Bayes::weigh_surfaces(const Frame& frame, const cv::Mat& from_map,
                            StaticWeights& weights) const {
-  // Where something has come in, points at rest say nothing: most of the picture may be it.
+  // A free-space violation overrides static points: the moving object may fill most of the image.
   cv::Mat field = field_.log_odds().clone();
   field.setTo(0, (from_map > 0) & (field < 0));
   field += from_map;
@@ -134,7 +140,7 @@ void Bayes::weigh_objects(const Frame& frame, const Segmentation& segmentation,
     const cv::Size size = frame.gray.size();
     const double outweighed = kUnlikelyLogOdds - beliefs[i].log_odds;
     const ObjectMask tracked =
-        mask_of(segmentation, i, options_.margin, standing(from_map, outweighed, size));
+        mask_of(segmentation, i, options_.margin, static_mask(from_map, outweighed, size));
     lower(weights.track, size, tracked, weight);
     if (!never) {
       lower(weights.map, size, tracked, weight);
@@ -142,12 +148,12 @@ void Bayes::weigh_objects(const Frame& frame, const Segmentation& segmentation,
     }
     const double contradicted = std::min(outweighed, -trust * options_.contradiction);
     const ObjectMask mapped =
-        mask_of(segmentation, i, options_.margin, standing(from_map, contradicted, size));
+        mask_of(segmentation, i, options_.margin, static_mask(from_map, contradicted, size));
     lower(weights.map, size, mapped, 0);
   }
 }
 
-/// The more of the image is said to be what may move, the less a label counts.
+/// The more of the image is labelled as movable classes, the less a label counts.
 double Bayes::trust_in(const Segmentation& segmentation) const {
   constexpr double kMayMove = 0.5;  // prior
   double pixels = 0;
@@ -157,7 +163,7 @@ double Bayes::trust_in(const Segmentation& segmentation) const {
   const double share = pixels / static_cast<double>(segmentation.labels.total());
   const double trust =
       (options_.doubted_share - share) / (options_.doubted_share - options_.trusted_share);
-  return std::clamp(trust, kLeastTrust, 1.0);
+  return std::clamp(trust, kMinLabelTrust, 1.0);
 }
 
 const ClassPolicy& Bayes::policy_of(const SegmentedObject& object) const {

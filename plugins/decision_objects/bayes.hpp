@@ -1,5 +1,5 @@
-// Decision `bayes`: the probability of moving of every object over time, from what its class is
-// likely to do and what its points do; unlabelled things that move are found by their points.
+// Decision `bayes`: the probability over time that each object moves, from the prior of its class
+// and its moving points; unlabelled moving objects are detected by their points.
 #pragma once
 
 #include <array>
@@ -13,11 +13,19 @@
 
 namespace stillpoint::decision_objects {
 
-/// What is known of a class before any measurement, and what becomes of it in the map.
+/// The prior of a class, and whether it is mapped.
 struct ClassPolicy {
   enum class Map { kNever, kWhenStatic };
   double prior = 0.05;  ///< probability of moving
   Map map = Map::kWhenStatic;
+
+  void visit(OptionVisitor& visitor);
+};
+
+/// Surfaces without a label, judged by single points.
+struct SurfacePolicy {
+  double prior = 0.05;  ///< probability that a surface without evidence moves
+  MotionFieldOptions field;
 
   void visit(OptionVisitor& visitor);
 };
@@ -33,7 +41,7 @@ class Bayes final : public Decision {
     };
     ClassPolicy other;
     ObjectMotionOptions objects;
-    MotionFieldOptions unlabelled;
+    SurfacePolicy unlabelled;
     double contradiction = 5.0;
     double trusted_share = 0.3;
     double doubted_share = 0.6;

@@ -10,8 +10,8 @@
 
 namespace stillpoint::decision_objects {
 
-/// The id of a class, or -1 when this segmenter does not know it but others do: a pipeline keeps
-/// working when its network is exchanged. Throws Error(kUsage) for a name that is in no list.
+/// The id of a class, or -1 when this segmenter does not know it but others do: so that a
+/// pipeline works with another network. Throws Error(kUsage) for a name that is in no list.
 int find_class(const ClassNames& classes, const std::string& name);
 
 /// Ids of the listed classes. Throws Error(kUsage) when the segmenter knows none of them.

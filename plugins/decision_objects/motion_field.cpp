@@ -7,10 +7,10 @@
 namespace stillpoint::decision_objects {
 namespace {
 
-constexpr float kMostEvidence = 4.0F;  // log-odds, either way: changes of mind stay possible
-constexpr float kDoubt = 0.5F;         // weight of knowing nothing
-constexpr float kBlindReach = 12.0F;   // px, where there is no depth
-constexpr int kMostReach = 20;         // cells; what is very near does not cover the image
+constexpr float kMaxEvidence = 4.0F;         // log-odds, clamped so that new evidence can revert it
+constexpr float kNeutralWeight = 0.5F;       // weight of no evidence, against those of points
+constexpr float kReachWithoutDepth = 12.0F;  // px, where there is no depth
+constexpr int kMaxReach = 20;                // cells; limits the reach on very near surfaces
 
 /// Depth in the middle of each cell.
 void sample_depth(const cv::Mat& depth, cv::Mat& cells) {
@@ -26,14 +26,12 @@ void sample_depth(const cv::Mat& depth, cv::Mat& cells) {
 }  // namespace
 
 void MotionFieldOptions::visit(OptionVisitor& v) {
-  v("prior", prior,
-    {.min = 0.001, .max = 0.14, .help = "probability that a surface moves without evidence"});
   v("moving", moving, {.min = 0, .max = 10, .unit = "log-odds", .help = "of a moving point"});
-  v("still", still, {.min = 0, .max = 10, .unit = "log-odds", .help = "of a point at rest"});
+  v("still", still, {.min = 0, .max = 10, .unit = "log-odds", .help = "of a static point"});
   v("memory", memory, {.min = 0, .max = 1, .help = "share of evidence kept to the next frame"});
   v("reach", reach, {.min = 0.01, .max = 2, .unit = "m", .help = "of a point's evidence"});
   v("depth_gate", depth_gate,
-    {.min = 0.001, .max = 1, .help = "of a point's depth, beyond which a surface is another"});
+    {.min = 0.001, .max = 1, .help = "of a point's depth; more is another surface"});
 }
 
 void MotionField::update(const Frame& frame, const MovingPoints& moving) {
@@ -45,14 +43,14 @@ void MotionField::update(const Frame& frame, const MovingPoints& moving) {
         !moving.reliable ? 0.0F
                          : static_cast<float>(point.moving ? options_.moving : -options_.still);
     const float evidence = static_cast<float>(options_.memory) * before(point.previous) + measured;
-    spread(frame, point.current, std::clamp(evidence, -kMostEvidence, kMostEvidence));
+    spread(frame, point.current, std::clamp(evidence, -kMaxEvidence, kMaxEvidence));
   }
   log_odds_.create(depth_.size(), CV_32F);
   for (int y = 0; y < log_odds_.rows; ++y) {
     const auto* evidence = evidence_.ptr<float>(y);
     const auto* weight = weight_.ptr<float>(y);
     auto* out = log_odds_.ptr<float>(y);
-    for (int x = 0; x < log_odds_.cols; ++x) out[x] = evidence[x] / (weight[x] + kDoubt);
+    for (int x = 0; x < log_odds_.cols; ++x) out[x] = evidence[x] / (weight[x] + kNeutralWeight);
   }
 }
 
@@ -68,9 +66,9 @@ void MotionField::spread(const Frame& frame, const cv::Point2f& pixel, float evi
   const float z = depth_.at<float>(centre);
   const float focal = static_cast<float>(frame.camera->fx);
   const float reach =
-      (z > 0 ? static_cast<float>(options_.reach) * focal / z : kBlindReach) / kCell;
-  const int cells = std::min(static_cast<int>(reach), kMostReach);
-  // Where there is no depth, every surface is the point's.
+      (z > 0 ? static_cast<float>(options_.reach) * focal / z : kReachWithoutDepth) / kCell;
+  const int cells = std::min(static_cast<int>(reach), kMaxReach);
+  // Without depth, the gate is open for every surface.
   const float gate =
       z > 0 ? static_cast<float>(options_.depth_gate) * z : std::numeric_limits<float>::infinity();
   const float falloff = 1 / (reach * reach);

@@ -1,4 +1,4 @@
-// Where in the image things move, from single points: evidence spreads over the surface around each
+// Dense motion probability from sparse points: evidence spreads over the surface around each
 // point and travels with the points from frame to frame. Needs no labels.
 #pragma once
 
@@ -12,9 +12,8 @@
 namespace stillpoint::decision_objects {
 
 struct MotionFieldOptions {
-  double prior = 0.05;   ///< probability that a surface moves of which nothing is known
   double moving = 1.5;   ///< log-odds that a moving point adds
-  double still = 0.7;    ///< log-odds that a point at rest takes away
+  double still = 0.7;    ///< log-odds that a static point subtracts
   double memory = 0.85;  ///< share of a point's evidence kept from frame to frame
   double reach = 0.2;    ///< m
   double depth_gate = 0.08;
@@ -30,7 +29,7 @@ class MotionField {
 
   explicit MotionField(const MotionFieldOptions& options) : options_(options) {}
 
-  /// Points that are not reliable change nothing but their place.
+  /// Points that are not reliable add no evidence; they only carry theirs on.
   void update(const Frame& frame, const MovingPoints& moving);
 
   /// CV_32FC1, one value per cell; empty before the first update.
@@ -43,7 +42,7 @@ class MotionField {
   MotionFieldOptions options_;
   cv::Mat log_odds_;
   cv::Mat depth_;     // CV_32FC1, m, per cell; 0 = none
-  cv::Mat evidence_;  // CV_32FC1, per cell: sum of what points near it say, weighted
+  cv::Mat evidence_;  // CV_32FC1, per cell: weighted sum of the evidence of points near it
   cv::Mat weight_;    // CV_32FC1, per cell: sum of their weights
 };
 

@@ -11,15 +11,15 @@ void ObjectMotionOptions::visit(OptionVisitor& v) {
   v("gain", gain,
     {.min = 0, .max = 1000, .unit = "log-odds", .help = "per share of moving points"});
   v("share", share,
-    {.min = 0, .max = 1, .help = "of an object's points that move, at which nothing is learnt"});
+    {.min = 0, .max = 1, .help = "of moving points on an object that is neutral evidence"});
   v("rise", rise, {.min = 0, .max = 100, .unit = "log-odds", .help = "per frame at most"});
   v("fall", fall,
-    {.min = 0, .max = 100, .unit = "log-odds", .help = "per frame at most: who pauses walks on"});
+    {.min = 0, .max = 100, .unit = "log-odds", .help = "per frame at most; slow: people pause"});
   v("pull", pull,
-    {.min = 0, .max = 1, .help = "share of the way back to the prior per frame, seen or missed"});
+    {.min = 0, .max = 1, .help = "decay towards the prior per frame, seen or missed"});
   v("range", range,
-    {.min = 0, .max = 20, .unit = "log-odds", .help = "by which evidence can outweigh the prior"});
-  v("min_points", min_points, {.min = 1, .help = "on an object, to learn from them"});
+    {.min = 0, .max = 20, .unit = "log-odds", .help = "greatest deviation from the prior"});
+  v("min_points", min_points, {.min = 1, .help = "on an object, to count as evidence"});
   v("moves_above", moves_above,
     {.min = 0.2, .max = 1, .help = "probability: not used from here on"});
   v("static_below", static_below,

@@ -1,4 +1,4 @@
-// The belief that an object moves, over time.
+// Recursive Bayes filter of whether each object moves.
 #pragma once
 
 #include <map>
@@ -12,11 +12,11 @@ namespace stillpoint::decision_objects {
 
 struct ObjectMotionOptions {
   double gain = 15.0;         ///< log-odds per share of moving points above or below `share`
-  double share = 0.1;         ///< of an object's points that move, at which nothing is learnt
+  double share = 0.1;         ///< of moving points on an object, neutral evidence
   double rise = 1.5;          ///< log-odds per frame, most
   double fall = 0.3;          ///< log-odds per frame, most: people who pause go on walking
-  double pull = 0.02;         ///< share of the way back to the prior, per frame, seen or missed
-  double range = 3.5;         ///< log-odds that evidence can outweigh the prior by
+  double pull = 0.02;         ///< decay towards the prior, per frame, seen or missed
+  double range = 3.5;         ///< log-odds, greatest deviation from the prior
   int min_points = 4;         ///< on an object, for evidence
   double moves_above = 0.7;   ///< probability
   double static_below = 0.4;  ///< probability
@@ -24,7 +24,7 @@ struct ObjectMotionOptions {
   void visit(OptionVisitor& visitor);
 };
 
-/// What is believed of one object.
+/// The state of one object.
 struct ObjectBelief {
   int label = 0;
   cv::Rect box;  ///< where it was last

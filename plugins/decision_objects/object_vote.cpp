@@ -14,9 +14,9 @@ void ObjectVote::Options::visit(OptionVisitor& v) {
   v("reach", reach,
     {.min = 0, .max = 100, .unit = "px", .help = "points this near count as on the object"});
   v("margin", margin,
-    {.min = 0, .max = 50, .unit = "px", .help = "around what moves that is not used either"});
+    {.min = 0, .max = 50, .unit = "px", .help = "around moving objects that is excluded as well"});
   v.choice("unsure", unsure, {{"static", Unsure::kStatic}, {"moves", Unsure::kMoves}},
-           {.help = "what the classes are taken for while the moving check is not reliable"});
+           {.help = "assumed for the classes while the moving check is not reliable"});
 }
 
 ObjectVote::ObjectVote(const Options& options, const StageContext& context)

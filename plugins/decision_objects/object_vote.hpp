@@ -23,7 +23,7 @@ class ObjectVote final : public Decision {
     void visit(OptionVisitor& visitor);
   };
 
-  /// Throws Error(kUsage) for a class that is not there.
+  /// Throws Error(kUsage) as select_classes does.
   ObjectVote(const Options& options, const StageContext& context);
 
   StaticWeights decide(const Frame& frame, const Segmentation& segmentation,

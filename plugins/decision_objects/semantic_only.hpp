@@ -17,7 +17,7 @@ class SemanticOnly final : public Decision {
     void visit(OptionVisitor& visitor);
   };
 
-  /// Throws Error(kUsage) for a class that is not there.
+  /// Throws Error(kUsage) as select_classes does.
   SemanticOnly(const Options& options, const StageContext& context);
 
   StaticWeights decide(const Frame& frame, const Segmentation& segmentation,

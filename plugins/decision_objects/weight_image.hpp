@@ -1,4 +1,4 @@
-// Painting weights onto the pixels of objects.
+// Masks of objects, and the weights of the pixels under them.
 #pragma once
 
 #include <opencv2/core/mat.hpp>
@@ -13,9 +13,9 @@ struct ObjectMask {
   cv::Mat mask;  ///< CV_8UC1, 255 on the object
 };
 
-/// The object's pixels and those up to `margin` px away: outlines are not exact, and a feature's
-/// surroundings count as well. `except` (CV_8UC1 of the image's size, or empty) is not 0 on pixels
-/// that are none of the object's.
+/// The object's mask dilated by `margin` px: outlines are not exact, and a descriptor covers the
+/// surroundings of its feature. `except` (CV_8UC1 of the image's size, or empty) is not 0 on pixels
+/// that do not belong to the object.
 ObjectMask mask_of(const Segmentation& segmentation, std::size_t index, int margin,
                    const cv::Mat& except = {});
 

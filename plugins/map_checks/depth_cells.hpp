@@ -22,7 +22,7 @@ struct CellCamera {
 cv::Mat sample_depth(const cv::Mat& depth);
 
 /// CV_32FC2: the nearest and the farthest depth of a cell and its eight neighbours, so that an
-/// error of one cell in the pose changes no verdict; (0, 0) where the cell has none.
+/// error of one cell by the pose changes no result; (0, 0) where the cell has none.
 cv::Mat depth_bounds(const cv::Mat& cells);
 
 /// CV_32FC3: unit normals in the camera frame; 0 at depth edges and where depth is missing.

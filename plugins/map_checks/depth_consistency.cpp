@@ -6,9 +6,9 @@
 namespace stillpoint::map_checks {
 namespace {
 
-constexpr double kLeastOverlap = 0.1;
+constexpr double kMinViewOverlap = 0.1;
 
-/// Share of the cells with depth that a view has in its image, from a few of them.
+/// Share of the cells with depth that project into the image of a view; sampled.
 double overlap(const View& view, const cv::Mat& depth, const CellCamera& camera,
                const Pose& world_from_camera) {
   constexpr int kStep = 16;  // cells
@@ -38,9 +38,8 @@ void DepthConsistency::Options::visit(OptionVisitor& v) {
   v("min_agreement", min_agreement,
     {.min = 0,
      .max = 1,
-     .help =
-         "of the points on or behind trusted surfaces, share that must lie on them, else nothing "
-         "is said"});
+     .help = "inlier share of the points on or behind trusted surfaces, below which there is no "
+             "evidence"});
 }
 
 MapEvidence DepthConsistency::check(const Frame& frame, std::span<const Pose> guesses,
@@ -51,7 +50,7 @@ MapEvidence DepthConsistency::check(const Frame& frame, std::span<const Pose> gu
   std::vector<std::pair<double, const View*>> by_overlap;
   for (const View& view : memory_.views_in(map)) {
     const double share = overlap(view, depth, camera, guesses.front());
-    if (share < kLeastOverlap) continue;
+    if (share < kMinViewOverlap) continue;
     views.push_back(&view);
     by_overlap.emplace_back(-share, &view);
   }

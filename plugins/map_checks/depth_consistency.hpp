@@ -6,10 +6,10 @@
 
 namespace stillpoint::map_checks {
 
-/// Nearer than a surface that was seen through here: something has come in. Where it was, from
-/// another viewpoint or after a second: it stands still. Needs neither labels nor a motion that
-/// most of the image agrees on (after DynaSLAM's multi-view geometry, Bescos et al., RA-L 2018,
-/// III-B).
+/// Depth in front of a surface that an earlier frame saw there is a free-space violation: an
+/// object has come in. Depth on it, from another viewpoint or after a second, is static. Needs
+/// neither labels nor a static majority of the image (after DynaSLAM's multi-view
+/// geometry, Bescos et al., RA-L 2018, III-B).
 class DepthConsistency final : public MapChecker {
  public:
   struct Options {

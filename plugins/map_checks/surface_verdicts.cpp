@@ -13,15 +13,15 @@ namespace {
 
 constexpr int kLanes = cv::v_float32::nlanes;
 constexpr float kMinDepth = 0.1F;  // m before a view
-// Nearest and farthest of the neighbours this many tolerances apart: an edge, between two surfaces.
+// Nearest and farthest neighbour this many tolerances apart: a depth discontinuity.
 constexpr float kTolerancesAtEdge = 5.0F;
 constexpr float kSigmas = 5.0F;        // of the depth, by which both margin and tolerance are wider
 constexpr float kSameSurface = 0.03F;  // of the depth, between neighbouring cells
 
-// What has been said of the cells of a row.
+// Evidence on the cells of a row.
 struct Verdicts {
-  std::vector<float> resting;  // s, age of the oldest view of the unbroken row that saw it there
-  std::vector<float> came_in;  // views that looked through
+  std::vector<float> resting;  // s, age of the oldest view that saw it there, no violation since
+  std::vector<float> came_in;  // views with a free-space violation
   std::array<std::vector<float>, 3> same;  // views that saw it there, by Trust
 
   void clear(std::size_t cells) {
@@ -31,16 +31,16 @@ struct Verdicts {
   }
 };
 
-// An earlier view, as this frame compares itself with it.
+// An earlier view relative to the current frame.
 struct PastView {
   const View* view;
   Eigen::Matrix3f rotation;     // view_from_camera
   Eigen::Vector3f translation;  // m
   float age;                    // s
-  bool tells_rest;
+  bool is_static_evidence;
 };
 
-// Row by row, so that what has been said stays in the cache.
+// Works row by row, so that the evidence stays in the cache.
 class Judge {
  public:
   Judge(const cv::Mat& depth, const CellCamera& camera, const VerdictOptions& options)
@@ -82,10 +82,10 @@ class Judge {
             view_from_camera.translation().cast<float>(), age, apart || age >= options_.min_age};
   }
 
-  // Fills cells_ and z_: where the view sees the cells of a row, and how far from it they are.
+  // Projects a row into the view: fills cells_ (cell of the view) and z_ (depth from the view).
   void project_row(int y, const PastView& past) {
     const View& view = *past.view;
-    // Rays of the row in cells of the view, so that (x, y) / z is a place in it; rounded below.
+    // Rays of the row in homogeneous cell coordinates of the view; + 0.5 as truncation rounds.
     Eigen::Matrix3f calibration = Eigen::Matrix3f::Identity();
     calibration << view.camera.fx, 0, view.camera.cx + 0.5F,  //
         0, view.camera.fy, view.camera.cy + 0.5F, 0, 0, 1;
@@ -119,7 +119,8 @@ class Judge {
     }
   }
 
-  // The same for cells_ at once. What looks through comes in, unless it has been resting for long.
+  // Compares cells_ and z_ with the view. A free-space violation does not count once newer
+  // views, which are compared first, have seen the surface there for rest_time.
   void compare_row(const PastView& past) {
     const View& view = *past.view;
     const auto all = [](double value) { return cv::vx_setall_f32(static_cast<float>(value)); };
@@ -152,7 +153,7 @@ class Judge {
       const cv::v_float32 same = measured & between & ~beside;
       const cv::v_float32 rests = same & (came_in == zero);
       cv::vx_store(&verdicts_.resting[x], cv::v_max(resting, rests & all(past.age)));
-      if (past.tells_rest) count_same(x, same, cv::v_lut(view.trust.ptr<int>(), place));
+      if (past.is_static_evidence) count_same(x, same, cv::v_lut(view.trust.ptr<int>(), place));
     }
   }
 
@@ -186,7 +187,7 @@ class Judge {
   std::vector<float> z_;        // m, from the view
 };
 
-/// Single cells that stand out are noise at edges.
+/// Isolated cells are noise at depth discontinuities.
 void remove_specks(cv::Mat& log_odds) {
   const cv::Mat around = cv::Mat::ones(3, 3, CV_8U);
   cv::Mat came_in = log_odds > 0, opened;
@@ -197,7 +198,7 @@ void remove_specks(cv::Mat& log_odds) {
   log_odds.setTo(0, same & ~opened);
 }
 
-/// What has come in goes on where no view knows the place, as far as the same surface does.
+/// Grows free-space violations over connected cells of the same surface without evidence.
 void grow(cv::Mat& log_odds, const cv::Mat& depth, const CellCamera& camera, float reach) {
   struct Step {
     cv::Point cell;
@@ -232,23 +233,23 @@ void VerdictOptions::visit(OptionVisitor& v) {
     {.min = 0,
      .max = 10,
      .unit = "m",
-     .help = "before what was seen there, besides noise: it has come in"});
+     .help = "in front of the earlier surface, besides noise: free-space violation"});
   v("tolerance", tolerance,
     {.min = 0,
      .max = 10,
      .unit = "m",
-     .help = "from what was seen there, besides noise: it stands there still"});
+     .help = "around the earlier surface, besides noise: the same surface"});
   v("rest_time", rest_time,
-    {.min = 0, .max = 600, .unit = "s", .help = "until what has come in counts as resting"});
+    {.min = 0, .max = 600, .unit = "s", .help = "until what came in and stays is static"});
   v("min_age", min_age,
     {.min = 0,
      .max = 600,
      .unit = "s",
-     .help = "of a view from the same place, to tell who rests"});
+     .help = "of a view from the same place, to be evidence for static"});
   v("min_parallax", min_parallax,
-    {.min = 0, .max = 100, .unit = "m", .help = "between two viewpoints, to tell who rests"});
+    {.min = 0, .max = 100, .unit = "m", .help = "between viewpoints, for younger views to count"});
   v("came_in", came_in,
-    {.min = 0, .max = 100, .unit = "log-odds", .help = "of each view that looked through"});
+    {.min = 0, .max = 100, .unit = "log-odds", .help = "of each view that saw free space there"});
   v("same_mapped", same_mapped,
     {.min = 0,
      .max = 100,
@@ -258,10 +259,10 @@ void VerdictOptions::visit(OptionVisitor& v) {
     {.min = 0, .max = 100, .unit = "log-odds", .help = "of each that saw and only tracked it"});
   v("same_untrusted", same_untrusted,
     {.min = 0, .max = 100, .unit = "log-odds", .help = "of each that saw it and did neither"});
-  v("range", range, {.min = 0, .max = 100, .unit = "log-odds", .help = "of all views, at most"});
+  v("range", range, {.min = 0, .max = 100, .unit = "log-odds", .help = "greatest total"});
   v.require(margin >= tolerance, "margin is less than tolerance");
   v("reach", reach,
-    {.min = 0, .max = 10, .unit = "m", .help = "of what has come in, where no view knows"});
+    {.min = 0, .max = 10, .unit = "m", .help = "to grow violations over unknown space"});
 }
 
 cv::Mat judge_surfaces(const cv::Mat& depth, const CellCamera& camera,

@@ -1,4 +1,4 @@
-// What earlier views say of each surface that is seen now.
+// Evidence of earlier views on each surface in the current frame.
 #pragma once
 
 #include <span>
@@ -8,17 +8,17 @@
 namespace stillpoint::map_checks {
 
 struct VerdictOptions {
-  double margin = 0.04;         ///< m, by which something must stand before what was seen
-  double tolerance = 0.015;     ///< m, within which it stands where it stood
-  double rest_time = 5.0;       ///< s, after which what has come in and stays counts as staying
-  double min_age = 1.0;         ///< s; younger views from the same place do not tell who rests
-  double min_parallax = 0.1;    ///< m between the viewpoints; then younger ones do
-  double came_in = 3.0;         ///< log-odds, of each view that looked through the place
+  double margin = 0.04;         ///< m, in front of an earlier surface: free-space violation
+  double tolerance = 0.015;     ///< m, around an earlier surface: the same surface
+  double rest_time = 5.0;       ///< s, after which an object that came in and stays is static
+  double min_age = 1.0;         ///< s; younger views from the same place are no evidence
+  double min_parallax = 0.1;    ///< m between the viewpoints; then younger ones are
+  double came_in = 3.0;         ///< log-odds, of each view that saw free space there
   double same_mapped = 1.5;     ///< log-odds, of each view that saw it there and mapped it
   double same_tracked = 0.3;    ///< log-odds, of each that only tracked it
   double same_untrusted = 0.3;  ///< log-odds, of each that did neither
   double range = 8.0;           ///< log-odds, most
-  double reach = 0.5;           ///< m, along a surface from where it has come in to unknown space
+  double reach = 0.5;           ///< m, region growing of violations over unknown space
 
   void visit(OptionVisitor& visitor);
 };

@@ -10,11 +10,11 @@ namespace {
 
 constexpr int kStep = 4;        // cells between the points used
 constexpr int kIterations = 4;  // of ICP
-constexpr std::size_t kMostViews = 3;
-constexpr float kFirstGate = 0.15F;  // m off a surface; later ones are nearer
+constexpr std::size_t kMaxAlignedViews = 3;
+constexpr float kFirstGate = 0.15F;  // m, association gate of the first iteration
 constexpr float kLastGate = 0.05F;
 constexpr float kOnSurface = 0.04F;  // m
-// Neighbouring points err together (registration, calibration): so many of them count as one.
+// Errors of neighbouring points are correlated (registration, calibration): so many count as one.
 constexpr double kCorrelated = 5.0;
 constexpr double kSurfaceSigma = 0.01;   // m at 1 m
 constexpr double kGuessPosition = 0.05;  // m, standard deviation of the guess
@@ -22,7 +22,7 @@ constexpr double kGuessAngle = 0.05;     // rad
 
 struct Fit {
   int on_surface = 0;  // points that lie on a trusted surface
-  int behind = 0;      // points seen through one
+  int behind = 0;      // points behind one, which should be occluded
 };
 
 struct Normal {
@@ -45,7 +45,7 @@ std::vector<Eigen::Vector3f> points_of(const cv::Mat& depth, const CellCamera& c
 class Aligner {
  public:
   Aligner(const std::vector<Eigen::Vector3f>& points, std::span<const View* const> views)
-      : points_(points), views_(views.first(std::min(views.size(), kMostViews))) {}
+      : points_(points), views_(views.first(std::min(views.size(), kMaxAlignedViews))) {}
 
   Fit compare(const Pose& world_from_camera) const {
     Fit fit;
@@ -133,10 +133,11 @@ class Aligner {
   std::span<const View* const> views_;
 };
 
-// What stands before a surface may have come in, but nothing is seen through one that has not gone.
+// Points in front of a surface may be dynamic objects; points behind it indicate a wrong
+// pose, unless the surface is gone.
 double agreement(const Fit& fit) {
-  constexpr double kFewest = 50;  // points
-  return fit.on_surface / std::max(kFewest, static_cast<double>(fit.on_surface + fit.behind));
+  constexpr double kMinPoints = 50;  // points
+  return fit.on_surface / std::max(kMinPoints, static_cast<double>(fit.on_surface + fit.behind));
 }
 
 }  // namespace

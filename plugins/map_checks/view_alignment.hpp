@@ -1,4 +1,4 @@
-// The pose of a depth image among earlier views, by their surfaces.
+// Registration of a depth image to the surfaces of earlier views.
 #pragma once
 
 #include <optional>
@@ -8,7 +8,7 @@
 
 namespace stillpoint::map_checks {
 
-/// Where a depth image lies among the views.
+/// The pose of a depth image, and how well it fits.
 struct ViewAlignment {
   Pose world_from_camera = Pose::Identity();
   double agreement =
@@ -16,9 +16,9 @@ struct ViewAlignment {
 };
 
 /// The guess that agrees best with the trusted surfaces of the views, moved by point-to-plane ICP
-/// with projective association (Newcombe et al., KinectFusion, ISMAR 2011). What has come in is an
-/// outlier: however much of the image it fills, it lies on no surface that was seen before. Where
-/// the surfaces leave the pose open, the guess holds. `views` must not be empty.
+/// with projective association (Newcombe et al., KinectFusion, ISMAR 2011). Dynamic objects are
+/// outliers: however much of the image they fill, they lie on no earlier surface. In directions
+/// that the surfaces do not constrain, a prior keeps the guess. `views` must not be empty.
 ViewAlignment align(const cv::Mat& depth, const CellCamera& camera, std::span<const Pose> guesses,
                     std::span<const View* const> views);
 

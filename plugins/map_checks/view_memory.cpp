@@ -8,14 +8,14 @@
 namespace stillpoint::map_checks {
 namespace {
 
-constexpr int kUsed = 128;  // weight from which a surface was used
+constexpr int kMinUsedWeight = 128;  // weight from which a surface was used
 
-/// 255 in the cells of which a weight image uses the middle.
+/// 255 in the cells whose middle pixel has enough weight.
 cv::Mat used_cells(const cv::Mat& weight, cv::Size size) {
   if (weight.empty()) return {size, CV_8U, cv::Scalar(255)};
   cv::Mat cells;
   cv::resize(weight, cells, size, 0, 0, cv::INTER_NEAREST);
-  return cells >= kUsed;
+  return cells >= kMinUsedWeight;
 }
 
 cv::Mat trust_in(const StaticWeights& weights, cv::Size size) {
@@ -52,8 +52,8 @@ void MemoryOptions::visit(OptionVisitor& v) {
 }
 
 void ViewMemory::add(const TrackedFrame& frame) {
-  if (!worth_keeping(frame)) return;
-  if (views_.size() == static_cast<std::size_t>(options_.views)) drop_one();
+  if (!is_new_view(frame)) return;
+  if (views_.size() == static_cast<std::size_t>(options_.views)) drop_most_redundant();
   views_.insert(views_.begin(), make_view(frame));
 }
 
@@ -62,7 +62,7 @@ const std::vector<View>& ViewMemory::views_in(const SparseMap& map) {
   return views_;
 }
 
-bool ViewMemory::worth_keeping(const TrackedFrame& frame) const {
+bool ViewMemory::is_new_view(const TrackedFrame& frame) const {
   if (views_.empty()) return true;
   if (frame.frame->time - views_.front().time >= options_.interval) return true;
   return std::ranges::all_of(views_, [&](const View& view) {
@@ -70,16 +70,16 @@ bool ViewMemory::worth_keeping(const TrackedFrame& frame) const {
   });
 }
 
-/// How far two viewpoints are apart: 1 is a new one.
+/// Distance of two viewpoints; from 1 on they count as different.
 double ViewMemory::novelty(const Pose& a, const Pose& b) const {
   const Pose apart = a.inverse() * b;
   const double degrees = rotation_angle(apart) * 180 / std::numbers::pi;
   return degrees / options_.angle + apart.translation().norm() / options_.distance;
 }
 
-/// The one whose neighbour in time says most of what it says: near to it for its age, and seen from
-/// the same place.
-void ViewMemory::drop_one() {
+/// The most redundant one: its neighbour in time is close to it, relative to its age, and has
+/// nearly the same viewpoint.
+void ViewMemory::drop_most_redundant() {
   std::size_t spare = 1;
   double least = std::numeric_limits<double>::max();
   const double now = views_.front().time;

@@ -1,4 +1,4 @@
-// The frames that later ones are compared with.
+// Earlier views that the current frame is compared with.
 #pragma once
 
 #include <vector>
@@ -9,8 +9,8 @@ namespace stillpoint::map_checks {
 
 /// How far a surface was trusted when it was seen.
 enum Trust : int {
-  kUntrusted = 0,  ///< it moved, as far as was known
-  kTracked = 1,    ///< it stood still, but is of a kind that is not mapped
+  kUntrusted = 0,  ///< dynamic, as far as was known
+  kTracked = 1,    ///< static, but of a class that is not mapped
   kMapped = 2
 };
 
@@ -35,7 +35,7 @@ struct MemoryOptions {
   void visit(OptionVisitor& visitor);
 };
 
-/// Few views for much: dense in the time just past, ever sparser before, and of different
+/// A fixed number of views: dense in the recent past, increasingly sparse before, from different
 /// viewpoints.
 class ViewMemory {
  public:
@@ -46,9 +46,9 @@ class ViewMemory {
   const std::vector<View>& views_in(const SparseMap& map);
 
  private:
-  bool worth_keeping(const TrackedFrame& frame) const;
+  bool is_new_view(const TrackedFrame& frame) const;
   double novelty(const Pose& a, const Pose& b) const;
-  void drop_one();
+  void drop_most_redundant();
 
   MemoryOptions options_;
   std::vector<View> views_;  // newest first

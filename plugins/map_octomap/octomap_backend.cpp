@@ -18,8 +18,8 @@ using semantic_octree::write_occupancy;
 using semantic_octree::write_octree;
 using semantic_octree::write_point_cloud;
 
-constexpr float kAlmost = 0.01F;   // log-odds below being occupied
-constexpr long kWidestMargin = 3;  // voxels: their number grows with its third power
+constexpr float kBelowThreshold = 0.01F;  // log-odds below the threshold of occupied
+constexpr long kMaxMargin = 3;            // voxels: the cost grows with its third power
 
 float log_odds(double probability) {
   return static_cast<float>(std::log(probability / (1 - probability)));
@@ -31,7 +31,7 @@ OccupancyModel model_of(const OctomapBackend::Options& options) {
           .miss = carves ? log_odds(options.miss) : 0.0F,
           .min = log_odds(options.least),
           .max = log_odds(options.most),
-          .doubt = log_odds(options.occupied_above) - log_odds(options.hit) - kAlmost};
+          .doubt = log_odds(options.occupied_above) - log_odds(options.hit) - kBelowThreshold};
 }
 
 ScanOptions scan_options_of(const OctomapBackend::Options& options) {
@@ -41,7 +41,7 @@ ScanOptions scan_options_of(const OctomapBackend::Options& options) {
           .sigmas_before_surface = OctomapBackend::kSigmasBeforeSurface,
           .min_weight = static_cast<std::uint8_t>(options.min_weight),
           .margin = static_cast<int>(
-              std::min(std::lround(options.margin / options.resolution), kWidestMargin))};
+              std::min(std::lround(options.margin / options.resolution), kMaxMargin))};
 }
 
 bool share_any(const std::vector<BrickKey>& some, const std::vector<BrickKey>& others) {
@@ -65,18 +65,17 @@ void OctomapBackend::Options::visit(OptionVisitor& v) {
   v("range", range, {.min = 0.5, .max = 13, .unit = "m", .help = "surfaces beyond are left out"});
   v.choice("model", model, {{"rays", Model::kRays}, {"hits", Model::kHits}},
            {.help = "whether rays carve free space, or only hits count (the paper, eq. 6)"});
-  v("hit", hit, {.min = 0.51, .max = 0.99, .help = "probability of a voxel that a ray ends in"});
-  v("miss", miss, {.min = 0.01, .max = 0.49, .help = "probability of one that a ray goes through"});
-  v("least", least,
-    {.min = 0.001, .max = 0.49, .help = "probability, however often looked through"});
-  v("most", most, {.min = 0.7, .max = 0.999, .help = "probability, however often hit"});
+  v("hit", hit, {.min = 0.51, .max = 0.99, .help = "probability of a voxel hit by a ray"});
+  v("miss", miss, {.min = 0.01, .max = 0.49, .help = "probability of one a ray passes"});
+  v("least", least, {.min = 0.001, .max = 0.49, .help = "lower clamping bound of the probability"});
+  v("most", most, {.min = 0.7, .max = 0.999, .help = "upper clamping bound of the probability"});
   v("occupied_above", occupied_above,
     {.min = 0.01, .max = 0.99, .help = "probability from which a voxel is occupied"});
   v("tolerance", tolerance,
     {.min = 0,
      .max = 10,
      .unit = "voxels",
-     .help = "that key frames may move without a new fusion"});
+     .help = "that key frames may move before they are fused again"});
   v("stride", stride,
     {.min = 0,
      .max = 32,
@@ -88,9 +87,9 @@ void OctomapBackend::Options::visit(OptionVisitor& v) {
     {.min = 0,
      .max = 0.1,
      .unit = "m",
-     .help = "around what moves in which one look does not make a voxel occupied; at most three "
+     .help = "around pixels that are not mapped, in which a voxel needs two hits; at most three "
              "voxels"});
-  v("cost_map", cost_map, {.help = "the map as a robot on the floor needs it, saved beside it"});
+  v("cost_map", cost_map, {.help = "2-D cost map for robots on the floor, saved with the map"});
   v.require(range / resolution <= 500, "range is more than 500 voxels");
   v.require(least < occupied_above && occupied_above < most,
             "occupied_above must lie between least and most");
@@ -155,22 +154,22 @@ void OctomapBackend::save_cost_map(const std::filesystem::path& directory) const
   std::optional<CostMap> map;
   try {
     map = project(tree_, *floor, options_.cost_map);
-  } catch (const Error& error) {  // all else is worth having
+  } catch (const Error& error) {  // the other files are still useful
     log_(LogLevel::kWarning, error.what());
     return;
   }
   write_cost_map(*map, directory / "map");
 }
 
-// Neighbouring pixels are about a third of a voxel apart at the end of the range, or each is used:
-// a surface that is seen at a grazing angle would be looked through between them.
+// Neighbouring pixels are about a third of a voxel apart at the end of the range, or every pixel is
+// used: with larger gaps, surfaces at grazing angles would be carved away between them.
 int OctomapBackend::stride_for(const Camera& camera) const {
   if (options_.stride > 0) return options_.stride;
   const double pixel = options_.range / std::min(camera.fx, camera.fy);  // metres, at the end
   return std::max(1, static_cast<int>(options_.resolution / 3 / pixel));
 }
 
-// What is kept is what is fused, so that fusing it again gives the same.
+// Scans the stored images rather than the originals, so that fusing again gives the same result.
 void OctomapBackend::scan(Entry& entry) {
   entry.fused_at = entry.world_from_camera;
   scan_.scan(entry.images.unpack(entry.fused_at));
@@ -183,7 +182,7 @@ bool OctomapBackend::is_up_to_date(const Entry& entry) {
   return entry.fused_at.matrix() == entry.world_from_camera.matrix();
 }
 
-// What the farthest surface moved at most, in metres.
+// Upper bound of the displacement of a surface within range, in metres.
 double OctomapBackend::moved_by(const Entry& entry) const {
   const Pose change = entry.fused_at.inverse() * entry.world_from_camera;
   return change.translation().norm() + options_.range * rotation_angle(change);

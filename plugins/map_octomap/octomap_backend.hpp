@@ -1,4 +1,4 @@
-// Map back end `octomap`: the dense semantic octree (DS-SLAM III-E), which follows its key frames.
+// Map back end `octomap`: the dense semantic octree (DS-SLAM III-E), corrected with its key frames.
 #pragma once
 
 #include <functional>
@@ -28,7 +28,8 @@ using semantic_octree::SemanticOctree;
 /// that was ever seen there is fused again, and the rest stays as it is.
 class OctomapBackend final : public MapBackend {
  public:
-  /// Of the depth: so much of a ray's end is no free space. At 2 cm more voxels of surfaces would
+  /// Free space ends this many standard deviations of the depth before a ray's end.
+  /// At 2 cm more voxels of surfaces would
   /// be carved away than noise leaves in free space (docs/dense_maps.md).
   static constexpr double kSigmasBeforeSurface = 2.0;
 
@@ -41,15 +42,15 @@ class OctomapBackend final : public MapBackend {
     double range = 4.0;        ///< metres
     Model model = Model::kRays;
     double hit = 0.65;            ///< probability that a voxel is occupied when it is hit
-    double miss = 0.3;            ///< likewise, when it is looked through
-    double least = 0.12;          ///< probabilities are clamped, so that things may appear
-    double most = 0.97;           ///< and disappear again
+    double miss = 0.3;            ///< likewise, when a ray passes it
+    double least = 0.12;          ///< clamping bounds, so that objects may disappear
+    double most = 0.97;           ///< and appear again
     double occupied_above = 0.5;  ///< probability
     double tolerance = 0.5;       ///< voxels that key frames may move before they are fused again
     int stride = 0;               ///< px; 0 = by resolution and range
     int min_weight = 128;         ///< of StaticWeights::map
-    /// Metres around such pixels in which one look does not make a voxel occupied; in whole voxels,
-    /// at most three.
+    /// Metres around pixels of less weight in which a voxel needs two hits; in whole voxels, at
+    /// most three.
     double margin = 0.05;
     CostMapOptions cost_map;
 

@@ -3,4 +3,4 @@
 STILLPOINT_PLUGIN(
     map_octomap, "0.1.0",
     stillpoint::provide<stillpoint::MapBackend, stillpoint::map_octomap::OctomapBackend>(
-        "octomap", "dense semantic octree that follows its key frames (OctoMap)"));
+        "octomap", "dense semantic octree, corrected when key frames move (OctoMap)"));

@@ -44,7 +44,7 @@ StoredKeyFrame::StoredKeyFrame(const DenseKeyFrame& keyframe, int stride)
   };
   std::size_t pixel = 0;
   for (int y = 0; y < camera_->height; ++y) {
-    int before = 0;  // depths are stored as differences to the left: those compress
+    int before = 0;  // delta coding along the row, which compresses better
     for (int x = 0; x < camera_->width; ++x, ++pixel) {
       const int u = x * stride + stride / 2, v = y * stride + stride / 2;
       const float metres = frame.depth.at<float>(v, u);

@@ -5,17 +5,17 @@
 namespace stillpoint::map_voxel_cloud {
 namespace {
 
-constexpr int kBits = 21;                    // of a key, per axis
-constexpr float kReach = 1U << (kBits - 1);  // voxels
+constexpr int kBits = 21;                            // of a key, per axis
+constexpr float kMaxCoordinate = 1U << (kBits - 1);  // voxels
 
 }  // namespace
 
 void VoxelCloud::add(const LabelledPoint& point, std::uint32_t count, bool labelled) {
   const Eigen::Vector3f voxel = (per_metre_ * point.position).array().floor();
-  if (!(voxel.array().abs() < kReach).all()) return;
+  if (!(voxel.array().abs() < kMaxCoordinate).all()) return;
   std::uint64_t key = 0;
   for (int axis = 0; axis < 3; ++axis)
-    key = key << kBits | static_cast<std::uint64_t>(voxel[axis] + kReach);
+    key = key << kBits | static_cast<std::uint64_t>(voxel[axis] + kMaxCoordinate);
   const auto [place, is_new] = index_.try_emplace(key, static_cast<std::uint32_t>(sums_.size()));
   if (is_new) sums_.emplace_back();
   Sum& sum = sums_[place->second];

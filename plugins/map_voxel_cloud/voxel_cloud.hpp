@@ -26,8 +26,8 @@ class VoxelCloud {
   /// Edge of a voxel in metres.
   explicit VoxelCloud(double resolution) : per_metre_(static_cast<float>(1 / resolution)) {}
 
-  /// `count` points at once, which have no say in the class if they are not labelled. Points that
-  /// are not finite or out of reach (2²⁰ voxels) are left out.
+  /// `count` points at once; without a label they do not vote for the class. Points that
+  /// are not finite or out of range (2²⁰ voxels) are left out.
   void add(const LabelledPoint& point, std::uint32_t count = 1, bool labelled = true);
   std::vector<VoxelPoint> points() const;
 

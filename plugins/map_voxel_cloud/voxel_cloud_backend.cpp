@@ -6,7 +6,7 @@ namespace stillpoint::map_voxel_cloud {
 void VoxelCloudBackend::Options::visit(OptionVisitor& v) {
   v("resolution", resolution, {.min = 0.005, .max = 1, .unit = "m", .help = "edge of a voxel"});
   v("range", range, {.min = 0.5, .max = 20, .unit = "m", .help = "surfaces beyond are left out"});
-  v("min_points", min_points, {.min = 1, .max = 1000, .help = "that a voxel needs"});
+  v("min_points", min_points, {.min = 1, .max = 1000, .help = "with fewer a voxel is left out"});
   v("min_weight", min_weight,
     {.min = 1, .max = 255, .help = "of a pixel in the map: less is not mapped"});
 }

@@ -1,4 +1,4 @@
-// Where to follow the image from: Shi–Tomasi corners (CVPR 1994), all or spread over a grid.
+// Which points to track: Shi–Tomasi corners (CVPR 1994), the strongest or one per grid cell.
 #pragma once
 
 #include <opencv2/core/mat.hpp>
@@ -20,8 +20,8 @@ struct CornerOptions {
   void visit(OptionVisitor& v);
 };
 
-/// Points that are worth following in an image (CV_8UC1). `half` is the same image at half the
-/// size, in which `grid` looks for corners: following needs texture, not the corner's exact place.
+/// Points to track in an image (CV_8UC1). `half` is the same image at half the size, in which
+/// `grid` looks for corners: tracking needs texture, not the exact position of the corner.
 ///
 /// `kept` are points that are followed already: `grid` returns those that still have texture first,
 /// one per cell, and fills the other cells with new corners. `kept_index` tells which is which

@@ -5,10 +5,10 @@
 namespace stillpoint::moving_checks {
 namespace {
 
-constexpr double kNoiseMultiple = 3;  // what noise alone may make of a second difference
+constexpr double kNoiseMultiple = 3;  // greatest second difference by noise alone
 
-// Of a pixel without depth, so many times the radius is looked at: behind a near surface lies the
-// shadow of the sensor's projector, which is that wide.
+// For a pixel without depth the radius is so many times larger: beside a near surface the shadow of
+// the sensor's projector leaves a hole of that width.
 constexpr int kHoleReach = 4;
 
 // 0 where nothing is measured.
@@ -31,9 +31,9 @@ double mean_around(const cv::Mat& depth, const cv::Point& centre, int radius) {
   return count > 0 ? sum / count : 0;
 }
 
-// Planes are linear in inverse depth, however steep: only the second difference tells an edge. Of
-// one side alone, the first difference must do, with more slack for the slope.
-bool bends(double a, double middle, double b, double step) {
+// Planes are linear in inverse depth, however steep: a discontinuity shows in the second
+// difference. With one side only, the first difference is tested instead.
+bool is_discontinuous(double a, double middle, double b, double step) {
   if (a > 0 && b > 0) return std::abs(a + b - 2 * middle) > step;
   const double side = a > 0 ? a : b;
   return side > 0 && std::abs(side - middle) > step;
@@ -43,9 +43,9 @@ bool bends(double a, double middle, double b, double step) {
 
 void SurfaceOptions::visit(OptionVisitor& v) {
   v("edge_radius", edge_radius,
-    {.min = 1, .max = 50, .unit = "px", .help = "a point this near to a depth edge never moves"});
+    {.min = 1, .max = 50, .unit = "px", .help = "points this near to a depth edge never move"});
   v("edge_jump", edge_jump,
-    {.min = 0, .unit = "m", .help = "a surface that leaves a plane by more has an edge"});
+    {.min = 0, .unit = "m", .help = "a larger deviation from a plane is a depth discontinuity"});
 }
 
 Surface surface_at(const cv::Mat& depth, const cv::Point2f& pixel, double noise,
@@ -65,7 +65,8 @@ Surface surface_at(const cv::Mat& depth, const cv::Point2f& pixel, double noise,
       const double a = inverse_depth(depth, centre.x + radius * side.x, centre.y + radius * side.y);
       const double b = inverse_depth(depth, centre.x - radius * side.x, centre.y - radius * side.y);
       const bool edge =
-          hole ? bends(a, middle, 0, step) || bends(0, middle, b, step) : bends(a, middle, b, step);
+          hole ? is_discontinuous(a, middle, 0, step) || is_discontinuous(0, middle, b, step)
+               : is_discontinuous(a, middle, b, step);
       if (edge) return {Surface::Kind::kEdge, middle};
     }
   }

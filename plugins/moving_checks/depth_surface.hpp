@@ -1,4 +1,4 @@
-// Which surface a pixel shows, and whether it is safe to say so.
+// The surface at a pixel, and whether a depth discontinuity makes it ambiguous.
 #pragma once
 
 #include <opencv2/core/mat.hpp>

@@ -45,10 +45,7 @@ cv::UsacParams usac_params(Consensus consensus, const ConsensusOptions& options,
 
 void ConsensusOptions::visit(OptionVisitor& v) {
   v("ransac_threshold", ransac_threshold,
-    {.min = 0.01,
-     .max = 100,
-     .unit = "px",
-     .help = "matches nearer than this agree with a sample (Algorithm 1, line 3)"});
+    {.min = 0.01, .max = 100, .unit = "px", .help = "inlier threshold (Algorithm 1, line 3)"});
   v("confidence", confidence,
     {.min = 0.5, .max = 0.999999, .help = "that the best sample has been drawn (line 3)"});
   v("max_iterations", max_iterations,

@@ -1,5 +1,5 @@
-// What the camera's motion alone does to points in the image: an epipolar line or a homography for
-// each. Line 3 to 6 of Algorithm 1.
+// Models of the image motion of static points: fundamental matrix or homography.
+// Line 3 to 6 of Algorithm 1.
 #pragma once
 
 #include <opencv2/core/matx.hpp>
@@ -13,7 +13,7 @@ namespace stillpoint::moving_checks {
 
 using Points = std::vector<cv::Point2f>;
 
-/// How the matches that agree are found.
+/// Robust estimator of the model.
 enum class Consensus { kRansac, kUsac, kMagsac };
 
 struct ConsensusOptions {
@@ -24,14 +24,14 @@ struct ConsensusOptions {
   void visit(OptionVisitor& v);
 };
 
-/// A model with the matches that agree with it.
+/// A model with its inliers.
 struct ImageModel {
   cv::Matx33d matrix;                 ///< current ~ matrix · previous, or the fundamental matrix
   std::vector<std::uint8_t> inliers;  ///< per match, 0 or 1
   int inlier_count = 0;
 };
 
-/// Fundamental matrix with previousᵀ Fᵀ current = 0; nothing when there is none. With `seed` for
+/// Fundamental matrix with currentᵀ F previous = 0; nothing when there is none. With `seed` for
 /// the estimators that take one: cv::findFundamentalMat's own RANSAC draws the same samples always.
 std::optional<ImageModel> find_fundamental(const Points& previous, const Points& current,
                                            Consensus consensus, const ConsensusOptions& options,

@@ -51,19 +51,19 @@ MovingPoints judged(const std::vector<Match>& matches, double epsilon, Distance 
   return result;
 }
 
-MovingPoints judged_by_homography(const std::vector<Match>& matches, double epsilon,
-                                  const ImageModel& model) {
+MovingPoints classified_by_homography(const std::vector<Match>& matches, double epsilon,
+                                      const ImageModel& model) {
   return judged(matches, epsilon, [&](const cv::Point2f& previous, const cv::Point2f& current) {
     return transfer_distance(model.matrix, previous, current);
   });
 }
 
-bool agreed(const ImageModel& model, const std::vector<Match>& matches, double share) {
+bool enough_inliers(const ImageModel& model, const std::vector<Match>& matches, double share) {
   return model.inlier_count >= share * static_cast<double>(matches.size());
 }
 
-// How far a share of the matches at least is from what one homography explains, in px. Noise alone
-// gives some tenths; a fundamental matrix is determined by what exceeds it.
+// Transfer error under the homography that a share of the matches reaches, in px. Noise alone gives
+// some tenths; only larger parallax determines a fundamental matrix.
 double parallax(const Pairs& inliers, const ImageModel& homography, double share) {
   std::vector<double> distances;
   for (std::size_t i = 0; i < inliers.previous.size(); ++i)
@@ -81,29 +81,28 @@ void LkOptions::visit(OptionVisitor& v) {
   consensus.visit(v);
   follow.visit(v);
   v("min_matches", min_matches,
-    {.min = 8, .max = 100000, .help = "fewer decide nothing (reliable: false); not in the paper"});
+    {.min = 8, .max = 100000, .help = "with fewer the check is not reliable; not in the paper"});
   v("min_inlier_share", min_inlier_share,
-    {.min = 0, .max = 1, .help = "when fewer matches agree, nothing is decided; not in the paper"});
+    {.min = 0, .max = 1, .help = "with fewer inliers it is not reliable; not in the paper"});
 }
 
 void EpipolarChecker::Options::visit(OptionVisitor& v) {
   v("epsilon", epsilon,
     {.min = 0,
      .unit = "px",
-     .help = "farther from its epipolar line a point moves (eq. 3; Algorithm 1, line 7)"});
+     .help = "a point farther from its epipolar line moves (eq. 3; Algorithm 1, line 7)"});
   lk.visit(v);
   v("min_parallax", min_parallax,
     {.min = 0,
      .unit = "px",
-     .help =
-         "parallax_share must be this far from one homography; else degenerate; not in the paper"});
+     .help = "transfer error under one homography; less is degenerate; not in the paper"});
   v("parallax_share", parallax_share,
-    {.min = 0.01, .max = 1, .help = "of the inliers, as min_parallax asks for"});
+    {.min = 0.01, .max = 1, .help = "share of the inliers that must have min_parallax"});
   v.choice("when_degenerate", when_degenerate,
            {{"unreliable", Degenerate::kUnreliable},
             {"homography", Degenerate::kHomography},
             {"ignore", Degenerate::kIgnore}},
-           {.help = "decide nothing, judge by the homography, or as the paper does not ask"});
+           {.help = "without parallax: not reliable, homography, or ignored as in the paper"});
 }
 
 EpipolarChecker::EpipolarChecker(const Options& options, Consensus consensus,
@@ -120,13 +119,14 @@ MovingPoints EpipolarChecker::check(const Frame& previous, const Frame& current,
   const Pairs pairs = pairs_of(matches);
   const auto model =
       find_fundamental(pairs.previous, pairs.current, consensus_, options_.lk.consensus, seed_);
-  if (!model || !agreed(*model, matches, options_.lk.min_inlier_share)) return undecided(matches);
+  if (!model || !enough_inliers(*model, matches, options_.lk.min_inlier_share))
+    return undecided(matches);
   if (options_.when_degenerate != Degenerate::kIgnore) {
     const Pairs inliers = inliers_of(pairs, *model);
     const auto plane = find_homography(inliers.previous, inliers.current, options_.lk.consensus);
     if (plane && parallax(inliers, *plane, options_.parallax_share) < options_.min_parallax) {
       if (options_.when_degenerate == Degenerate::kUnreliable) return undecided(matches);
-      return judged_by_homography(matches, options_.epsilon, *plane);
+      return classified_by_homography(matches, options_.epsilon, *plane);
     }
   }
   return judged(matches, options_.epsilon, [&](const cv::Point2f& from, const cv::Point2f& to) {
@@ -136,7 +136,7 @@ MovingPoints EpipolarChecker::check(const Frame& previous, const Frame& current,
 
 void LkHomography::Options::visit(OptionVisitor& v) {
   v("epsilon", epsilon,
-    {.min = 0, .unit = "px", .help = "farther from where the homography puts it a point moves"});
+    {.min = 0, .unit = "px", .help = "a point with a larger transfer error moves"});
   lk.visit(v);
 }
 
@@ -146,8 +146,9 @@ MovingPoints LkHomography::check(const Frame& previous, const Frame& current,
   if (matches.size() < static_cast<std::size_t>(options_.lk.min_matches)) return undecided(matches);
   const Pairs pairs = pairs_of(matches);
   const auto model = find_homography(pairs.previous, pairs.current, options_.lk.consensus);
-  if (!model || !agreed(*model, matches, options_.lk.min_inlier_share)) return undecided(matches);
-  return judged_by_homography(matches, options_.epsilon, *model);
+  if (!model || !enough_inliers(*model, matches, options_.lk.min_inlier_share))
+    return undecided(matches);
+  return classified_by_homography(matches, options_.epsilon, *model);
 }
 
 }  // namespace stillpoint::moving_checks

@@ -1,5 +1,5 @@
-// Moving consistency check of the paper (III-C, Algorithm 1) and its relatives: optical flow, and
-// what the camera's motion explains of it, from the images alone.
+// Moving consistency check of the paper (III-C, Algorithm 1) and variants: optical flow against a
+// model of the camera's motion, from the images alone.
 #pragma once
 
 #include <stillpoint/sdk.hpp>
@@ -9,7 +9,7 @@
 
 namespace stillpoint::moving_checks {
 
-/// What the checks from images alone have in common: matches, and a model that most agree on.
+/// Options that the checks from images alone share: optical flow, and robust estimation.
 struct LkOptions {
   ConsensusOptions consensus;
   FollowOptions follow;
@@ -19,7 +19,8 @@ struct LkOptions {
   void visit(OptionVisitor& v);
 };
 
-/// `lk_epipolar` exactly as in the paper; `lk_usac` and `lk_magsac` find the fundamental matrix
+/// `lk_epipolar` as in the paper, plus tests of inliers and degeneracy;
+/// `lk_usac` and `lk_magsac` find the fundamental matrix
 /// with other estimators. Without parallax a fundamental matrix is not determined (camera that
 /// stands still or only turns, a plane): `when_degenerate` says what happens then.
 class EpipolarChecker : public MovingChecker {
@@ -66,8 +67,8 @@ class LkMagsac final : public EpipolarChecker {
       : EpipolarChecker(options, Consensus::kMagsac, context) {}
 };
 
-/// One homography for everything that stands still: right for a camera that only turns or sees one
-/// plane; parallax of near things counts as motion.
+/// One homography for all static points: exact for a camera that only rotates or sees one plane;
+/// parallax of near objects counts as motion.
 class LkHomography final : public MovingChecker {
  public:
   struct Options {

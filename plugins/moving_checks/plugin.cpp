@@ -14,8 +14,7 @@ STILLPOINT_PLUGIN(moving_checks, "0.1.0",
                   provide<MovingChecker, stillpoint::moving_checks::LkMagsac>(
                       "lk_magsac", "lk_epipolar with the fundamental matrix of MAGSAC"),
                   provide<MovingChecker, stillpoint::moving_checks::LkHomography>(
-                      "lk_homography",
-                      "optical flow and one homography for everything that stands still"),
+                      "lk_homography", "optical flow and one homography for all static points"),
                   provide<MovingChecker, stillpoint::moving_checks::RgbdChecker>(
                       "rgbd_reprojection",
                       "optical flow and depth against the rigid motion of the camera"));

@@ -35,7 +35,7 @@ void FollowOptions::visit(OptionVisitor& v) {
     {.min = 5,
      .max = 101,
      .unit = "px",
-     .help = "side of the followed patch (Algorithm 1, line 1)"});
+     .help = "side of the tracked patch (Algorithm 1, line 1)"});
   v("pyramid_levels", pyramid_levels,
     {.min = 1, .max = 10, .help = "of the flow, the image itself included (line 1)"});
   v("iterations", iterations, {.min = 1, .max = 1000, .help = "of the flow, per level (line 1)"});

@@ -1,4 +1,4 @@
-// Optical flow of sparse points: line 1 and 2 of Algorithm 1.
+// Sparse optical flow (pyramidal Lucas–Kanade): lines 1 and 2 of Algorithm 1.
 #pragma once
 
 #include <cstdint>
@@ -36,8 +36,8 @@ class PointFollower {
  public:
   explicit PointFollower(const FollowOptions& options) : options_(options) {}
 
-  /// Nothing when the images are no pair of gray images large enough to follow points in. `kept`
-  /// are points of the previous frame that shall be followed further (`corners: grid` only).
+  /// Empty unless both images are gray, of one size and large enough for optical flow. `kept` are
+  /// points of the previous frame to track further (`corners: grid` only).
   std::vector<Match> follow(const Frame& previous, const Frame& current,
                             std::span<const cv::Point2f> kept = {});
 

@@ -12,18 +12,18 @@ namespace stillpoint::moving_checks {
 
 namespace {
 
-// Times that on a smooth surface: a followed point is known to half a pixel, on surfaces that
-// slope.
-constexpr double kFollowedNoise = 2.0;
+// Times Camera::surface_noise: tracked to half a pixel only, a point on an inclined surface has an
+// additional error in depth.
+constexpr double kTrackedNoiseFactor = 2.0;
 constexpr double kUnknownTrust = 0.5;
-constexpr double kTrustRate = 0.3;     // of the way to 0 or 1 per frame
-constexpr double kLeastWeight = 0.05;  // nothing is ruled out for good: the world may be what moved
-constexpr double kInheritRadius = 80.0;  // px, within which points on one surface share their trust
-constexpr double kInheritDepth = 0.03;   // 1/m, likewise
-constexpr double kUsualDepth = 2.0;      // metres, of what has no depth
-// Far from the points that told the camera's motion, it puts points where it may.
-constexpr double kMostUncertainty = 1.5;  // of epsilon; beyond, a point is not judged
-constexpr double kSigmas = 3.0;           // of what is left to it
+constexpr double kTrustRate = 0.3;        // of the way to 0 or 1 per frame
+constexpr double kMinTrustWeight = 0.05;  // so that a wrong static scene can be corrected
+constexpr double kInheritRadius = 80.0;   // px, within which points of a surface share trust
+constexpr double kInheritDepth = 0.03;    // 1/m, likewise
+constexpr double kDefaultDepth = 2.0;     // metres, of points without depth
+// The prediction is uncertain far from the inliers that determine the camera's motion.
+constexpr double kMaxUncertainty = 1.5;  // of epsilon; beyond, a point is not classified
+constexpr double kSigmas = 3.0;          // of the prediction, added to the threshold
 
 Eigen::Vector2d vector_of(const cv::Point2f& p) { return {p.x, p.y}; }
 
@@ -64,26 +64,24 @@ bool usable_depth(const Frame& frame) {
 
 void RgbdChecker::Options::visit(OptionVisitor& v) {
   v("epsilon", epsilon,
-    {.min = 0,
-     .unit = "px",
-     .help = "farther from where the camera's motion puts it a point moves"});
+    {.min = 0, .unit = "px", .help = "a point with a larger reprojection error moves"});
   v("noise_multiple", noise_multiple,
-    {.min = 0, .help = "epsilon is at least so many median residuals of the static points"});
+    {.min = 0, .help = "lower bound of epsilon, in median residuals of the static points"});
   v("pixel_noise", pixel_noise,
-    {.min = 0.01, .unit = "px", .help = "standard deviation of a followed point"});
+    {.min = 0.01, .unit = "px", .help = "standard deviation of a tracked point"});
   surface.visit(v);
   follow.visit(v);
   v("samples", samples, {.min = 1, .max = 100000, .help = "of the RANSAC, three matches each"});
   v("min_matches", min_matches,
-    {.min = 6, .max = 100000, .help = "with depth; fewer decide nothing (reliable: false)"});
+    {.min = 6, .max = 100000, .help = "with depth; with fewer the check is not reliable"});
   v("min_agreement", min_agreement,
-    {.min = 0, .max = 1, .help = "when a smaller share agrees on a motion, nothing is decided"});
+    {.min = 0, .max = 1, .help = "with a smaller inlier share the check is not reliable"});
   v("min_depth", min_depth,
     {.min = 0.01, .unit = "m", .help = "a point without depth is at least this far"});
   v("max_ambiguity", max_ambiguity,
     {.min = 0,
      .unit = "px",
-     .help = "a point without depth is judged when its place is known this well"});
+     .help = "longest epipolar segment on which a point without depth is classified"});
 }
 
 MovingPoints RgbdChecker::check(const Frame& previous, const Frame& current,
@@ -105,7 +103,8 @@ MovingPoints RgbdChecker::check(const Frame& previous, const Frame& current,
 }
 
 RigidNoise RgbdChecker::noise_of(const Camera& camera) const {
-  return {.pixel = options_.pixel_noise, .inverse_depth = kFollowedNoise * camera.surface_noise};
+  return {.pixel = options_.pixel_noise,
+          .inverse_depth = kTrackedNoiseFactor * camera.surface_noise};
 }
 
 Surface RgbdChecker::surface_in(const Frame& frame, const cv::Point2f& pixel) const {
@@ -133,7 +132,7 @@ void RgbdChecker::inherit_trust(std::vector<Observation>& observations) const {
     o.trust = o.match.kept_index >= 0 ? memory_.trust[o.match.kept_index] : inherited_trust(o);
 }
 
-// New points on a surface know what is known about their neighbours on it.
+// New points take the mean trust of their neighbours on the same surface.
 double RgbdChecker::inherited_trust(const Observation& observation) const {
   double sum = kUnknownTrust;
   double weights = 1.0;
@@ -155,7 +154,7 @@ std::optional<RigidMotion> RgbdChecker::camera_motion(const std::vector<Observat
     if (!measured(o.from) || !measured(o.to)) continue;
     matches.push_back({point_of(o.match.previous, o.from, *current.camera),
                        point_of(o.match.current, o.to, *current.camera), vector_of(o.match.current),
-                       std::max(kLeastWeight, o.trust)});
+                       std::max(kMinTrustWeight, o.trust)});
   }
   if (matches.size() < static_cast<std::size_t>(options_.min_matches)) return std::nullopt;
   const std::array<Pose, 2> guesses = {Pose::Identity(), memory_.motion};
@@ -172,7 +171,7 @@ void RgbdChecker::judge(std::vector<Observation>& observations, const RigidMotio
   const Pose& pose = motion.target_from_source;
   const RigidNoise noise = noise_of(camera);
   const double pixels_per_depth = noise.pixel / (noise.inverse_depth * std::sqrt(2.0));
-  std::vector<double> uncertainty;  // px, of where the camera's motion puts a point
+  std::vector<double> uncertainty;  // px, of the predicted pixel
   std::vector<double> static_residuals;
   for (std::size_t i = 0; i < observations.size(); ++i) {
     Observation& o = observations[i];
@@ -184,11 +183,11 @@ void RgbdChecker::judge(std::vector<Observation>& observations, const RigidMotio
     const Moved at_near = moved(o.match.previous, near, pose, camera);
     const bool placed = at_far.in_front && at_near.in_front &&
                         (known || (at_far.pixel - at_near.pixel).norm() <= options_.max_ambiguity);
-    const double z = known ? 1.0 / o.from.inverse_depth : kUsualDepth;
+    const double z = known ? 1.0 / o.from.inverse_depth : kDefaultDepth;
     uncertainty.push_back(pixel_uncertainty(
         motion, camera, camera.unproject(o.match.current.x, o.match.current.y, z)));
     o.judged = placed && o.from.kind != Surface::Kind::kEdge && o.to.kind != Surface::Kind::kEdge &&
-               uncertainty.back() <= kMostUncertainty * options_.epsilon;
+               uncertainty.back() <= kMaxUncertainty * options_.epsilon;
     if (!placed) continue;
     double residual = distance_to_segment(vector_of(o.match.current), at_far.pixel, at_near.pixel);
     if (measured(o.from) && measured(o.to)) {
@@ -209,8 +208,8 @@ void RgbdChecker::judge(std::vector<Observation>& observations, const RigidMotio
   result.reliable = true;
 }
 
-// Flow may lose its point, by far when the image moves fast. Who is found at the place of a static
-// point when searched for there has not moved.
+// Optical flow may drift off its point, far when the image moves fast. A point that is found when
+// searched for from its static prediction is static.
 void RgbdChecker::recheck(std::vector<Observation>& observations, const Pose& motion,
                           const Frame& current, MovingPoints& result) const {
   std::vector<std::size_t> suspects;
@@ -248,8 +247,8 @@ void RgbdChecker::remember(const std::vector<Observation>& observations, const M
   for (std::size_t i = 0; i < observations.size(); ++i) {
     const Observation& o = observations[i];
     if (o.from.kind == Surface::Kind::kEdge || o.to.kind == Surface::Kind::kEdge) continue;
-    const bool told = result.reliable && o.judged;
-    const double goal = !told ? o.trust : result.points[i].moving ? 0.0 : 1.0;
+    const bool classified = result.reliable && o.judged;
+    const double goal = !classified ? o.trust : result.points[i].moving ? 0.0 : 1.0;
     memory.points.push_back(o.match.current);
     memory.inverse_depth.push_back(o.to.inverse_depth);
     memory.trust.push_back(o.trust + kTrustRate * (goal - o.trust));

@@ -1,4 +1,4 @@
-// Moving check from colour and depth: what does not follow the camera's rigid motion moves.
+// Moving check from colour and depth: points that are outliers to the rigid motion of the camera.
 #pragma once
 
 #include <stillpoint/sdk.hpp>
@@ -12,9 +12,9 @@
 
 namespace stillpoint::moving_checks {
 
-/// `rgbd_reprojection`. Knows the scale of everything, so that pure rotation, planes and a standing
-/// camera are no special cases. Remembers from call to call which points stood still: what has been
-/// static before decides which of two motions is the camera's.
+/// `rgbd_reprojection`. Depth gives metric scale, so that pure rotation, planar scenes and a static
+/// camera are not degenerate. Remembers from call to call which points were static: those decide
+/// which of two motions is the camera's.
 class RgbdChecker final : public MovingChecker {
  public:
   struct Options {
@@ -38,14 +38,14 @@ class RgbdChecker final : public MovingChecker {
   MovingPoints check(const Frame& previous, const Frame& current, const TrackingHistory&) override;
 
  private:
-  // A match with the surfaces that it lies on.
+  // A match with the surfaces it lies on in both frames.
   struct Observation {
     Match match;
     Surface from, to;
-    double trust = 0.5;   // 0 moved … 1 stood still
-    bool judged = false;  // it is known well enough where the camera's motion puts it
+    double trust = 0.5;   // 0 moving … 1 static so far
+    bool judged = false;  // its prediction is accurate enough to classify it
   };
-  // What the last call knows about its current frame.
+  // State after the last call, of its current frame.
   struct Memory {
     std::uint32_t frame = 0;
     Pose motion = Pose::Identity();

@@ -7,7 +7,7 @@
 namespace stillpoint::orb_slam {
 namespace {
 
-constexpr int kMinAppearanceMatches = 15;  // to try a pose
+constexpr int kMinAppearanceMatches = 15;  // to attempt a pose
 constexpr double kRatio = 0.8;             // of the best to the second best descriptor distance
 constexpr int kMaxDistance = 70;           // Hamming
 constexpr double kRansacPixels = 5;        // reprojection error of an inlier

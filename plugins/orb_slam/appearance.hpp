@@ -1,4 +1,4 @@
-// Finds the camera without any guess of where it is.
+// The camera pose from descriptor matches alone, without a prediction.
 #pragma once
 
 #include <span>

@@ -11,22 +11,24 @@
 namespace stillpoint::orb_slam {
 namespace {
 
-constexpr std::size_t kMinLandmarks = 20;  // that a key frame must see to be moved by them
+constexpr std::size_t kMinLandmarks = 20;  // observed; the pose of a key frame with fewer is fixed
 
-bool sees_few(const KeyFrame& keyframe) {
+bool observes_few_landmarks(const KeyFrame& keyframe) {
   return keyframe.landmarks.size() -
              static_cast<std::size_t>(std::ranges::count(keyframe.landmarks, kNoId)) <
          kMinLandmarks;
 }
 
-// Key frames that move, landmarks, and further key frames that see the landmarks and stay.
+// Key frames to optimise, landmarks, and further key frames that observe them and stay fixed.
 class BundleProblem {
  public:
   BundleProblem(const SparseMap& map, std::vector<KeyFrameId> moving,
                 std::vector<LandmarkId> landmarks)
       : map_(map), landmarks_(std::move(landmarks)), camera_of_(map.keyframe_id_end(), kUnknown) {
-    // The origin stays, and so does what depth rather than landmarks holds.
-    std::erase_if(moving, [&](KeyFrameId id) { return id == 0 || sees_few(*map.keyframe(id)); });
+    // Fixed: the origin, and key frames whose pose depth rather than landmarks constrains.
+    std::erase_if(moving, [&](KeyFrameId id) {
+      return id == 0 || observes_few_landmarks(*map.keyframe(id));
+    });
     for (const KeyFrameId id : moving) camera_of_[id] = add_camera(id, true);
     moving_ = std::move(moving);
     for (const LandmarkId id : landmarks_) add_landmark(id);
@@ -118,7 +120,7 @@ std::vector<LandmarkId> adjust_locally(MapEdit& edit, KeyFrameId centre,
     edit.keyframe(moved.keyframe).world_from_camera = moved.world_from_camera;
   for (const auto& [id, position] : problem.landmarks())
     edit.landmark(id).position_in_world = position;
-  for (const LandmarkId id : points) drop_misfits(edit, id);
+  for (const LandmarkId id : points) remove_outlier_observations(edit, id);
   return points;
 }
 

@@ -15,9 +15,9 @@ namespace {
 
 constexpr double kMinDepth = 0.05;  // metres; nearer points give no residual
 constexpr double kFirstDamping = 1e-4;
-constexpr double kLeastGain = 1e-3;         // of the decrease that the linear model expects
-constexpr double kLeastDecrease = 1e-6;     // of the cost, relative
-constexpr double kSmallestDiagonal = 1e-6;  // that damping is relative to
+constexpr double kMinGainRatio = 1e-3;         // actual over expected decrease of the cost
+constexpr double kMinRelativeDecrease = 1e-6;  // of the cost, relative
+constexpr double kSmallestDiagonal = 1e-6;     // that damping is relative to
 
 struct Residual {
   Eigen::Vector3d value;
@@ -78,7 +78,7 @@ Pose BundleSolver::camera_from_world(int camera) const {
   return pose;
 }
 
-// Calls visit(first, second) for observations of a point by cameras that move, each pair once and
+// Calls visit(first, second) for observations of a point by optimised cameras, each pair once and
 // each with itself; the first camera's column is not before the second's.
 template <typename Visit>
 void BundleSolver::for_each_pair(std::size_t point, Visit visit) const {
@@ -137,7 +137,7 @@ void BundleSolver::linearise() {
       const Camera& camera = cameras_[static_cast<std::size_t>(number)];
       const Eigen::Vector3d turned = camera.rotation * points_[point];
       const Eigen::Vector3d p = turned + camera.translation;
-      mixed_parts_[i].setZero();
+      cross_blocks_[i].setZero();
       if (!evaluate(m, p, residual.value)) continue;
       differentiate(m, p, residual.by_point_in_camera);
       const double weight = huber_weight(residual.value.squaredNorm());
@@ -152,11 +152,11 @@ void BundleSolver::linearise() {
       CameraPart& part = camera_parts_[static_cast<std::size_t>(camera.column)];
       part.hessian.noalias() += weight * by_camera.transpose() * by_camera;
       part.gradient.noalias() += weight * by_camera.transpose() * residual.value;
-      mixed_parts_[i].noalias() = by_camera.transpose() * weighted;
+      cross_blocks_[i].noalias() = by_camera.transpose() * weighted;
     }
 }
 
-// The system of the cameras that is left once every point is the best one for them.
+// Reduced camera system: the points are eliminated by the Schur complement.
 void BundleSolver::reduce(double damping, Eigen::VectorXd& right_side) {
   for (Block& block : blocks_) block.value.setZero();
   right_side.resize(6 * moving_count_);
@@ -173,13 +173,13 @@ void BundleSolver::reduce(double damping, Eigen::VectorXd& right_side) {
     std::size_t last = observations_.size();
     Matrix63d scaled;
     for_each_pair(point, [&](std::size_t a, std::size_t b) {
-      if (a != last) scaled.noalias() = mixed_parts_[a] * inverse;
+      if (a != last) scaled.noalias() = cross_blocks_[a] * inverse;
       last = a;
       blocks_[static_cast<std::size_t>(block_of_pair_[pair++])].value.noalias() -=
-          scaled * mixed_parts_[b].transpose();
+          scaled * cross_blocks_[b].transpose();
       if (a == b) {
         const int column = cameras_[static_cast<std::size_t>(observations_[a].camera)].column;
-        right_side.segment<6>(6 * column).noalias() += mixed_parts_[a] * best;
+        right_side.segment<6>(6 * column).noalias() += cross_blocks_[a] * best;
       }
     });
   }
@@ -214,7 +214,7 @@ bool BundleSolver::solve_damped(double damping, Step& step) {
     for (std::size_t i = first_observation_[point]; i < first_observation_[point + 1]; ++i)
       if (const int column = cameras_[static_cast<std::size_t>(observations_[i].camera)].column;
           column >= 0)
-        sum.noalias() -= mixed_parts_[i].transpose() * step.cameras.col(column);
+        sum.noalias() -= cross_blocks_[i].transpose() * step.cameras.col(column);
     step.points.col(static_cast<Eigen::Index>(point)).noalias() =
         inverse_point_hessians_[point] * sum;
   }
@@ -250,7 +250,7 @@ bool BundleSolver::solve(int max_iterations, const std::stop_token& hurry) {
   if (observations_.empty()) return false;
   first_observation_.push_back(observations_.size());
   find_blocks();
-  mixed_parts_.resize(observations_.size());
+  cross_blocks_.resize(observations_.size());
   inverse_point_hessians_.resize(points_.size());
   double damping = kFirstDamping, growth = 2, current = cost();
   bool moved = true;
@@ -265,9 +265,9 @@ bool BundleSolver::solve(int max_iterations, const std::stop_token& hurry) {
       const std::vector<Eigen::Vector3d> points = points_;
       apply(step);
       const double changed = cost(), gain = (current - changed) / expected;
-      moved = gain > kLeastGain;
+      moved = gain > kMinGainRatio;
       if (moved) {
-        const bool settled = current - changed < kLeastDecrease * current;
+        const bool settled = current - changed < kMinRelativeDecrease * current;
         damping *= std::max(1.0 / 3, 1 - std::pow(2 * gain - 1, 3));
         growth = 2;
         current = changed;

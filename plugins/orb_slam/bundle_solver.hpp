@@ -1,4 +1,4 @@
-// Least squares over camera poses and points.
+// Bundle adjustment: non-linear least squares over camera poses and points.
 #pragma once
 
 #include <Eigen/Core>
@@ -10,18 +10,18 @@
 
 namespace stillpoint::orb_slam {
 
-/// What a camera saw of a point.
+/// An observation of a point by a camera.
 struct BundleMeasurement {
   double fx, fy, cx, cy;  ///< px
   double u, v;            ///< px
   double inverse_depth;   ///< 1/m
-  double pixel_weight;    ///< 1/px: one over the standard deviation, times the root of the trust
-  double depth_weight;    ///< m: the same of the inverse depth; 0 = no depth
+  double pixel_weight;    ///< 1/px: sqrt(static weight) / standard deviation
+  double depth_weight;    ///< m: likewise for the inverse depth; 0 = no depth
 };
 
-/// Levenberg and Marquardt's method with a Huber kernel on each observation. Points are eliminated
+/// Levenberg–Marquardt with a Huber kernel on each observation. Points are eliminated
 /// by the Schur complement (Triggs et al., Bundle Adjustment: A Modern Synthesis, 2000,
-/// section 6.1). One thread, the same bits every time.
+/// section 6.1). Single-threaded and bitwise deterministic.
 class BundleSolver {
  public:
   /// Returns the camera's number: they count from 0.
@@ -31,7 +31,7 @@ class BundleSolver {
   /// An observation of the point added last.
   void observe(int camera, const BundleMeasurement& measurement);
 
-  /// Ends after `max_iterations`, when the error hardly falls any more, or after the iteration in
+  /// Ends after `max_iterations`, when the cost has converged, or after the iteration in
   /// which `hurry` is requested: none, when it was before. False when there is nothing to solve.
   bool solve(int max_iterations, const std::stop_token& hurry);
 
@@ -45,13 +45,13 @@ class BundleSolver {
   struct Camera {
     Eigen::Matrix3d rotation;  // of camera_from_world, with the translation
     Eigen::Vector3d translation;
-    int column;  // among those that move; -1: stays
+    int column;  // among the optimised cameras; -1: fixed
   };
   struct Observation {
     int camera;
     BundleMeasurement measurement;
   };
-  // Normal equations, points' and cameras' parts apart.
+  // Normal equations: diagonal blocks of points and of cameras.
   struct PointPart {
     Eigen::Matrix3d hessian;
     Eigen::Vector3d gradient;
@@ -92,7 +92,7 @@ class BundleSolver {
   std::vector<int> block_of_pair_;  // in the order of for_each_pair over all points
   std::vector<PointPart> point_parts_;
   std::vector<CameraPart> camera_parts_;
-  std::vector<Matrix63d> mixed_parts_;  // of each observation, by camera and point
+  std::vector<Matrix63d> cross_blocks_;  // of each observation: camera rows, point columns
   std::vector<Eigen::Matrix3d> inverse_point_hessians_;
 };
 

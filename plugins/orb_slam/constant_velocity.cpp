@@ -7,9 +7,9 @@
 namespace stillpoint::orb_slam {
 namespace {
 
-constexpr double kFreshVelocity = 0.3;  // share of the newest velocity when it is smoothed
-constexpr double kMotionMetres = 0.5;   // per second: standard deviation
-constexpr double kMotionRadians = 0.5;  // per second, the same
+constexpr double kNewVelocityWeight = 0.3;  // weight of the newest velocity when it is smoothed
+constexpr double kMotionMetres = 0.5;       // per second: standard deviation
+constexpr double kMotionRadians = 0.5;      // per second, the same
 
 }  // namespace
 
@@ -21,8 +21,9 @@ Pose ConstantVelocity::predict(const Pose& world_from_last, double seconds) cons
 void ConstantVelocity::update(const Pose& current_from_last, double seconds, bool smooth) {
   const auto before = std::exchange(current_from_last_, current_from_last);
   if (smooth && before && seconds > 0)
-    current_from_last_ = exp_se3(kFreshVelocity * log_se3(current_from_last) +
-                                 (1 - kFreshVelocity) * (seconds / seconds_) * log_se3(*before));
+    current_from_last_ =
+        exp_se3(kNewVelocityWeight * log_se3(current_from_last) +
+                (1 - kNewVelocityWeight) * (seconds / seconds_) * log_se3(*before));
   seconds_ = seconds;
 }
 

@@ -1,4 +1,4 @@
-// The motion model: the camera goes on as it went (ORB-SLAM).
+// The motion model: constant velocity (ORB-SLAM).
 #pragma once
 
 #include <optional>
@@ -16,8 +16,9 @@ class ConstantVelocity {
   /// The pose `seconds` after a frame at `world_from_last`.
   Pose predict(const Pose& world_from_last, double seconds) const;
 
-  /// From two tracked frames, `seconds` apart. `smooth`: mixed with the velocity before, for where
-  /// the camera is about to slide and single velocities are too noisy to go on with.
+  /// From two tracked frames, `seconds` apart. `smooth`: averaged with the previous velocity, for
+  /// poses that landmarks constrain poorly: the velocity of two frames is then too noisy to predict
+  /// from.
   void update(const Pose& current_from_last, double seconds, bool smooth);
 
  private:
@@ -25,8 +26,8 @@ class ConstantVelocity {
   double seconds_ = 0.0;  // over which it was measured
 };
 
-/// What the prediction says of a pose `seconds` after the last one, with the standard deviation of
-/// hand-held motion; the same at every pose.
+/// Gaussian prior on a pose `seconds` after the last one, around the prediction and with the
+/// standard deviation of hand-held motion.
 QuadraticCost motion_prior(const Pose& predicted_world_from_camera, double seconds);
 
 }  // namespace stillpoint::orb_slam

@@ -3,26 +3,27 @@
 namespace stillpoint::orb_slam {
 namespace {
 
-constexpr double kMinFoundShare = 0.25;
-constexpr KeyFrameId kProbation = 2;  // key frames in which a second observation must come
-constexpr int kMinRelatives = 3;
+constexpr double kMinFoundRatio = 0.25;
+constexpr KeyFrameId kTrialKeyFrames =
+    2;  // key frames within which a second observation is required
+constexpr int kMinOtherObservers = 3;
 
 enum class Verdict { kRemove, kKeep, kUndecided };
 
 Verdict judge(const Landmark& landmark, KeyFrameId latest) {
-  if (landmark.found < kMinFoundShare * landmark.visible) return Verdict::kRemove;
+  if (landmark.found < kMinFoundRatio * landmark.visible) return Verdict::kRemove;
   const KeyFrameId age = latest - landmark.created_by;
-  if (age >= kProbation && landmark.observations.size() < 2) return Verdict::kRemove;
-  return age > kProbation ? Verdict::kKeep : Verdict::kUndecided;
+  if (age >= kTrialKeyFrames && landmark.observations.size() < 2) return Verdict::kRemove;
+  return age > kTrialKeyFrames ? Verdict::kKeep : Verdict::kUndecided;
 }
 
-// Whether enough other key frames see the landmark at least as sharply.
+// Whether enough other key frames see the landmark at most one pyramid level coarser.
 bool seen_elsewhere(const SparseMap& map, const Landmark& landmark, KeyFrameId id, int level) {
   int others = 0;
   for (const Observation& o : landmark.observations) {
     if (o.keyframe == id) continue;
     if (map.keyframe(o.keyframe)->features->keypoints[o.feature].octave <= level + 1) ++others;
-    if (others == kMinRelatives) return true;
+    if (others == kMinOtherObservers) return true;
   }
   return false;
 }

@@ -1,4 +1,4 @@
-// Takes out of the map what does not help.
+// Culling of unreliable landmarks and redundant key frames.
 #pragma once
 
 #include <vector>
@@ -12,8 +12,8 @@ namespace stillpoint::orb_slam {
 /// those that pass leave the list (ORB-SLAM, "recent map points culling").
 void cull_landmarks(MapEdit& edit, KeyFrameId latest, std::vector<LandmarkId>& recent);
 
-/// Removes covisible key frames nearly all of whose landmarks are seen by three others at the same
-/// or a finer scale (ORB-SLAM, "local key frame culling").
+/// Removes covisible key frames nearly all of whose landmarks are seen by three others, at most one
+/// pyramid level coarser (ORB-SLAM, "local key frame culling").
 void cull_keyframes(MapEdit& edit, KeyFrameId latest, double redundant_share);
 
 }  // namespace stillpoint::orb_slam

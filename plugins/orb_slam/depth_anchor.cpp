@@ -6,11 +6,11 @@
 namespace stillpoint::orb_slam {
 namespace {
 
-constexpr std::size_t kMostViews = 40;     // kept; 130 kB each
+constexpr std::size_t kMaxViews = 40;      // kept; 130 kB each
 constexpr std::size_t kComparedViews = 2;  // compared with
-constexpr int kSparse = 6;                 // every sixth patch of every sixth row tells of overlap
+constexpr int kSparse = 6;                 // overlap is sampled at every sixth patch and row
 constexpr double kMinOverlap = 0.15;       // of the patches
-constexpr double kMinGain = 0.05;          // of the patches; less and the older view is as good
+constexpr double kMinGain = 0.05;          // of the patches; closer ones count as equal
 
 // Share of the current view's patches that another one has a patch for.
 double overlap(const DepthView& current, const DepthView& other, const Pose& other_from_current) {
@@ -44,7 +44,8 @@ DepthAnchor::Neighbours DepthAnchor::around(const DepthView& current, const Pose
     const double share = overlap(current, view.view, pose.inverse() * world_from_camera);
     if (share >= kMinOverlap) candidates.push_back({share, &view, pose});
   }
-  // The oldest of those that are nearly as good as the best: errors add up from view to view.
+  // The oldest of those that overlap nearly as much as the best: registration from view to view
+  // accumulates drift.
   Neighbours neighbours;
   while (!candidates.empty() && neighbours.views.size() < kComparedViews) {
     const auto best = std::ranges::max_element(candidates, {}, &Candidate::overlap);
@@ -60,7 +61,7 @@ DepthAnchor::Neighbours DepthAnchor::around(const DepthView& current, const Pose
 
 void DepthAnchor::add(KeyFrameId keyframe, DepthView view) {
   views_.push_back({keyframe, std::move(view)});
-  if (views_.size() > kMostViews) views_.pop_front();
+  if (views_.size() > kMaxViews) views_.pop_front();
 }
 
 }  // namespace stillpoint::orb_slam

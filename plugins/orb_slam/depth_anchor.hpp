@@ -1,4 +1,4 @@
-// Depth views of the newest key frames, to hold on to where landmarks are too few.
+// Depth views of recent key frames, to register against where landmarks are too few.
 #pragma once
 
 #include <deque>
@@ -10,8 +10,8 @@ namespace stillpoint::orb_slam {
 
 class DepthAnchor {
  public:
-  /// Views that show most of what a camera sees from a place; at most two. Key frames that are not
-  /// in the map yet are left out.
+  /// The views that overlap most with what the camera sees from a pose; at most two. Key frames
+  /// that are not in the map yet are left out.
   struct Neighbours {
     KeyFrameId nearest = kNoId;  ///< the first of them
     std::vector<PlacedView> views;

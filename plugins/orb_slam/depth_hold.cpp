@@ -7,17 +7,17 @@
 namespace stillpoint::orb_slam {
 namespace {
 
-constexpr int kMinPatches = 60;        // of 1,200, to hold a pose
-constexpr double kMinKnown = 0.25;     // share of the patches that key frames must know
-constexpr double kMinAgreement = 0.6;  // share of those that must fit; the same of landmarks
-constexpr double kNewView = 0.7;       // fewer known patches ask for a key frame
+constexpr int kMinPatches = 60;             // of 1,200, to constrain a pose
+constexpr double kMinKnown = 0.25;          // share of patches that key frames must cover
+constexpr double kMinAgreement = 0.6;       // inlier share of those; likewise of landmarks
+constexpr double kMaxKnownOfNewView = 0.7;  // a smaller known share requests a key frame
 
-// Metres within which a patch must lie on the plane it falls on: less with every round.
+// Association gate: greatest point-to-plane distance in metres, smaller in every round.
 double reach(int round) { return std::max(0.12 * std::pow(0.6, round), 0.02); }
 
 bool landmarks_agree(const ObservedFrame& frame) {
-  const int fitting = frame.fitting();
-  return fitting >= kMinHeldLandmarks && fitting >= kMinAgreement * frame.matched();
+  const int inlier_count = frame.inlier_count();
+  return inlier_count >= kMinHeldLandmarks && inlier_count >= kMinAgreement * frame.matched();
 }
 
 bool is_sound(const PlaneRegistration& registration) {
@@ -55,7 +55,8 @@ bool DepthHold::hold(ObservedFrame& frame, const SparseMap& map, const Quadratic
     return registration.cost + motion.moved_to(camera_from_world);
   };
   solve(surfaces_and_motion);
-  // What fits by chance moves a camera along what no surface fixes, and looks as if it knew.
+  // Inliers by chance would move the camera along directions that no surface constrains, and add
+  // false information there.
   if (frame.matched() > 0 && !landmarks_agree(frame)) {
     frame.clear_matches();
     frame.world_from_camera = before.world_from_camera;
@@ -71,7 +72,7 @@ bool DepthHold::hold(ObservedFrame& frame, const SparseMap& map, const Quadratic
 }
 
 bool DepthHold::shows_new_surfaces() const {
-  return registration_ && registration_->known() < kNewView;
+  return registration_ && registration_->known() < kMaxKnownOfNewView;
 }
 
 const DepthView& DepthHold::view() {

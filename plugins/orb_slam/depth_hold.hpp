@@ -1,4 +1,4 @@
-// Where landmarks do not hold the pose, surfaces in depth do.
+// Depth registration, for frames whose landmarks do not constrain the pose.
 #pragma once
 
 #include <functional>
@@ -10,27 +10,27 @@
 
 namespace stillpoint::orb_slam {
 
-/// Of one frame after the other, against the depth of the newest key frames.
+/// Registers one frame after the other to the depth of recent key frames.
 class DepthHold {
  public:
-  /// Solves the frame's pose from its landmarks and a further term.
+  /// Solves the frame's pose from its landmarks and an additional cost term.
   using Solve = std::function<void(const PoseTerm& term)>;
 
   /// A new frame, nothing of which is computed until it is needed.
   void begin(FramePtr frame, const StaticWeights& weights);
 
-  /// Of a pose that the surfaces in view alone would hold, as in PoseSolution; zero where they are
-  /// too few.
+  /// Information matrix of a pose from the surfaces in view alone, as in PoseSolution; zero where
+  /// they are too few.
   Matrix6d information_of_view();
 
-  /// Solves the pose with the surfaces and with `motion`, from the frame's own pose on. Landmarks
-  /// that are few or do not agree with the surfaces are taken away. False, and the frame as it was,
-  /// when depth does not agree with that of the key frames.
+  /// Solves the pose with the surfaces and the motion prior `motion`, starting from the frame's own
+  /// pose. Landmark matches that are too few or inconsistent with the surfaces are removed. Returns
+  /// false, and leaves the frame unchanged, when its depth is inconsistent with the key frames'.
   bool hold(ObservedFrame& frame, const SparseMap& map, const QuadraticCost& motion,
             const Solve& solve);
 
   bool held() const { return registration_.has_value(); }
-  /// Held, by surfaces of which key frames know too little.
+  /// The pose is held by depth, but key frames cover too few of the surfaces in view.
   bool shows_new_surfaces() const;
 
   /// The frame has become a key frame.
@@ -42,11 +42,11 @@ class DepthHold {
   FramePtr frame_;
   StaticWeights weights_;
   std::optional<DepthView> view_;
-  std::optional<PlaneRegistration> registration_;  // when the frame's pose needed it
+  std::optional<PlaneRegistration> registration_;  // set when it constrains the frame's pose
   DepthAnchor anchor_;
 };
 
-/// Of landmarks beside surfaces; fewer may all be wrong.
+/// Least number of landmarks to use together with surfaces; fewer may all be outliers.
 inline constexpr int kMinHeldLandmarks = 12;
 
 }  // namespace stillpoint::orb_slam

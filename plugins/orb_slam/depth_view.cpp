@@ -13,7 +13,7 @@ constexpr int kStep = 2;   // px between the samples of a cell
 constexpr int kReach = 2;  // cells around a patch's own that its plane is fitted to
 constexpr int kSamplesPerCell = (kCell / kStep) * (kCell / kStep);
 constexpr float kSumOfSquares = 50.0F;  // of column (or row) over 5 × 5 cells around the middle
-constexpr float kMaxMisfit = 0.003F;    // 1/m, of a cell's mean against the plane; more is an edge
+constexpr float kMaxMisfit = 0.003F;    // 1/m, cell mean off the plane; more is a discontinuity
 
 // Mean inverse depth (1/m) and least static weight of a cell; weight 0 unless all of it is
 // measured.
@@ -90,7 +90,7 @@ DepthView::DepthView(const Frame& frame, const StaticWeights& weights)
           cell_at(frame.depth, weights.track, column * kCell, row * kCell);
 
   patches_.resize(cells.size());
-  // Of a cell's samples, which are the even pixels, this is the mean place.
+  // Mean of a cell's sample positions, which are the even pixels.
   constexpr float kMiddle = (kCell - kStep) / 2.0F;
   for (int row = kReach; row < rows_ - kReach; ++row) {
     for (int column = kReach; column < columns_ - kReach; ++column) {

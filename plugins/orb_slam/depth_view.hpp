@@ -17,7 +17,7 @@ struct PlanePatch {
 };
 
 /// Every patch is the plane that fits best to 40 × 40 px around its middle; the middles are 8 px
-/// apart. Edges, curved things and what has little static weight have no patch.
+/// apart. Depth discontinuities, curved surfaces and regions of low static weight have none.
 class DepthView {
  public:
   static constexpr int kCell = 8;  ///< px between patches

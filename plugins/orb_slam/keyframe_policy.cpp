@@ -7,9 +7,9 @@
 namespace stillpoint::orb_slam {
 namespace {
 
-constexpr int kHeldFramesBetween = 5;  // where corners come and go, there are new ones every time
+constexpr int kMinFramesBetweenHeld = 5;  // minimum; unstable corners would ask for one every time
 
-// Landmarks of the reference key frame that others have seen, too; in a young map, all.
+// Landmarks of the reference key frame that others observe as well; in a young map, all of them.
 int established_landmarks(const KeyFrame& keyframe, const SparseMap& map) {
   const std::size_t min_observations = map.keyframe_count() <= 2 ? 1 : 2;
   int count = 0;
@@ -28,7 +28,7 @@ double median_depth(const Features& features) {
   return *middle;
 }
 
-// How far the image has shifted, in focal lengths, roughly.
+// Approximate image motion, in focal lengths.
 double motion_since(const KeyFrame& reference, const ObservedFrame& frame) {
   const Pose motion = reference.world_from_camera.inverse() * frame.world_from_camera;
   const double depth = median_depth(*frame.features);
@@ -40,24 +40,24 @@ double motion_since(const KeyFrame& reference, const ObservedFrame& frame) {
 
 void KeyFrameOptions::visit(OptionVisitor& v) {
   v("keyframe_max_frames", max_frames_between,
-    {.min = 1, .unit = "frames", .help = "a new key frame is allowed after this long in any case"});
+    {.min = 1, .unit = "frames", .help = "allowed after this long even if mapping is busy"});
   v("keyframe_tracked_ratio", min_tracked_ratio,
     {.min = 0,
      .max = 1,
      .help = "new key frame when less than this share of the reference's landmarks is tracked"});
   v("keyframe_moved", moved,
     {.min = 0,
-     .help = "way in median depths, plus rotation in radians, that makes a camera moved"});
+     .help = "translation in median depths plus rotation in radians that counts as moved"});
   v("keyframe_moved_ratio", moved_tracked_ratio,
     {.min = 0, .max = 1, .help = "as keyframe_tracked_ratio, once the camera has moved"});
   v("keyframe_min_inliers", min_inliers,
-    {.min = 6, .help = "no key frame from a pose on fewer landmarks"});
+    {.min = 6, .help = "no key frame from a pose with fewer landmark inliers"});
   v("close_depth", close_depth,
-    {.min = 0.1, .unit = "m", .help = "nearer points have a depth good enough to fix translation"});
+    {.min = 0.1, .unit = "m", .help = "nearer points have depth that can constrain translation"});
   v("keyframe_min_close", min_close,
-    {.min = 0, .help = "new key frame when fewer close points are tracked and others are there"});
+    {.min = 0, .help = "new key frame when fewer close points are tracked and others exist"});
   v("keyframe_max_close_untracked", max_close_untracked,
-    {.min = 0, .help = "that many close points without landmark count as 'others are there'"});
+    {.min = 0, .help = "others exist when more close points than this have no landmark"});
 }
 
 TrackingQuality tracking_quality(const ObservedFrame& frame, const SparseMap& map, int inliers,
@@ -71,10 +71,10 @@ TrackingQuality tracking_quality(const ObservedFrame& frame, const SparseMap& ma
     const float depth = frame.features->depth[i];
     if (depth <= 0 || depth > options.close_depth || !frame.usable(i)) continue;
     const bool tracked = frame.landmarks[i] != kNoId && !frame.outlier[i];
-    const bool could_be =
+    const bool can_be_mapped =
         frame.track_weights[i] >= kMinMapWeight && frame.map_weights[i] >= kMinMapWeight;
     quality.close_tracked += tracked ? 1 : 0;
-    quality.close_untracked += !tracked && could_be ? 1 : 0;
+    quality.close_untracked += !tracked && can_be_mapped ? 1 : 0;
   }
   return quality;
 }
@@ -82,9 +82,9 @@ TrackingQuality tracking_quality(const ObservedFrame& frame, const SparseMap& ma
 bool needs_keyframe(const TrackingQuality& q, TrackHints hints, const KeyFrameOptions& options) {
   const bool needs_close =
       q.close_tracked < options.min_close && q.close_untracked > options.max_close_untracked;
-  if (q.held_by_depth) return needs_close && q.frames_since_last >= kHeldFramesBetween;
+  if (q.held_by_depth) return needs_close && q.frames_since_last >= kMinFramesBetweenHeld;
   if (q.inliers < options.min_inliers) return false;
-  // From a camera that has not moved, landmarks are missing because a person hides them.
+  // If the camera has not moved, landmarks are missing because a person occludes them.
   const double least =
       q.motion < options.moved ? options.min_tracked_ratio : options.moved_tracked_ratio;
   const bool view_changed = q.inliers < least * q.reference_matches;

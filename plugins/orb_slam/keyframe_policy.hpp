@@ -1,4 +1,4 @@
-// When a frame is worth keeping (ORB-SLAM2, III-E: stereo key frames).
+// Which frames become key frames (ORB-SLAM2, III-E).
 #pragma once
 
 #include "orb_slam/observed_frame.hpp"
@@ -20,14 +20,14 @@ struct KeyFrameOptions {
   void visit(OptionVisitor& visitor);
 };
 
-/// What the decision looks at.
+/// What the key frame decision depends on.
 struct TrackingQuality {
-  int inliers = 0;            ///< landmarks of the map that fit the pose
+  int inliers = 0;            ///< landmarks of the map that are inliers to the pose
   int reference_matches = 0;  ///< landmarks the reference key frame sees, of those well established
-  int close_tracked = 0;      ///< features with near depth and a fitting landmark
+  int close_tracked = 0;      ///< features with near depth and an inlier landmark
   int close_untracked = 0;    ///< features with near depth and none, which could become one
   int frames_since_last = 0;  ///< since the last key frame
-  double motion = 0;  ///< since the reference: way in median depths, plus rotation in radians
+  double motion = 0;  ///< since the reference: translation in median depths + rotation in radians
   bool held_by_depth = false;  ///< the pose does not depend on landmarks
 };
 

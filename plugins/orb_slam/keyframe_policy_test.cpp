@@ -108,7 +108,7 @@ TEST_F(TrackingQualityTest, CountsNearPointsByWhetherTheyAreTracked) {
   const TrackingQuality quality = tracking_quality(frame_, known_.map, 123, 7, options_);
   EXPECT_EQ(quality.inliers, 123);
   EXPECT_EQ(quality.frames_since_last, 7);
-  EXPECT_EQ(quality.close_untracked, 15) << "without landmark, or not fitting it";
+  EXPECT_EQ(quality.close_untracked, 15) << "without landmark, or an outlier";
   EXPECT_EQ(quality.close_tracked, close - 21) << "what cannot be mapped counts nowhere";
 }
 

@@ -22,7 +22,7 @@ bool wants_landmark(const KeyFrame& keyframe, std::uint32_t i) {
          keyframe.track_weights[i] >= kMinMapWeight;
 }
 
-std::vector<std::uint32_t> open_features(const KeyFrame& keyframe) {
+std::vector<std::uint32_t> features_without_landmark(const KeyFrame& keyframe) {
   std::vector<std::uint32_t> open;
   for (std::uint32_t i = 0; i < keyframe.landmarks.size(); ++i)
     if (wants_landmark(keyframe, i)) open.push_back(i);
@@ -73,8 +73,8 @@ class ViewPair {
   }
   Eigen::Vector3d epipolar_line(std::uint32_t i) const { return essential_ * ray(a_, i); }
 
-  /// The point both features see; nothing when the rays are too nearly parallel to tell its
-  /// distance, or do not meet.
+  /// The point both features see; nothing when the rays are too nearly parallel, or the
+  /// reprojection error is too large.
   std::optional<Eigen::Vector3d> intersect(std::uint32_t i, std::uint32_t j) const {
     const Eigen::Vector3d u = a_.world_from_camera.linear() * ray(a_, i).normalized();
     const Eigen::Vector3d v = b_.world_from_camera.linear() * ray(b_, j).normalized();
@@ -116,12 +116,13 @@ void triangulate_pair(MapEdit& edit, KeyFrameId a_id, KeyFrameId b_id,
   const std::shared_ptr<const KeyFrame> b = edit.map().shared_keyframe(b_id);
   const ViewPair views(*a, *b);
   if (views.baseline() < kMinBaselineShare * median_depth(*b)) return;
-  const std::vector<std::uint32_t> open_a = open_features(*a), open_b = open_features(*b);
+  const std::vector<std::uint32_t> open_a = features_without_landmark(*a),
+                                   open_b = features_without_landmark(*b);
   std::vector<bool> used(b->features->size());
   for (const std::uint32_t i : open_a) {
     const Eigen::Vector3d line = views.epipolar_line(i);
     const int level = a->features->keypoints[i].octave;
-    int best_distance = kNear + 1;
+    int best_distance = kStrictDistance + 1;
     std::uint32_t best = 0;
     for (const std::uint32_t j : open_b) {
       if (used[j] || std::abs(b->features->keypoints[j].octave - level) > 1) continue;
@@ -132,7 +133,7 @@ void triangulate_pair(MapEdit& edit, KeyFrameId a_id, KeyFrameId b_id,
       best_distance = distance;
       best = j;
     }
-    if (best_distance > kNear) continue;
+    if (best_distance > kStrictDistance) continue;
     const auto point = views.intersect(i, best);
     if (!point) continue;
     used[best] = true;
@@ -145,7 +146,7 @@ void triangulate_pair(MapEdit& edit, KeyFrameId a_id, KeyFrameId b_id,
 std::vector<LandmarkId> create_from_depth(MapEdit& edit, KeyFrameId id) {
   const std::shared_ptr<const KeyFrame> keyframe = edit.map().shared_keyframe(id);
   std::vector<LandmarkId> created;
-  for (const std::uint32_t i : open_features(*keyframe)) {
+  for (const std::uint32_t i : features_without_landmark(*keyframe)) {
     const double depth = keyframe->features->depth[i];
     if (depth <= 0) continue;
     const Eigen::Vector3d point = keyframe->world_from_camera * (ray(*keyframe, i) * depth);

@@ -12,8 +12,8 @@ namespace {
 
 constexpr double kFusionWindow = 3.0;  // px at the predicted level
 
-/// Observations of both that fit the place of `landmark`.
-std::ptrdiff_t fitting(const SparseMap& map, const Landmark& landmark, const Landmark& other) {
+/// Observations of both landmarks that are inliers to the position of `landmark`.
+std::ptrdiff_t inlier_count(const SparseMap& map, const Landmark& landmark, const Landmark& other) {
   const auto fits = [&](const Observation& o) {
     return observation_fits(map, landmark.position_in_world, o);
   };
@@ -21,15 +21,16 @@ std::ptrdiff_t fitting(const SparseMap& map, const Landmark& landmark, const Lan
          std::ranges::count_if(other.observations, fits);
 }
 
-/// The better known one is kept: a triangulation that is wrong fits what it was made from and
-/// nothing else, and what is seen of it from elsewhere would draw whole key frames away.
-void join(MapEdit& edit, LandmarkId a, LandmarkId b) {
+/// Keeps the landmark with more inlier observations: a wrong triangulation fits only the
+/// observations that it was made from, and others fused into it would distort key frame poses.
+void fuse_pair(MapEdit& edit, LandmarkId a, LandmarkId b) {
   const Landmark &first = *edit.map().landmark(a), &second = *edit.map().landmark(b);
-  const bool keep_a = std::pair(fitting(edit.map(), first, second), first.observations.size()) >=
-                      std::pair(fitting(edit.map(), second, first), second.observations.size());
+  const bool keep_a =
+      std::pair(inlier_count(edit.map(), first, second), first.observations.size()) >=
+      std::pair(inlier_count(edit.map(), second, first), second.observations.size());
   const LandmarkId kept = keep_a ? a : b;
   edit.fuse_landmarks(kept, keep_a ? b : a);
-  drop_misfits(edit, kept);
+  remove_outlier_observations(edit, kept);
   refresh_landmark(edit, kept);
 }
 
@@ -53,7 +54,7 @@ void fuse_into(MapEdit& edit, const std::vector<LandmarkId>& landmarks, KeyFrame
   const FeatureGrid grid(*keyframe->features, *keyframe->camera);
   const auto usable = [&](std::uint32_t i) { return keyframe->track_weights[i] >= kMinMapWeight; };
   for (const Match& m :
-       match_near(queries, *keyframe->features, grid, usable, {.max_distance = kNear})) {
+       match_near(queries, *keyframe->features, grid, usable, {.max_distance = kStrictDistance})) {
     const Landmark* landmark = edit.map().landmark(m.id);
     if (!landmark ||
         !observation_error(landmark->position_in_world, camera_from_world, *keyframe, m.feature)
@@ -63,7 +64,7 @@ void fuse_into(MapEdit& edit, const std::vector<LandmarkId>& landmarks, KeyFrame
     if (there == kNoId) {
       if (edit.add_observation(m.id, {target, m.feature})) refresh_landmark(edit, m.id);
     } else if (there != m.id) {
-      join(edit, m.id, there);
+      fuse_pair(edit, m.id, there);
     }
   }
 }

@@ -1,13 +1,13 @@
-// Joins landmarks that are the same point.
+// Fuses duplicate landmarks.
 #pragma once
 
 #include "stillpoint/contracts/sparse_map.hpp"
 
 namespace stillpoint::orb_slam {
 
-/// Looks for the key frame's landmarks in its `neighbours` most covisible key frames and for theirs
-/// in it: found without a landmark, it becomes an observation; found with another one, both are
-/// fused.
+/// Projects the key frame's landmarks into its `neighbours` most covisible key frames and theirs
+/// into it. A matching feature without a landmark becomes an observation; with another landmark,
+/// both are fused.
 void fuse_with_neighbours(MapEdit& edit, KeyFrameId id, int neighbours);
 
 }  // namespace stillpoint::orb_slam

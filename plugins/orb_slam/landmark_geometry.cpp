@@ -81,7 +81,7 @@ bool observation_fits(const SparseMap& map, const Eigen::Vector3d& point_in_worl
       .fits();
 }
 
-void drop_misfits(MapEdit& edit, LandmarkId id) {
+void remove_outlier_observations(MapEdit& edit, LandmarkId id) {
   const std::vector<Observation> observations = edit.map().landmark(id)->observations;
   for (const Observation& o : observations) {
     const Landmark* landmark = edit.map().landmark(id);

@@ -9,7 +9,7 @@
 namespace stillpoint::orb_slam {
 namespace {
 
-constexpr int kMostCovisible = 10;  // most covisible ones, added per key frame
+constexpr int kMaxCovisible = 10;  // most covisible ones, added per key frame
 
 std::vector<KeyFrameId> by_votes(const std::vector<LandmarkId>& matched, const SparseMap& map) {
   std::map<KeyFrameId, int> votes;
@@ -29,7 +29,7 @@ void add_neighbours(const SparseMap& map, std::size_t limit, std::vector<KeyFram
   for (std::size_t i = 0; i < voted && keyframes.size() < limit; ++i) {
     int added = 0;
     for (const Covisibility& c : map.keyframe(keyframes[i])->covisible) {
-      if (added == kMostCovisible || keyframes.size() == limit) break;
+      if (added == kMaxCovisible || keyframes.size() == limit) break;
       if (std::find(keyframes.begin(), keyframes.end(), c.keyframe) != keyframes.end()) continue;
       keyframes.push_back(c.keyframe);
       ++added;

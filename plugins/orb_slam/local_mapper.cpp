@@ -12,7 +12,8 @@
 namespace stillpoint::orb_slam {
 namespace {
 
-constexpr float kMostLogOdds = 6.0F;  // of being static, either way: things do begin to move
+constexpr float kMaxStaticLogOdds =
+    6.0F;  // of being static, clamped: static objects may begin to move
 
 /// Landmarks that prove to have moved are removed.
 void add_evidence(MapEdit& edit, const std::vector<LandmarkEvidence>& evidence) {
@@ -22,8 +23,8 @@ void add_evidence(MapEdit& edit, const std::vector<LandmarkEvidence>& evidence) 
     Landmark& landmark = edit.landmark(id);
     landmark.visible += e.visible;
     landmark.found += e.found;
-    landmark.static_log_odds =
-        std::clamp(landmark.static_log_odds + e.static_log_odds, -kMostLogOdds, kMostLogOdds);
+    landmark.static_log_odds = std::clamp(landmark.static_log_odds + e.static_log_odds,
+                                          -kMaxStaticLogOdds, kMaxStaticLogOdds);
     if (landmark.static_log_odds < kMovedLogOdds) edit.remove_landmark(id);
   }
 }
@@ -36,7 +37,7 @@ void OrbLocalMapper::Options::visit(OptionVisitor& v) {
   v("redundant_share", redundant_share,
     {.min = 0,
      .max = 1,
-     .help = "key frames of whose landmarks more than this share is seen by others are removed"});
+     .help = "a key frame is removed when three others see more than this share of its landmarks"});
   v("bundle_keyframes", bundle_keyframes,
     {.min = 2, .help = "key frames that the local bundle adjustment moves"});
   v("bundle_iterations", bundle_iterations, {.min = 1, .help = "of the local bundle adjustment"});

@@ -31,7 +31,7 @@ class OrbLocalMapper final : public LocalMapper {
 
   Options options_;
   BundleOptions bundle_;
-  std::vector<LandmarkId> recent_;  // landmarks on probation
+  std::vector<LandmarkId> recent_;  // landmarks that culling still checks
 };
 
 }  // namespace stillpoint::orb_slam

@@ -1,4 +1,4 @@
-// Places that several key frames in a row look like (ORB-SLAM, section VII-A).
+// Loop candidates that are consistent over consecutive key frames (ORB-SLAM, section VII-A).
 #pragma once
 
 #include <vector>
@@ -7,8 +7,8 @@
 
 namespace stillpoint::orb_slam {
 
-/// One look at one place may be chance. A candidate counts when the key frames before also had one
-/// in the same part of the map: among its covisible key frames.
+/// A single match may be a false positive. A candidate counts when the previous key frames had one
+/// in the same part of the map as well, that is, among its covisible key frames.
 class LoopCandidates {
  public:
   /// Candidates for the newest key frame, best first. Call it for every key frame, in order.
@@ -17,10 +17,10 @@ class LoopCandidates {
  private:
   struct Group {
     std::vector<KeyFrameId> keyframes;  // a candidate and those covisible with it, sorted
-    int seen = 1;                       // by so many key frames in a row
+    int seen = 1;                       // consecutive key frames with a consistent candidate
   };
 
-  Group follow(const SparseMap& map, KeyFrameId candidate) const;
+  Group consistent_group(const SparseMap& map, KeyFrameId candidate) const;
 
   PlaceIndex index_;
   std::vector<Group> groups_;  // of the key frame before

@@ -5,7 +5,7 @@
 namespace stillpoint::orb_slam {
 namespace {
 
-double way_between(const SparseMap& map, KeyFrameId from, KeyFrameId to) {
+double path_length(const SparseMap& map, KeyFrameId from, KeyFrameId to) {
   double metres = 0;
   Eigen::Vector3d last = map.world_from_keyframe(from).translation();
   for (KeyFrameId id = from + 1; id <= to; ++id) {
@@ -17,22 +17,22 @@ double way_between(const SparseMap& map, KeyFrameId from, KeyFrameId to) {
   return metres;
 }
 
-// Of two rooms that look the same, one is where the camera cannot have got to.
-bool is_within_reach(const SparseMap& map, const LoopMatch& loop, double max_drift) {
-  constexpr double kSlack = 0.5;  // metres; people may have pulled the camera along
+// Perceptual aliasing: rejects loops whose correction exceeds the drift that is possible.
+bool is_within_drift(const SparseMap& map, const LoopMatch& loop, double max_drift) {
+  constexpr double kSlack = 0.5;  // metres; dynamic objects may have caused drift
   const Eigen::Vector3d before = map.keyframe(loop.keyframe)->world_from_camera.translation();
   return (loop.world_from_camera.translation() - before).norm() <=
-         kSlack + max_drift * way_between(map, loop.place, loop.keyframe);
+         kSlack + max_drift * path_length(map, loop.place, loop.keyframe);
 }
 
 }  // namespace
 
 void OrbLoopCloser::Options::visit(OptionVisitor& v) {
   v("pause", pause,
-    {.min = 0, .unit = "key frames", .help = "after a loop, before the next one is looked for"});
+    {.min = 0, .unit = "key frames", .help = "least number between two loop closures"});
   v("max_drift", max_drift,
     {.min = 0,
-     .help = "share of the way since a place was left; a loop that asks for more is none"});
+     .help = "share of the path since the place was left, plus 0.5 m: greatest correction"});
   v("adjust_iterations", adjust_iterations,
     {.min = 0, .help = "of the bundle adjustment of the whole map after a loop; 0 = none"});
 }
@@ -47,7 +47,7 @@ std::optional<MapCorrection> OrbLoopCloser::close(const SparseMap& map, KeyFrame
   for (const KeyFrameId place : candidates) {
     if (stop.stop_requested()) return std::nullopt;
     const auto loop = match_loop(map, latest, place);
-    if (loop && is_within_reach(map, *loop, options_.max_drift))
+    if (loop && is_within_drift(map, *loop, options_.max_drift))
       return correct(map, *loop, std::move(stop));
   }
   return std::nullopt;

@@ -10,14 +10,14 @@
 namespace stillpoint::orb_slam {
 namespace {
 
-constexpr int kMostNeighbours = 10;  // around either end, most covisible ones
-constexpr int kMinLoopMatches = 20;  // to try a pose
-constexpr int kMinInliers = 40;      // landmarks that fit it
-// Of the landmarks that should be seen. Of one place, 0.31 and more were; of two that look alike
+constexpr int kMaxNeighbours = 10;   // most covisible key frames of either end
+constexpr int kMinLoopMatches = 20;  // to attempt a pose
+constexpr int kMinInliers = 40;      // to accept the loop
+// Inliers over landmarks predicted to be visible. True loops had 0.31 and more, false ones
 // 0.25 at most (place_index_benchmark).
 constexpr double kMinSupport = 0.3;
-constexpr int kRansacSamples = 300;  // of RANSAC
-// Not of the sensor: how far landmarks of one part of a map have drifted against each other.
+constexpr int kRansacSamples = 300;  // hypotheses
+// Not sensor noise: drift between the landmarks of one part of a map.
 constexpr RigidNoise kDrift{.pixel = 2.0, .inverse_depth = 0.02};
 constexpr double kWideWindow = 10;   // px
 constexpr double kNarrowWindow = 4;  // px
@@ -25,7 +25,7 @@ constexpr double kNarrowWindow = 4;  // px
 std::vector<KeyFrameId> neighbourhood(const SparseMap& map, KeyFrameId centre) {
   std::vector<KeyFrameId> ids{centre};
   for (const Covisibility& c : map.keyframe(centre)->covisible)
-    if (std::ssize(ids) <= kMostNeighbours) ids.push_back(c.keyframe);
+    if (std::ssize(ids) <= kMaxNeighbours) ids.push_back(c.keyframe);
   return ids;
 }
 
@@ -55,7 +55,7 @@ std::optional<Pose> camera_from_world(const ObservedFrame& view, std::span<const
   const auto measured = [&](std::uint32_t i) { return view.usable(i) && features.depth[i] > 0; };
   const std::vector<Match> matches =
       match_anywhere(queries, features, measured,
-                     {.max_distance = kNear, .ratio = 0.8, .consistent_angles = true});
+                     {.max_distance = kStrictDistance, .ratio = 0.8, .consistent_angles = true});
   if (std::ssize(matches) < kMinLoopMatches) return std::nullopt;
   const Camera& camera = *view.frame->camera;
   const Pose near_from_world = camera_near_place.inverse();
@@ -71,7 +71,7 @@ std::optional<Pose> camera_from_world(const ObservedFrame& view, std::span<const
   return motion->target_from_source * near_from_world;
 }
 
-// Searches around the predicted places and solves the pose from what is found.
+// Guided matching around the predicted pixels, then the pose from the matches.
 int refine(ObservedFrame& view, std::span<const Target> targets, double window,
            const SparseMap& map) {
   match_projected(view, targets, view.world_from_camera.inverse(), window, 1);
@@ -80,8 +80,8 @@ int refine(ObservedFrame& view, std::span<const Target> targets, double window,
   return inliers;
 }
 
-int should_be_seen(const ObservedFrame& view, std::span<const Target> targets,
-                   const SparseMap& map) {
+int count_predicted_visible(const ObservedFrame& view, std::span<const Target> targets,
+                            const SparseMap& map) {
   const Pose camera_from_world = view.world_from_camera.inverse();
   const ScalePyramid pyramid(*view.features);
   return static_cast<int>(std::ranges::count_if(targets, [&](const Target& target) {
@@ -91,7 +91,7 @@ int should_be_seen(const ObservedFrame& view, std::span<const Target> targets,
   }));
 }
 
-// Older and newer landmarks of the same features, in all key frames of the newer end.
+// Duplicates: older and newer landmarks of one feature, in all key frames of the newer end.
 std::vector<std::pair<LandmarkId, LandmarkId>> same_landmarks(const SparseMap& map,
                                                               const LoopMatch& loop,
                                                               const std::vector<KeyFrameId>& newer,
@@ -124,7 +124,7 @@ std::optional<LoopMatch> match_loop(const SparseMap& map, KeyFrameId keyframe, K
   LoopMatch loop{.keyframe = keyframe, .place = place};
   loop.inliers = refine(view, targets, kNarrowWindow, map);
   loop.support =
-      static_cast<double>(loop.inliers) / std::max(1, should_be_seen(view, targets, map));
+      static_cast<double>(loop.inliers) / std::max(1, count_predicted_visible(view, targets, map));
   if (loop.inliers < kMinInliers || loop.support < kMinSupport) return std::nullopt;
   loop.world_from_camera = view.world_from_camera;
   loop.same = same_landmarks(map, loop, newer, targets);

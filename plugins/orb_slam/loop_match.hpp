@@ -9,21 +9,21 @@
 
 namespace stillpoint::orb_slam {
 
-/// A place that the map holds twice.
+/// A verified loop: a place that is in the map twice.
 struct LoopMatch {
   KeyFrameId keyframe = kNoId;  ///< the newer one
   KeyFrameId place = kNoId;     ///< the older one
   Pose world_from_camera =
       Pose::Identity();  ///< of `keyframe`, as the older part of the map has it
-  int inliers = 0;       ///< older landmarks that fit it
-  double support = 0;    ///< their share of those that should be seen, 0 … 1
+  int inliers = 0;       ///< older landmarks
+  double support = 0;    ///< share of inliers in the landmarks predicted to be visible, 0 … 1
   std::vector<std::pair<LandmarkId, LandmarkId>> same;  ///< older, newer
 };
 
 /// 3-D/3-D RANSAC between the key frame's measured points and the landmarks around `place`, then a
-/// guided search for all of these. Nothing unless enough landmarks fit and most of those that
-/// should be seen are there: one poster in two rooms fits, but nothing around it does. Features
-/// that must not be mapped take no part.
+/// guided search for all of these. Nothing unless there are enough inliers, and enough of them
+/// relative to the landmarks predicted to be visible: a poster that hangs in two rooms matches, but
+/// nothing around it does. Features that must not be mapped are not used.
 std::optional<LoopMatch> match_loop(const SparseMap& map, KeyFrameId keyframe, KeyFrameId place);
 
 }  // namespace stillpoint::orb_slam

@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kMinViewCosine = 0.5;    // 60 degrees
 constexpr double kRangeMargin = 1.2;      // one pyramid level beyond the range of distances
-constexpr double kFrontalCosine = 0.998;  // seen like that, a landmark is where it is predicted
+constexpr double kFrontalCosine = 0.998;  // mean viewing direction: accurate prediction
 constexpr double kObliqueFactor = 1.6;    // a wider window for all others
 constexpr int kAngleBins = 30;
 constexpr int kKeptBins = 3;
@@ -45,7 +45,7 @@ struct Pair {
   int distance = 257;
 };
 
-// Keeps, for every feature, the query that fits best.
+// Keeps, for every feature, the query with the smallest distance.
 class Assignment {
  public:
   explicit Assignment(std::size_t features) : best_(features) {}
@@ -68,7 +68,8 @@ int angle_bin(float from, float to) {
   return static_cast<int>(turn * kAngleBins / 360.0f) % kAngleBins;
 }
 
-// The camera turns all features alike, so true matches gather in a few bins of the turn.
+// Rotation consistency check: the camera's roll rotates all features alike, so that true matches
+// gather in a few bins of the orientation difference.
 void keep_consistent_angles(std::span<const Query> queries, const Features& features,
                             std::vector<Pair>& pairs) {
   const auto bin = [&](const Pair& p) {
@@ -167,7 +168,7 @@ std::vector<Match> match_anywhere(std::span<const Query> queries, const Features
     Best best;
     for (std::size_t i = 0; i < candidates.features.size(); ++i)
       best.offer(candidates.distances[i], candidates.features[i], 0);
-    best.second_level = best.level;  // every other feature is a rival, on whatever level
+    best.second_level = best.level;  // ratio test against all features, of whatever level
     if (best.accepted(rules)) assignment.add(q, best.feature, best.distance);
   }
   return finish(std::move(assignment), queries, features, rules);

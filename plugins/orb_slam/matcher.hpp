@@ -1,4 +1,4 @@
-// Finds the feature that shows a landmark: one matcher for tracking, fusion and relocalisation.
+// Descriptor matching of landmarks to features, for tracking, fusion and relocalisation.
 #pragma once
 
 #include <cstdint>
@@ -15,10 +15,11 @@
 
 namespace stillpoint::orb_slam {
 
-/// Bounds on the Hamming distance of matching 256-bit descriptors, as in the ORB-SLAM paper's
-/// system: `kFar` where the place is predicted, `kNear` where it is not.
-inline constexpr int kFar = 100;
-inline constexpr int kNear = 50;
+/// Thresholds on the Hamming distance of matching 256-bit descriptors, as in the ORB-SLAM paper's
+/// system: `kLooseDistance` for tracking from a predicted pose, `kStrictDistance` for what changes
+/// the map.
+inline constexpr int kLooseDistance = 100;
+inline constexpr int kStrictDistance = 50;
 
 /// Where and how a landmark should appear.
 struct Query {
@@ -38,17 +39,17 @@ struct Match {
 };
 
 struct MatchRules {
-  int max_distance = kFar;
+  int max_distance = kLooseDistance;
   /// A match counts only if the second best of the same level is this much worse; 1 = always.
   double ratio = 1.0;
-  /// Drop matches whose turn of the orientation differs from that of most others.
+  /// Drop matches whose orientation difference is not that of most others.
   bool consistent_angles = false;
 };
 
 /// Whether a feature may be matched at all.
 using FeatureFilter = std::function<bool(std::uint32_t feature)>;
 
-/// At most one feature per query and one query per feature, the closest pairs first served.
+/// Each query takes its closest feature; of queries with the same one, the closest keeps it.
 std::vector<Match> match_near(std::span<const Query> queries, const Features& features,
                               const FeatureGrid& grid, const FeatureFilter& usable,
                               const MatchRules& rules);

@@ -176,8 +176,9 @@ TEST_F(MatcherTest, FindsTheSamePointsInTwoViews) {
     queries.push_back({.id = a.point[i],
                        .descriptor = a.features->descriptors[i],
                        .angle = a.features->keypoints[i].angle});
-  const auto matches = match_anywhere(
-      queries, *b.features, all, {.max_distance = kNear, .ratio = 0.8, .consistent_angles = true});
+  const auto matches =
+      match_anywhere(queries, *b.features, all,
+                     {.max_distance = kStrictDistance, .ratio = 0.8, .consistent_angles = true});
   EXPECT_GT(matches.size(), 100u);
   for (const Match& m : matches) EXPECT_EQ(m.id, b.point[m.feature]);
 }

@@ -10,8 +10,8 @@ namespace stillpoint::orb_slam {
 namespace {
 
 constexpr double kRecent = 5.0;     // seconds
-constexpr double kMinShare = 0.02;  // of the image: less is noise of masks and of depth edges
-constexpr int kUncovered = 8;       // px that what moves may uncover until the next frame
+constexpr double kMinShare = 0.02;  // of the image: less is noise of masks and depth
+constexpr int kDisocclusion = 8;    // px of background that may be disoccluded until the next frame
 
 cv::Mat unmapped(const StaticWeights& weights) {
   cv::Mat used;
@@ -21,7 +21,7 @@ cv::Mat unmapped(const StaticWeights& weights) {
     used = used.empty() ? mapped : cv::Mat(used & mapped);
   }
   if (used.empty()) return {};
-  cv::dilate(used, used, cv::Mat::ones(2 * kUncovered + 1, 2 * kUncovered + 1, CV_8U));
+  cv::dilate(used, used, cv::Mat::ones(2 * kDisocclusion + 1, 2 * kDisocclusion + 1, CV_8U));
   return used == 0;
 }
 

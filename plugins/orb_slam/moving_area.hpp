@@ -1,4 +1,4 @@
-// The part of the image that moving things take away from the map.
+// The part of the image that dynamic objects exclude from mapping.
 #pragma once
 
 #include <opencv2/core/mat.hpp>
@@ -12,16 +12,16 @@ class MovingArea {
   /// Of a frame at `time`, in seconds.
   void update(const StaticWeights& weights, double time);
 
-  /// Not 0 where no feature nearby could have a landmark, so that the next frame's features are
-  /// better spent elsewhere: CV_8UC1 of the image's size, or empty where all could.
+  /// Non-zero where no feature nearby may have a landmark, so that features of the next frame are
+  /// better taken elsewhere: CV_8UC1 of the image's size, or empty where all could.
   const cv::Mat& mask() const { return mask_; }
 
-  /// How many times as many features the next frame needs, at most `most`: what is left of the
-  /// image says less, since it is smaller and since it is a narrower view.
+  /// Factor on the number of features of the next frame, at most `most`: the rest of the image
+  /// constrains the pose less, since it is smaller and covers a narrower field of view.
   double feature_factor(double most) const;
 
-  /// Whether something moved in the image at `time` or in the seconds before: what has left it may
-  /// be back.
+  /// Whether dynamic objects were in the image at `time` or in the seconds before: those that have
+  /// left it may return.
   bool recent(double time) const;
 
  private:

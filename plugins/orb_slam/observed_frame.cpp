@@ -7,13 +7,13 @@
 namespace stillpoint::orb_slam {
 namespace {
 
-constexpr float kMaxDepthStep = 0.04f;  // of the depth; more around a keypoint is an edge
+constexpr float kMaxDepthStep = 0.04f;  // of the depth; more is a depth discontinuity
 constexpr int kDepthWindow = 3;         // px around a keypoint
-constexpr double kMinNewWeight = 0.02;  // of a landmark on probation
+constexpr double kMinNewWeight = 0.02;  // least weight of a new landmark
 
-// Depth of the surface a keypoint lies on; 0 beside a depth edge, where it may be that of the other
-// side. Such features made estimated motions 0.5 to 1 % too small, since errors of that kind go
-// towards the foreground.
+// Depth of the surface a keypoint lies on; 0 beside a depth discontinuity, where it may be that of
+// the other side. Such features made estimated motions 0.5 to 1 % too small, since their errors are
+// biased towards the foreground.
 float depth_at(const cv::Mat& depth, cv::Point2f pixel) {
   const int u = cvRound(pixel.x), v = cvRound(pixel.y);
   const float centre = depth.at<float>(v, u);
@@ -42,8 +42,8 @@ ObservedFrame unmatched(FramePtr frame, FeaturesPtr features) {
   return observed;
 }
 
-// Weight of a landmark on probation: the clothes of a person whom no label shows yet become
-// hundreds of landmarks in a few frames, which agree with each other.
+// Weight of a landmark by its age: on a person without a label yet, a few frames make hundreds of
+// landmarks that are consistent with each other.
 double probation_weight(const Landmark& landmark, const SparseMap& map, double time,
                         double probation) {
   const KeyFrame* creator = map.keyframe(landmark.created_by);
@@ -111,11 +111,11 @@ int ObservedFrame::matched() const {
       std::count_if(landmarks.begin(), landmarks.end(), [](LandmarkId id) { return id != kNoId; }));
 }
 
-int ObservedFrame::fitting() const {
-  int fitting = 0;
+int ObservedFrame::inlier_count() const {
+  int inlier_count = 0;
   for (std::size_t i = 0; i < landmarks.size(); ++i)
-    fitting += landmarks[i] != kNoId && !outlier[i];
-  return fitting;
+    inlier_count += landmarks[i] != kNoId && !outlier[i];
+  return inlier_count;
 }
 
 int solve_pose(ObservedFrame& observed, const SparseMap& map, double probation,

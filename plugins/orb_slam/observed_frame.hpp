@@ -24,7 +24,7 @@ struct ObservedFrame {
   std::vector<LandmarkId> landmarks;        ///< per feature, kNoId = none
   /// Per feature: in world, the point that the frame before measured, where no landmark is known.
   std::vector<std::optional<Eigen::Vector3d>> temporary;
-  std::vector<bool> outlier;  ///< per feature: its point does not fit the pose
+  std::vector<bool> outlier;  ///< per feature: its point is no inlier to the pose
   Pose world_from_camera = Pose::Identity();
   KeyFrameId reference = kNoId;
   Pose reference_from_camera = Pose::Identity();
@@ -42,12 +42,12 @@ struct ObservedFrame {
   /// Adds landmarks; the ids of the matches are theirs.
   void assign(std::span<const Match> matches);
   void clear_matches();
-  /// Takes away the points that do not fit.
+  /// Removes the matches that are outliers.
   void drop_outliers();
-  /// Takes away the temporary points.
+  /// Removes the temporary points.
   void drop_temporary();
-  int matched() const;  ///< features with a landmark
-  int fitting() const;  ///< those whose landmark is no outlier
+  int matched() const;       ///< features with a landmark
+  int inlier_count() const;  ///< those whose landmark is no outlier
 };
 
 /// Samples depth at the keypoints.
@@ -60,8 +60,8 @@ ObservedFrame observe_again(const KeyFrame& keyframe);
 /// Pose from the landmarks and temporary points assigned so far, starting from the frame's own;
 /// marks the outliers and returns the number of inliers. Landmarks count in full from an age of
 /// `probation` seconds on, younger ones less. Those of key frames before `first_keyframe` come
-/// from another recording, with its own clock, and always count in full. `term` holds the pose as
-/// well.
+/// from another recording, with its own clock, and always count in full. `term` is an additional
+/// cost on the pose.
 int solve_pose(ObservedFrame& frame, const SparseMap& map, double probation = 0.0,
                KeyFrameId first_keyframe = 0, const PoseTerm& term = {});
 

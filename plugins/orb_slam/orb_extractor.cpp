@@ -18,7 +18,7 @@ constexpr int kThresholdCell = 32;     // px, where the lower threshold applies
 constexpr double kDescriptorBlur = 2;  // px
 const cv::Size kBlurWindow(7, 7);
 
-// A geometric series: every level gets 1 / scale_factor of the finer level's features.
+// Geometric series: every level gets 1 / scale_factor of the features of the next finer level.
 std::vector<int> share_features(const OrbOptions& options) {
   std::vector<int> shares;
   double weight_sum = 0;
@@ -34,11 +34,12 @@ std::vector<int> share_features(const OrbOptions& options) {
   return shares;
 }
 
-// Moves the corners of a level where `spare` is not zero.
-void set_apart(std::vector<Corner>& corners, const cv::Mat& spare, cv::Size level,
+// Moves the corners of a level where `fallback` is not zero.
+void split_off(std::vector<Corner>& corners, const cv::Mat& fallback, cv::Size level,
                std::vector<Corner>& apart) {
   const auto is_spare = [&](const Corner& c) {
-    return spare.at<std::uint8_t>(c.y * spare.rows / level.height, c.x * spare.cols / level.width);
+    return fallback.at<std::uint8_t>(c.y * fallback.rows / level.height,
+                                     c.x * fallback.cols / level.width);
   };
   std::ranges::copy_if(corners, std::back_inserter(apart), is_spare);
   std::erase_if(corners, is_spare);
@@ -60,7 +61,7 @@ void OrbOptions::visit(OptionVisitor& v) {
   v("oversampling", oversampling,
     {.min = 1,
      .max = 10,
-     .help = "corners spread evenly per feature, of which the strongest stay; 1 is most even"});
+     .help = "evenly distributed corners per feature; the strongest are kept; 1: most even"});
   v("subpixel", subpixel, {.help = "refine corners to fractions of a pixel"});
   v.require(fast_min_threshold <= fast_threshold,
             "fast_min_threshold must not exceed fast_threshold");
@@ -69,7 +70,7 @@ void OrbOptions::visit(OptionVisitor& v) {
 OrbExtractor::OrbExtractor(const OrbOptions& options)
     : options_(options), features_per_level_(share_features(options)) {}
 
-Features OrbExtractor::extract(const cv::Mat& gray, const cv::Mat& spare, double share) {
+Features OrbExtractor::extract(const cv::Mat& gray, const cv::Mat& fallback, double share) {
   if (!gray.empty() && gray.type() != CV_8UC1)
     throw Error(Fault::kStage,
                 "needs a gray image of 8 bits, got OpenCV type " + cv::typeToString(gray.type()),
@@ -84,7 +85,7 @@ Features OrbExtractor::extract(const cv::Mat& gray, const cv::Mat& spare, double
   features.levels = options_.levels;
   build_pyramid(gray);
   for (std::size_t level = 0; level < pyramid_.size(); ++level) {
-    detect(pyramid_[level], spare, features_per_level_[level], share);
+    detect(pyramid_[level], fallback, features_per_level_[level], share);
     describe(pyramid_[level], static_cast<int>(level), gray.size(), features);
   }
   return features;
@@ -111,15 +112,15 @@ void OrbExtractor::build_pyramid(const cv::Mat& gray) {
   }
 }
 
-void OrbExtractor::detect(const cv::Mat& image, const cv::Mat& spare, int count, double share) {
+void OrbExtractor::detect(const cv::Mat& image, const cv::Mat& fallback, int count, double share) {
   fast_.detect(image, options_.fast_min_threshold, kPatchBorder, corners_);
-  spare_corners_.clear();
-  if (!spare.empty()) set_apart(corners_, spare, image.size(), spare_corners_);
+  fallback_corners_.clear();
+  if (!fallback.empty()) split_off(corners_, fallback, image.size(), fallback_corners_);
   keep_best(corners_, image.size(), static_cast<int>(std::lround(share * count)));
   const int missing = count - static_cast<int>(corners_.size());
-  if (missing <= 0 || spare_corners_.empty()) return;
-  keep_best(spare_corners_, image.size(), missing);
-  corners_.insert(corners_.end(), spare_corners_.begin(), spare_corners_.end());
+  if (missing <= 0 || fallback_corners_.empty()) return;
+  keep_best(fallback_corners_, image.size(), missing);
+  corners_.insert(corners_.end(), fallback_corners_.begin(), fallback_corners_.end());
 }
 
 void OrbExtractor::keep_best(std::vector<Corner>& corners, cv::Size image, int count) const {

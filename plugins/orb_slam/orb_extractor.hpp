@@ -31,18 +31,18 @@ class OrbExtractor {
 
   /// Features of a CV_8UC1 image, level by level, strongest first; `depth` stays empty. `share`
   /// times as many as the options say; fewer where the image has too few corners, none where it is
-  /// smaller than a patch. Where `spare` (CV_8U, the image's size; empty: nowhere) is not zero,
+  /// smaller than a patch. Where `fallback` (CV_8U, the image's size; empty: nowhere) is not zero,
   /// features are taken only when the rest of the image has fewer than the options say. Keypoints
   /// are in px of `gray` with pixel centres at whole numbers. Throws Error for another type of
   /// image.
-  Features extract(const cv::Mat& gray, const cv::Mat& spare = {}, double share = 1.0);
+  Features extract(const cv::Mat& gray, const cv::Mat& fallback = {}, double share = 1.0);
 
   /// Features wanted of each level: in proportion to the level's width.
   const std::vector<int>& features_per_level() const { return features_per_level_; }
 
  private:
   void build_pyramid(const cv::Mat& gray);
-  void detect(const cv::Mat& image, const cv::Mat& spare, int count, double share);
+  void detect(const cv::Mat& image, const cv::Mat& fallback, int count, double share);
   void keep_best(std::vector<Corner>& corners, cv::Size image, int count) const;
   void describe(const cv::Mat& image, int level, cv::Size full_size, Features& features);
 
@@ -51,8 +51,8 @@ class OrbExtractor {
   std::vector<cv::Mat> pyramid_;
   cv::Mat blurred_;
   FastDetector fast_;
-  std::vector<Corner> corners_;        // of the level at hand
-  std::vector<Corner> spare_corners_;  // those that are not wanted there
+  std::vector<Corner> corners_;           // of the level at hand
+  std::vector<Corner> fallback_corners_;  // those inside the mask of fallback areas
 };
 
 }  // namespace stillpoint::orb_slam

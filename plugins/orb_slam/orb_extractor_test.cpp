@@ -215,10 +215,10 @@ TEST(OrbExtractor, SpendsFeaturesOutsideTheSpareArea) {
   OrbExtractor extractor(OrbOptions{});
   const cv::Mat image = textured_image();
   const cv::Rect half(0, 0, kWidth / 2, kHeight);
-  cv::Mat spare(image.size(), CV_8U, cv::Scalar(0));
-  spare(half) = 255;
+  cv::Mat fallback(image.size(), CV_8U, cv::Scalar(0));
+  fallback(half) = 255;
   EXPECT_GT(inside(extractor.extract(image), half), 350);
-  const Features features = extractor.extract(image, spare);
+  const Features features = extractor.extract(image, fallback);
   EXPECT_EQ(features.size(), 1000U);
   // A pixel of the coarsest level is 3.6 px wide.
   EXPECT_EQ(inside(features, {0, 0, kWidth / 2 - 4, kHeight}), 0);
@@ -228,9 +228,9 @@ TEST(OrbExtractor, MakesUpForTheSpareArea) {
   OrbExtractor extractor(OrbOptions{});
   const cv::Mat image = textured_image();
   const cv::Rect half(0, 0, kWidth / 2, kHeight);
-  cv::Mat spare(image.size(), CV_8U, cv::Scalar(0));
-  spare(half) = 255;
-  const Features features = extractor.extract(image, spare, 1.5);
+  cv::Mat fallback(image.size(), CV_8U, cv::Scalar(0));
+  fallback(half) = 255;
+  const Features features = extractor.extract(image, fallback, 1.5);
   EXPECT_NEAR(features.size(), 1500, 4);  // rounded on each level
   EXPECT_EQ(inside(features, {0, 0, kWidth / 2 - 4, kHeight}), 0);
 }
@@ -240,16 +240,16 @@ TEST(OrbExtractor, TakesSpareFeaturesWhereOthersAreTooFew) {
   cv::Mat image = textured_image();
   const cv::Rect half(0, 0, kWidth / 2, kHeight);
   image(cv::Rect(kWidth / 2, 0, kWidth / 2, kHeight - 100)) = 128;
-  cv::Mat spare(image.size(), CV_8U, cv::Scalar(0));
-  spare(half) = 255;
-  const Features without = extractor.extract(image), features = extractor.extract(image, spare);
+  cv::Mat fallback(image.size(), CV_8U, cv::Scalar(0));
+  fallback(half) = 255;
+  const Features without = extractor.extract(image), features = extractor.extract(image, fallback);
   const int others = static_cast<int>(without.size()) - inside(without, half);
   EXPECT_GE(inside(features, half), 200);
   EXPECT_GT(static_cast<int>(features.size()) - inside(features, half), 3 * others / 2);
   EXPECT_EQ(extractor.extract(image, cv::Mat(image.size(), CV_8U, cv::Scalar(1))).keypoints.size(),
             without.keypoints.size());
-  // Asked for more, the spare area gives no more.
-  EXPECT_EQ(inside(extractor.extract(image, spare, 2.0), half), inside(features, half));
+  // Asked for more, the fallback area gives no more.
+  EXPECT_EQ(inside(extractor.extract(image, fallback, 2.0), half), inside(features, half));
 }
 
 TEST(OrbExtractor, StaysInsideImagesOfAllSizes) {

@@ -1,4 +1,4 @@
-// Key frames of other trackers are not for this plugin.
+// This plugin needs key frames with ORB features; those of other trackers are refused.
 #pragma once
 
 #include "stillpoint/contracts/sparse_map.hpp"

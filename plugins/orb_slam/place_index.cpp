@@ -10,9 +10,9 @@ namespace {
 
 constexpr std::size_t kDescriptors = 500;  // of a key frame
 constexpr int kMaxWordDistance = 40;       // Hamming
-// Words that more descriptors have tell little and would cost nearly all of the time.
-constexpr double kMostEntries = 24;
-constexpr double kMostEntriesPerKeyFrame = 0.01;
+// Words with more entries are not distinctive and would take nearly all of the time.
+constexpr double kMaxEntries = 24;
+constexpr double kMaxEntriesPerKeyFrame = 0.01;
 
 }  // namespace
 
@@ -37,7 +37,7 @@ std::vector<Descriptor> place_descriptors(const KeyFrame& keyframe) {
 PlaceIndex::PlaceIndex() : buckets_(static_cast<std::size_t>(kTables) << 16) {}
 
 void PlaceIndex::update(const SparseMap& map, std::size_t most) {
-  drop_gone(map);
+  purge_removed(map);
   while (present_.size() < map.keyframe_id_end() && most > 0) {
     const KeyFrame* keyframe = map.keyframe(static_cast<KeyFrameId>(present_.size()));
     present_.push_back(keyframe != nullptr);
@@ -55,8 +55,8 @@ void PlaceIndex::add(const KeyFrame& keyframe) {
   }
 }
 
-// What a removed key frame has left is swept out only when it is much: sweeping visits everything.
-void PlaceIndex::drop_gone(const SparseMap& map) {
+// Entries of removed key frames stay until they may be half of all: removal rebuilds the index.
+void PlaceIndex::purge_removed(const SparseMap& map) {
   for (KeyFrameId id = 0; id < present_.size(); ++id) {
     if (!present_[id] || map.keyframe(id)) continue;
     present_[id] = false;
@@ -78,7 +78,7 @@ std::vector<PlaceVote> PlaceIndex::query(std::span<const Descriptor> view) const
   std::vector<std::size_t> voted(present_.size());  // by which descriptor last, from 1
   std::vector<KeyFrameId> shown_by;
   const double all = static_cast<double>(keyframe_count_) + 1;
-  const double most = kMostEntries + kMostEntriesPerKeyFrame * all;
+  const double most = kMaxEntries + kMaxEntriesPerKeyFrame * all;
   for (std::size_t i = 0; i < view.size(); ++i) {
     shown_by.clear();
     for (int table = 0; table < kTables; ++table) {
@@ -103,8 +103,7 @@ std::vector<PlaceVote> PlaceIndex::query(std::span<const Descriptor> view) const
   return votes;
 }
 
-// Tests of a descriptor that follow each other have nothing in common: any 16 are as good as
-// others.
+// Consecutive tests of a descriptor are independent, so that any 16 bits serve as a word.
 PlaceIndex::Word PlaceIndex::word(const Descriptor& descriptor, int table) {
   const int first = table * 256 / kTables;
   return static_cast<Word>(descriptor[static_cast<std::size_t>(first) / 64] >> (first % 64));

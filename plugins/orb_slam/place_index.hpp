@@ -1,4 +1,4 @@
-// Which key frames look like a view, without a vocabulary: a word is a run of 16 bits of a
+// Place recognition without a trained vocabulary: a word is a run of 16 bits of a
 // descriptor, as in multi-index hashing (Norouzi, Punjani and Fleet, CVPR 2012). Descriptors that
 // share a word are compared in full, so that a vote is a likely correspondence.
 #pragma once
@@ -21,7 +21,7 @@ struct PlaceVote {
   double score = 0.0;
 };
 
-/// The descriptors by which a place is known: of the strongest features, as far as they are usable.
+/// The descriptors that represent a place: those of the strongest usable features.
 std::vector<Descriptor> place_descriptors(const Features& features, const FeatureFilter& usable);
 /// Those of a key frame: of features on landmarks.
 std::vector<Descriptor> place_descriptors(const KeyFrame& keyframe);
@@ -31,8 +31,8 @@ class PlaceIndex {
  public:
   PlaceIndex();
 
-  /// Takes in key frames that `map` has and the index has not, at most so many, the oldest first,
-  /// and drops those that are gone.
+  /// Adds key frames of `map` that are not in the index, at most `most`, the oldest first, and
+  /// drops those that were removed from the map.
   void update(const SparseMap& map, std::size_t most = std::numeric_limits<std::size_t>::max());
 
   /// Key frames with votes, best first; equal scores by id.
@@ -49,7 +49,7 @@ class PlaceIndex {
   static constexpr int kTables = 8;
 
   void add(const KeyFrame& keyframe);
-  void drop_gone(const SparseMap& map);
+  void purge_removed(const SparseMap& map);
   void post(std::uint32_t entry);
   static Word word(const Descriptor& descriptor, int table);
   std::vector<std::uint32_t>& bucket(int table, Word word) {

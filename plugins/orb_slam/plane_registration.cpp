@@ -9,9 +9,9 @@ namespace {
 
 constexpr int kStride = 2;             // every other patch of every other row
 constexpr float kMinCosine = 0.87F;    // between normals: 30 degrees
-constexpr float kModelSigma = 0.004F;  // metres: walls are not flat, images not quite registered
+constexpr float kModelSigma = 0.004F;  // metres: imperfect planarity and depth registration
 constexpr float kBounds = 3.0F;        // standard deviations
-constexpr double kNoiseMargin = 2.0;   // times what the noise of normals alone would seem to know
+constexpr double kNoiseMargin = 2.0;   // times the spurious information from the noise of normals
 
 using Vector6f = Eigen::Matrix<float, 6, 1>;
 
@@ -46,7 +46,7 @@ void add(const DepthView& current, const PlanePatch& patch, const Other& other,
   const float own = current.distance_sigma(patch), theirs = other.view->distance_sigma(plane);
   const float variance = own * own + theirs * theirs + kModelSigma * kModelSigma;
   if (std::abs(off) > std::max(reach, kBounds * std::sqrt(variance))) return;
-  ++result.fitting;
+  ++result.inlier_count;
 
   const float trust = patch.weight * plane.weight;
   const float robust = 1.0F / (1.0F + off * off / (kBounds * kBounds * variance));  // Cauchy
@@ -64,9 +64,9 @@ void add(const DepthView& current, const PlanePatch& patch, const Other& other,
   sums.depth += information * patch.point.z();
 }
 
-// Keeps the directions that the surfaces hold. Rotations are compared with translations by what
-// they do at the mean depth.
-void keep_held_directions(Sums& sums) {
+// Solution remapping: keeps the directions that the surfaces constrain. Rotations are compared with
+// translations by the displacement that they cause at the mean depth.
+void remap_degenerate_directions(Sums& sums) {
   Vector6d scale = Vector6d::Ones();
   scale.tail<3>().setConstant(sums.information / std::max(sums.depth, 1e-9));
   const Matrix6d scaled = scale.asDiagonal() * sums.hessian * scale.asDiagonal();
@@ -105,8 +105,8 @@ PlaneRegistration register_planes(const DepthView& current, std::span<const Plac
     }
   }
   if (sums.information <= 0) return result;
-  keep_held_directions(sums);
-  const double share = std::min(1.0, kMostPatches / sums.weight);
+  remap_degenerate_directions(sums);
+  const double share = std::min(1.0, kMaxPatches / sums.weight);
   result.cost = {.linearised_at = camera_from_world,
                  .hessian = share * sums.hessian,
                  .gradient = share * sums.gradient,

@@ -112,10 +112,10 @@ TEST(PlaneRegistration, WhatMovesDoesNotPull) {
 
 TEST(PlaneRegistration, NeighboursCountTogether) {
   const PlaneRegistration corner = register_at_rest(kCorner, 0.0);
-  EXPECT_GT(corner.fitting, 2 * kMostPatches);
+  EXPECT_GT(corner.inlier_count, 2 * kMaxPatches);
   // Were all patches like the best there are, they would know no more than this.
   const double best = 1.0 / (0.004 * 0.004);
-  EXPECT_LT((corner.cost.hessian.topLeftCorner<3, 3>().trace()), kMostPatches * best);
+  EXPECT_LT((corner.cost.hessian.topLeftCorner<3, 3>().trace()), kMaxPatches * best);
 }
 
 TEST(PlaneRegistration, AnotherPlaceDoesNotAgree) {

@@ -45,7 +45,7 @@ struct PoseState {
   Eigen::Vector3d translation;
 };
 
-// The pose of b in a, as it is and as it was measured.
+// Relative pose error of an edge: estimated against measured pose of b in a.
 class EdgeError {
  public:
   /// `covariance` is that of b in its own frame, beside the usual one of an edge.

@@ -1,4 +1,4 @@
-// Spreads the error that a loop reveals over the key frames (ORB-SLAM, section VII-D).
+// Pose graph optimisation: distributes the loop error over the key frames (ORB-SLAM, VII-D).
 #pragma once
 
 #include <span>
@@ -10,7 +10,7 @@
 
 namespace stillpoint::orb_slam {
 
-/// How one key frame lies to another.
+/// Relative pose of two key frames.
 struct PoseEdge {
   KeyFrameId a = kNoId, b = kNoId;
   Pose a_from_b = Pose::Identity();

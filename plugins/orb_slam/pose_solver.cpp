@@ -8,8 +8,8 @@ namespace stillpoint::orb_slam {
 namespace {
 
 constexpr int kRounds = 4;
-constexpr int kTermRounds = 6;    // with a further term, whose minimum moves with its linearisation
-constexpr int kRobustRounds = 2;  // later ones trust the outlier decision alone
+constexpr int kTermRounds = 6;    // with a further term, which is linearised anew in each
+constexpr int kRobustRounds = 2;  // with the Huber kernel; later ones rely on outlier rejection
 constexpr int kIterationsPerRound = 6;
 constexpr double kConverged = 1e-6;  // metres and radians
 constexpr int kMinObservations = 6;
@@ -103,8 +103,8 @@ class Solver {
     solution_.temporary_information = current.temporary;
   }
 
-  // A term may leave directions free that mix the axes; only where all axes are damped alike does a
-  // step not go along them.
+  // Directions that a term leaves unconstrained need not be axis-aligned: only isotropic damping
+  // keeps the step from moving along them.
   void damp(Matrix6d& hessian, double lambda) const {
     if (term_)
       hessian.diagonal().array() += 1e-2 * lambda * hessian.diagonal().mean();
@@ -153,7 +153,7 @@ class Solver {
     n.gradient.tail<3>() += p.cross(gradient);
   }
 
-  // Whether the outliers are others than before.
+  // Marks inliers by the chi-square test; returns whether any has changed.
   bool classify() {
     bool changed = false;
     solution_.inliers = 0;

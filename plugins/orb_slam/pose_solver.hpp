@@ -35,7 +35,7 @@ struct QuadraticCost {
 };
 /// Both must be linearised at the same pose.
 QuadraticCost operator+(const QuadraticCost& a, const QuadraticCost& b);
-/// What else holds the pose, at a given camera_from_world; asked for once per round, from 0.
+/// Additional cost on the pose, linearised at camera_from_world; evaluated once per round, from 0.
 using PoseTerm = std::function<QuadraticCost(const Pose& camera_from_world, int round)>;
 
 struct PoseSolution {
@@ -48,13 +48,13 @@ struct PoseSolution {
 };
 
 /// Levenberg–Marquardt on the six degrees of freedom of the pose over reprojection and inverse
-/// depth, in rounds: the first ones with a Huber kernel, each followed by a new decision on who is
-/// an outlier by the 95 % bounds of the chi-square distribution. The noise of a structured-light
+/// depth, in rounds: the first ones with a Huber kernel, each followed by outlier rejection with
+/// the 95 % bounds of the chi-square distribution. The noise of a structured-light
 /// sensor is constant in inverse depth, which keeps that term close to linear.
 PoseSolution solve_pose(std::span<const PoseObservation> observations, const Camera& camera,
                         const Pose& camera_from_world_guess);
 
-/// The same with a further term, which holds the pose also where observations are too few.
+/// The same with a further term, which constrains the pose also where observations are too few.
 PoseSolution solve_pose(std::span<const PoseObservation> observations, const Camera& camera,
                         const Pose& camera_from_world_guess, const PoseTerm& term);
 

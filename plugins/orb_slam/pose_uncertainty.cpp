@@ -5,8 +5,8 @@
 namespace stillpoint::orb_slam {
 namespace {
 
-constexpr double kMostMetres = 0.010;   // standard deviation
-constexpr double kMostRadians = 0.010;  // the same
+constexpr double kMaxSigmaMetres = 0.010;   // standard deviation
+constexpr double kMaxSigmaRadians = 0.010;  // the same
 
 }  // namespace
 
@@ -20,7 +20,7 @@ PoseUncertainty uncertainty_of(const Matrix6d& information) {
 
 bool is_well_constrained(const Matrix6d& information) {
   const PoseUncertainty uncertainty = uncertainty_of(information);
-  return uncertainty.metres() < kMostMetres && uncertainty.radians() < kMostRadians;
+  return uncertainty.metres() < kMaxSigmaMetres && uncertainty.radians() < kMaxSigmaRadians;
 }
 
 }  // namespace stillpoint::orb_slam

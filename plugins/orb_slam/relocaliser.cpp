@@ -8,8 +8,8 @@ namespace stillpoint::orb_slam {
 namespace {
 
 constexpr std::size_t kCandidates = 5;  // per frame, two of them around the last known place
-constexpr std::size_t kNewPlaces = 50;  // taken into the index per frame; 15 ms
-constexpr int kMinRelocalised = 30;
+constexpr std::size_t kNewPlaces = 50;  // key frames added to the index per frame; 15 ms
+constexpr int kMinRelocalisationInliers = 30;
 
 }  // namespace
 
@@ -30,7 +30,8 @@ std::vector<KeyFrameId> Relocaliser::candidates(const ObservedFrame& frame, cons
 
 bool Relocaliser::find(ObservedFrame& frame, const SparseMap& map) {
   for (const KeyFrameId id : candidates(frame, map)) {
-    if (locate_by_appearance(frame, targets_of(*map.keyframe(id), map), map) < kMinRelocalised)
+    if (locate_by_appearance(frame, targets_of(*map.keyframe(id), map), map) <
+        kMinRelocalisationInliers)
       continue;
     frame.reference = id;
     return true;

@@ -1,4 +1,4 @@
-// Finds a lost camera again among earlier key frames.
+// Relocalisation of a lost camera at earlier key frames.
 #pragma once
 
 #include <vector>

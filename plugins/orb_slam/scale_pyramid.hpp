@@ -26,7 +26,7 @@ class ScalePyramid {
   /// Standard deviation of a keypoint's position in px of the full image.
   double pixel_sigma(int level) const { return scale_[level]; }
 
-  /// Level at which a landmark appears from `distance` metres, as it was described at.
+  /// Level at which a landmark should be detected from `distance` metres.
   int predict_level(const Landmark& landmark, double distance) const {
     const double level = std::log(landmark.max_distance / distance) / log_factor_;
     return std::clamp(static_cast<int>(std::lround(level)), 0, levels_ - 1);

@@ -5,13 +5,14 @@
 namespace stillpoint::orb_slam {
 namespace {
 
-constexpr float kFound = 0.2F;       // log-odds of one frame, full weight
-constexpr float kLookedPast = 0.5F;  // log-odds of one frame
-constexpr double kBehind = 0.2;      // relative: what is seen is this much farther
-constexpr int kEdgeRadius = 2;       // px; beside a depth edge free space proves nothing
+constexpr float kInlierLogOdds = 0.2F;  // log-odds of being static per inlier match of full weight
+constexpr float kViolationLogOdds = 0.5F;  // log-odds against it per violation
+constexpr double kFreeSpaceMargin = 0.2;   // relative: measured depth beyond the landmark
+constexpr int kEdgeRadius = 2;  // px; free space beside a depth discontinuity proves nothing
 
-/// Whether everything around the landmark's place in the image is farther than the landmark.
-bool looked_past(const Frame& frame, const Eigen::Vector3d& in_camera) {
+/// Whether all depth around the landmark's projection is farther than the landmark: it would lie in
+/// free space.
+bool violates_free_space(const Frame& frame, const Eigen::Vector3d& in_camera) {
   const Eigen::Vector2d at = frame.camera->project(in_camera);
   const cv::Point pixel(cvRound(at.x()), cvRound(at.y()));
   const cv::Mat& depth = frame.depth;
@@ -21,7 +22,7 @@ bool looked_past(const Frame& frame, const Eigen::Vector3d& in_camera) {
   for (int y = pixel.y - kEdgeRadius; y <= pixel.y + kEdgeRadius; ++y) {
     const auto* row = depth.ptr<float>(y);
     for (int x = pixel.x - kEdgeRadius; x <= pixel.x + kEdgeRadius; ++x)
-      if (row[x] <= (1 + kBehind) * in_camera.z()) return false;
+      if (row[x] <= (1 + kFreeSpaceMargin) * in_camera.z()) return false;
   }
   return true;
 }
@@ -37,15 +38,15 @@ void add_static_evidence(const ObservedFrame& frame, const SparseMap& map,
     matched[id] = true;
     LandmarkEvidence& e = evidence[id];
     ++e.found;
-    e.static_log_odds += kFound * static_cast<float>(frame.track_weights[i]) / 255;
+    e.static_log_odds += kInlierLogOdds * static_cast<float>(frame.track_weights[i]) / 255;
   }
   const Pose camera_from_world = frame.world_from_camera.inverse();
   for (const LandmarkId id : visible) {
     LandmarkEvidence& e = evidence[id];
     ++e.visible;
     if (matched[id]) continue;
-    if (looked_past(*frame.frame, camera_from_world * map.landmark(id)->position_in_world))
-      e.static_log_odds -= kLookedPast;
+    if (violates_free_space(*frame.frame, camera_from_world * map.landmark(id)->position_in_world))
+      e.static_log_odds -= kViolationLogOdds;
   }
 }
 

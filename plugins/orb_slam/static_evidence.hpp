@@ -1,5 +1,5 @@
-// What a frame tells about each landmark in view: that it still stands where it was, or that it
-// does not.
+// Evidence of a frame on whether the landmarks in view are still static: inlier matches for it,
+// free-space violations against it.
 #pragma once
 
 #include <span>
@@ -11,14 +11,14 @@
 
 namespace stillpoint::orb_slam {
 
-/// Landmarks with less than this are taken for things that moved, and removed.
+/// Landmarks with lower log-odds of being static are taken for dynamic and removed.
 constexpr float kMovedLogOdds = -3.0F;
 
 using EvidenceByLandmark = std::unordered_map<LandmarkId, LandmarkEvidence>;
 
-/// For the landmarks that should be visible in a frame whose pose is known. One that fits the pose
+/// For the landmarks that should be visible in a frame whose pose is known. An inlier
 /// counts for static, by the weight of its feature; one that lies in front of the measured depth,
-/// in free space, counts against it. What is occluded tells nothing.
+/// in free space, counts against it. Occluded landmarks give no evidence.
 void add_static_evidence(const ObservedFrame& frame, const SparseMap& map,
                          std::span<const LandmarkId> visible, EvidenceByLandmark& evidence);
 

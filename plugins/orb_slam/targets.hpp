@@ -1,5 +1,5 @@
-// Points of known position that another image may show: the common currency of tracking from frame
-// to frame and of finding a lost camera.
+// Points of known position that may be matched in another image, for tracking from frame to frame,
+// relocalisation and loop closing.
 #pragma once
 
 #include <span>
@@ -21,7 +21,7 @@ struct Target {
 std::vector<Target> targets_of(const KeyFrame& keyframe, const SparseMap& map);
 
 /// The landmarks that a tracked frame sees and, for its other features with depth and full weight,
-/// temporary points: they carry tracking over to views that the map does not know yet.
+/// temporary points: with them tracking continues in views that are not mapped yet.
 std::vector<Target> targets_of(const ObservedFrame& frame, const SparseMap& map);
 
 /// Searches `window` px (at the target's level) around the places where a camera would see the
@@ -30,7 +30,7 @@ std::vector<Target> targets_of(const ObservedFrame& frame, const SparseMap& map)
 int match_projected(ObservedFrame& frame, std::span<const Target> targets,
                     const Pose& camera_from_world, double window, int levels);
 
-/// Gives matches, whose ids are indices of targets, to the frame; forgets earlier ones.
+/// Replaces the frame's matches by these, whose ids are indices of targets.
 void assign_targets(ObservedFrame& frame, std::span<const Target> targets,
                     std::span<const Match> matches);
 

@@ -15,10 +15,10 @@ namespace {
 constexpr int kMinMotionMatches = 20;  // fewer: search again in a wider window
 constexpr int kMinMotionInliers = 20;  // fewer, or a smaller share: do not trust the prediction
 constexpr double kMinMotionShare = 0.5;
-// A picture with so many features, hardly any of them of the last frame's, is of another place;
-// unless texture only begins again.
+// An image with so many features, of which so small a share matches the last frame, shows another
+// place; unless the last frame, held by depth, had no texture.
 constexpr int kManyFeatures = 500;
-constexpr double kMinShown = 0.1;
+constexpr double kMinMatchedShare = 0.1;
 
 std::vector<TrackedFeature> describe(const ObservedFrame& frame) {
   std::vector<TrackedFeature> tracked(frame.features->size());
@@ -50,7 +50,7 @@ PreparedFramePtr OrbTracker::prepare(FramePtr frame) {
   return std::make_unique<PreparedOrbFrame>(observe(std::move(frame), std::move(features)));
 }
 
-// Near moving things, new landmarks may lie on one that was not detected.
+// While dynamic objects are around, new landmarks may lie on an undetected one.
 int OrbTracker::solve(const SparseMap& map, const PoseTerm& term) {
   const double probation = moving_area_.recent(current_.frame->time) ? options_.probation : 0.0;
   return solve_pose(current_, map, probation, *first_keyframe_, term);
@@ -95,7 +95,7 @@ bool OrbTracker::start() {
   return points >= options_.min_start_points || surfaces_suffice();
 }
 
-// Whether the surfaces in view alone would hold a camera.
+// Whether the surfaces in view alone would constrain a pose.
 bool OrbTracker::surfaces_suffice() {
   return options_.hold_by_depth && is_well_constrained(depth_hold_.information_of_view());
 }
@@ -139,8 +139,8 @@ bool OrbTracker::track_with_motion(const SparseMap& map) {
   return inliers >= kMinMotionInliers && inliers >= kMinMotionShare * matches;
 }
 
-// Independent of any prediction, which it forgets: for fast turns, and where the prediction led to
-// a false minimum.
+// Independent of any prediction, which it forgets: for fast rotation, and where the prediction led
+// to a local minimum.
 bool OrbTracker::track_by_appearance(const SparseMap& map) {
   prediction_.reset();
   if (locate_by_appearance(current_, targets_of(last_, map), map) >= options_.min_inliers)
@@ -161,22 +161,23 @@ bool OrbTracker::track_local_map(const SparseMap& map) {
     if (!is_well_constrained(current_.information)) hold_by_depth(map);
     return true;
   }
-  // A view that the map hardly knows: carried by what the last frame measured, it becomes a key
-  // frame and the map knows it from then on.
+  // A view with hardly any landmarks: tracked on the points of the last frame, it becomes a key
+  // frame, whose landmarks enter the map.
   current_.temporary = temporary;
   current_.world_from_camera = prior;
   return current_.reference != kNoId && solve(map) >= options_.min_bridge_points;
 }
 
-// Where neither the last frame nor the map has enough landmarks for a pose: from the prediction on,
-// by surfaces and whatever landmarks there are.
+// Where neither the last frame nor the map gives enough inliers: starts from the prediction and
+// uses surfaces and whatever landmarks match.
 bool OrbTracker::track_with_depth(const SparseMap& map) {
   if (!options_.hold_by_depth || !last_.frame) return false;
   predict_pose();
   const int matches = match_last_frame(map);
   const auto usable = std::ranges::count_if(
       current_.track_weights, [](auto weight) { return weight >= ObservedFrame::kMinWeight; });
-  if (!last_held_ && usable >= kManyFeatures && matches < kMinShown * static_cast<double>(usable))
+  if (!last_held_ && usable >= kManyFeatures &&
+      matches < kMinMatchedShare * static_cast<double>(usable))
     return false;
   if (!hold_by_depth(map)) return false;
   current_.drop_outliers();
@@ -186,7 +187,8 @@ bool OrbTracker::track_with_depth(const SparseMap& map) {
   return hold_by_depth(map);
 }
 
-// Landmarks that come into view again after there were none: the camera may have slid meanwhile.
+// Landmarks that come into view again after there were none: the pose may have drifted meanwhile,
+// hence the wider window.
 void OrbTracker::match_neighbour(const SparseMap& map) {
   const KeyFrame* neighbour = map.keyframe(current_.reference);
   if (!neighbour) return;
@@ -200,7 +202,7 @@ bool OrbTracker::hold_by_depth(const SparseMap& map) {
       prediction_ ? motion_prior(*prediction_, seconds_since_last()) : QuadraticCost();
   if (!depth_hold_.hold(current_, map, motion, [&](const PoseTerm& term) { solve(map, term); }))
     return false;
-  inliers_ = current_.fitting();
+  inliers_ = current_.inlier_count();
   return true;
 }
 

@@ -57,7 +57,7 @@ class OrbTracker final : public Tracker {
   ObservedFrame current_;
   ObservedFrame last_;                // the last one with a pose
   KeyFrameId last_keyframe_ = kNoId;  // id of `last_`, when it became one
-  std::optional<Pose> prediction_;    // of this frame's pose, unless it proved wrong
+  std::optional<Pose> prediction_;    // of this frame's pose; none where it failed
   ConstantVelocity velocity_;
   TrackState state_ = TrackState::kWaiting;
   int inliers_ = 0;       // landmarks

@@ -7,10 +7,10 @@ void TrackerOptions::visit(OptionVisitor& v) {
   v("min_start_points", min_start_points,
     {.min = 20, .help = "features with depth that the first key frame needs"});
   v("min_inliers", min_inliers,
-    {.min = 6, .help = "with fewer fitting landmarks tracking is lost"});
+    {.min = 6, .help = "with fewer landmarks, points of the last frame or depth must help"});
   v("min_bridge_points", min_bridge_points,
     {.min = 6,
-     .help = "points that must fit where the map is not enough and the last frame's depth helps"});
+     .help = "inliers needed where landmarks are too few and points of the last frame are added"});
   v("local_keyframes", local_keyframes,
     {.min = 1, .help = "key frames whose landmarks are searched for in a frame"});
   v("motion_window", motion_window,
@@ -23,14 +23,14 @@ void TrackerOptions::visit(OptionVisitor& v) {
     {.min = 0,
      .max = 60,
      .unit = "s",
-     .help = "until a new landmark counts in full for the pose, where something about may move; 0: "
-             "at once"});
+     .help = "age from which a new landmark has full weight in the pose, while dynamic objects are "
+             "around; 0: at once"});
   v("max_feature_factor", max_feature_factor,
     {.min = 1,
      .max = 4,
-     .help = "times `features`, to make up for a part of the image that cannot be mapped"});
+     .help = "times `features` at most, to make up for masked parts of the image"});
   v("hold_by_depth", hold_by_depth,
-    {.help = "where landmarks do not hold the pose, surfaces in depth do"});
+    {.help = "registers depth where landmarks do not constrain the pose"});
   keyframe.visit(v);
 }
 

@@ -1,4 +1,4 @@
-// What a pipeline file may say of the tracker; meanings and ranges are in visit().
+// Options of the tracker; meanings and ranges are in visit().
 #pragma once
 
 #include "orb_slam/keyframe_policy.hpp"

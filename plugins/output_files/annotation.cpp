@@ -10,18 +10,18 @@ namespace {
 
 using Use = TrackedFeature::Use;
 
-// Blue, green, red; readable to people who see few colours, after Okabe and Ito (2008).
+// BGR. Those of features and evidence are safe for colour blindness (Okabe and Ito, 2008).
 const cv::Scalar kInlier(115, 158, 0);
 const cv::Scalar kOutlier(66, 228, 240);
 const cv::Scalar kMoving(0, 94, 213);
 const cv::Scalar kUnmatched(170, 170, 170);
 const cv::Scalar kMovingMask(40, 60, 255);
 const cv::Scalar kStaticMask(235, 160, 60);
-const cv::Scalar kCameIn(167, 121, 204);
-const cv::Scalar kStands(233, 180, 86);
+const cv::Scalar kFreeSpaceViolation(167, 121, 204);
+const cv::Scalar kConsistent(233, 180, 86);
 const cv::Scalar kText(255, 255, 255);
 
-constexpr double kCertain = 4;  // log-odds of the map check
+constexpr double kCertainLogOdds = 4;  // log-odds of the map check that are shown as static
 
 void tint(cv::Mat& picture, const cv::Mat& mask, const cv::Scalar& colour) {
   cv::Mat tinted;
@@ -32,7 +32,7 @@ void tint(cv::Mat& picture, const cv::Mat& mask, const cv::Scalar& colour) {
   cv::drawContours(picture, contours, -1, colour, 1, cv::LINE_AA);
 }
 
-// Labelled things, red where they move; and what is neither labelled nor trusted.
+// Labelled objects in blue; pixels excluded from tracking in red, labelled or not.
 void draw_mask(cv::Mat& picture, const FrameReport& report) {
   const cv::Mat& labels = report.segmentation->labels;
   const cv::Mat& weights = report.weights->track;
@@ -44,13 +44,13 @@ void draw_mask(cv::Mat& picture, const FrameReport& report) {
   tint(picture, unused, kMovingMask);
 }
 
-// What has come in, and what stands where it stood.
+// Free-space violations, and surfaces that are consistent with earlier frames.
 void draw_evidence(cv::Mat& picture, const cv::Mat& log_odds) {
   if (log_odds.empty()) return;
   cv::Mat pixels;
   cv::resize(log_odds, pixels, picture.size(), 0, 0, cv::INTER_NEAREST);
-  tint(picture, pixels > 0, kCameIn);
-  tint(picture, pixels <= -kCertain, kStands);
+  tint(picture, pixels > 0, kFreeSpaceViolation);
+  tint(picture, pixels <= -kCertainLogOdds, kConsistent);
 }
 
 void draw_moving(cv::Mat& picture, const MovingPoints& moving) {

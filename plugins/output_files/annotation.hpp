@@ -1,4 +1,4 @@
-// Draws on a frame what the pipeline made of it.
+// Draws the results of the pipeline on a frame.
 #pragma once
 
 #include <opencv2/core/mat.hpp>

@@ -14,17 +14,17 @@ namespace {
 
 namespace fs = std::filesystem;
 
-bool is_picture_of_a_run(const fs::path& file) {
+bool is_output_picture(const fs::path& file) {
   const std::string name = file.stem().string();
   return (file.extension() == ".jpg" || file.extension() == ".png") && name.size() >= 6 &&
          std::all_of(name.begin(), name.end(), [](unsigned char c) { return std::isdigit(c); });
 }
 
-// Pictures of an earlier run would stand among those of this one.
+// Otherwise pictures of an earlier run would remain among those of this one.
 void remove_pictures(const fs::path& folder) {
   std::vector<fs::path> pictures;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder))
-    if (is_picture_of_a_run(entry.path())) pictures.push_back(entry.path());
+    if (is_output_picture(entry.path())) pictures.push_back(entry.path());
   for (const fs::path& picture : pictures) fs::remove(picture);
 }
 

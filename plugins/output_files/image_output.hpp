@@ -1,4 +1,4 @@
-// images/: pictures of what the pipeline saw, as in the rows of the paper's Fig. 5.
+// images/: annotated frames, as in the rows of the paper's Fig. 5.
 #pragma once
 
 #include <filesystem>
@@ -19,15 +19,15 @@ class ImageOutput final : public Output {
 
     void visit(OptionVisitor& v) {
       v("every", every,
-        {.min = 1, .max = 1e6, .unit = "frames", .help = "one picture per so many"});
+        {.min = 1, .max = 1e6, .unit = "frames", .help = "write one picture per so many"});
       v.choice("format", format, {{"png", Format::kPng}, {"jpeg", Format::kJpeg}},
                {.help = "of the files"});
       v("features", parts.features,
-        {.help = "features: green fits the pose, yellow does not, orange moves, grey unmatched"});
+        {.help = "features: inliers green, outliers yellow, moving orange, unmatched grey"});
       v("moving", parts.moving, {.help = "moving points, with a line from where they were"});
-      v("mask", parts.mask, {.help = "labelled things in blue, red what is not tracked on"});
+      v("mask", parts.mask, {.help = "labelled objects blue, pixels excluded from tracking red"});
       v("evidence", parts.evidence,
-        {.help = "of the map check: purple what has come in, light blue what stands still"});
+        {.help = "of the map check: free-space violations purple, static surfaces light blue"});
       v("text", parts.text, {.help = "a line with the state of tracking"});
       v("folder", folder, {.help = "name of the folder in the run folder"});
     }
@@ -38,7 +38,7 @@ class ImageOutput final : public Output {
  private:
   Options options_;
   std::filesystem::path folder_;
-  bool begun_ = false;  // until then the folder is an earlier run's
+  bool begun_ = false;  // whether pictures of an earlier run have been removed
 };
 
 }  // namespace stillpoint::output_files

@@ -15,7 +15,7 @@ STILLPOINT_PLUGIN(output_files, "0.1.0",
                   provide<Output, stillpoint::output_files::KeyFramesOutput>(
                       "keyframes", "keyframes.txt: poses of the key frames, TUM format"),
                   provide<Output, stillpoint::output_files::TimingsOutput>(
-                      "timings", "timings.csv: what every stage took for every frame"),
+                      "timings", "timings.csv: time of every stage for every frame"),
                   provide<Output, stillpoint::output_files::SummaryOutput>(
                       "summary", "summary.json: the figures of the run"),
                   provide<Output, stillpoint::output_files::ImageOutput>(

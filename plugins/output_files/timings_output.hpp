@@ -1,4 +1,4 @@
-// timings.csv: what every stage took for every frame.
+// timings.csv: wall and CPU time of every stage for every frame.
 #pragma once
 
 #include <span>

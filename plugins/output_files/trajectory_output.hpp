@@ -1,4 +1,4 @@
-// trajectory.txt: where the camera was.
+// trajectory.txt: the camera trajectory.
 #pragma once
 
 #include <filesystem>

@@ -7,11 +7,11 @@
 namespace stillpoint::propagator_flow_depth {
 namespace {
 
-constexpr float kBin = 0.05f;        // metres
-constexpr std::size_t kBins = 400;   // 20 m
-constexpr int kGap = 3;              // bins
-constexpr double kShare = 0.005;     // of the measurements that a bin needs to count
-constexpr std::size_t kFewest = 20;  // measurements
+constexpr float kBin = 0.05f;                 // metres
+constexpr std::size_t kBins = 400;            // 20 m
+constexpr int kGap = 3;                       // bins
+constexpr double kShare = 0.005;              // of the measurements that a bin needs to count
+constexpr std::size_t kMinMeasurements = 20;  // measurements
 
 using Histogram = std::array<int, kBins>;
 
@@ -22,7 +22,7 @@ std::size_t median_bin(const Histogram& histogram, int total) {
   return bin;
 }
 
-/// The last bin that hangs together with `start` in direction `step`.
+/// The last bin in direction `step` that is connected to `start` without a gap.
 std::size_t reach(const Histogram& histogram, std::size_t start, int step, double enough) {
   auto last = static_cast<int>(start);
   for (int bin = last + step; bin >= 0 && bin < static_cast<int>(kBins); bin += step) {
@@ -46,7 +46,7 @@ DepthLayer depth_layer(const cv::Mat& depth, const cv::Mat& mask) {
       ++total;
     }
   }
-  if (total < kFewest) return {};
+  if (total < kMinMeasurements) return {};
   const std::size_t middle = median_bin(histogram, static_cast<int>(total));
   const double enough = std::max(2.0, kShare * static_cast<double>(total));
   return {kBin * static_cast<float>(reach(histogram, middle, -1, enough)),

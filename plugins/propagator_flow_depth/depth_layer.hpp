@@ -1,4 +1,4 @@
-// The depths an object takes up.
+// The depth interval of an object.
 #pragma once
 
 #include <opencv2/core/mat.hpp>
@@ -18,8 +18,8 @@ struct DepthLayer {
   }
 };
 
-/// From the measurements under a mask (CV_8UC1, both of one size): those that hang together with
-/// the median, without gaps. What a mask wrongly has of the things behind is beyond such a gap.
+/// From the measurements under a mask (CV_8UC1, both of one size): the interval of depth around the
+/// median without gaps. Background that a mask wrongly covers lies behind such a gap.
 DepthLayer depth_layer(const cv::Mat& depth, const cv::Mat& mask);
 
 }  // namespace stillpoint::propagator_flow_depth

@@ -12,11 +12,11 @@
 namespace stillpoint::propagator_flow_depth {
 namespace {
 
-constexpr std::size_t kHistory = 16;  // views
-constexpr int kMostPoints = 120;      // of all objects together
-constexpr int kFewestPoints = 10;     // of each
-constexpr double kSupport = 0.25;     // share of measurements in the layer
-constexpr double kMissedShare = 0.2;  // of an object, to be followed by itself
+constexpr std::size_t kHistory = 16;     // views
+constexpr int kMaxPoints = 120;          // of all objects together
+constexpr int kMinPoints = 10;           // of each
+constexpr double kMinSupport = 0.25;     // share of measurements in the layer
+constexpr double kMinMissedShare = 0.2;  // of an object, for the missed part to become an object
 
 cv::Rect grown(cv::Rect box, int by, cv::Size image) {
   return cv::Rect(box.x - by, box.y - by, box.width + 2 * by, box.height + 2 * by) &
@@ -48,20 +48,20 @@ cv::Rect search_region(const FollowedObject& object, int margin, cv::Size image)
 }  // namespace
 
 void FlowDepthPropagator::Options::visit(OptionVisitor& v) {
-  v("points", points, {.min = kFewestPoints, .max = 500, .help = "followed on each object"});
+  v("points", points, {.min = kMinPoints, .max = 500, .help = "followed on each object"});
   v("max_flow_error", max_flow_error,
     {.min = 0.05,
      .max = 20,
      .unit = "px",
-     .help = "points that miss their start by more when followed backwards are dropped"});
+     .help = "forward-backward error above which a point is dropped"});
   v("min_points", min_points,
-    {.min = 0, .help = "fewer do not support an object that the network misses"});
+    {.min = 0, .help = "tracked points that an object needs while the network misses it"});
   v("keep_seconds", keep_seconds,
-    {.min = 0, .max = 60, .unit = "s", .help = "how long such an object is kept"});
+    {.min = 0, .max = 60, .unit = "s", .help = "how long a missed object is kept"});
   v("max_misses", max_misses,
-    {.min = 0, .help = "results in a row without the object that end it, too"});
+    {.min = 0, .help = "consecutive results that may miss an object; more remove it"});
   v("margin", margin,
-    {.min = 2, .max = 40, .unit = "px", .help = "how far outlines may move to an edge of depth"});
+    {.min = 2, .max = 40, .unit = "px", .help = "how far outlines may move to a depth edge"});
   v("depth_tolerance", depth_tolerance,
     {.min = 0.01,
      .max = 2,
@@ -79,12 +79,12 @@ Segmentation FlowDepthPropagator::propagate(const Segmentation& segmentation, co
     objects_.clear();
   }
   history_.push_back(std::move(view));
-  if (segmentation.frame != learnt_frame_) {
-    learnt_frame_ = segmentation.frame;
+  if (segmentation.frame != segmented_frame_) {
+    segmented_frame_ = segmentation.frame;
     known_ |= segmentation.known();
     if (segmentation.known()) learn(segmentation, view_of(from));
   }
-  bring_tracks_forward();
+  propagate_tracks();
   View& now = history_.back();
   for (FollowedObject& object : objects_) place(object, now);
   std::erase_if(objects_, [&](const FollowedObject& object) { return !supported(object, now); });
@@ -163,18 +163,18 @@ void FlowDepthPropagator::see(FollowedObject& object, const FoundObject& sightin
   object.seen_time = view.time;
   ++object.sightings;
   object.misses = 0;
-  // Large objects are worth more points, because they hide more.
-  object.points = std::clamp(static_cast<int>(kMostPoints * share), kFewestPoints, options_.points);
+  // Large objects get more points, because they occlude more.
+  object.points = std::clamp(static_cast<int>(kMaxPoints * share), kMinPoints, options_.points);
   set_reference(object, sighting.mask, sighting.box, view);
 }
 
-/// What was out of view could not be found.
+/// Objects out of view do not count as missed.
 void FlowDepthPropagator::miss(FollowedObject& object, const View& view) const {
   if (std::ranges::find(view.ids, object.id) != view.ids.end()) ++object.misses;
 }
 
-/// What the network had found of the object before and now leaves out, if it is more than a rim: a
-/// body seen from near by, of which it recognises the arm.
+/// The part of the object that the network no longer finds, if it is wider than the uncertainty of
+/// outlines: a person close to the camera of whom only an arm is recognised.
 std::optional<FollowedObject> FlowDepthPropagator::missed_part(const FollowedObject& object,
                                                                const View& before,
                                                                const cv::Mat& found,
@@ -183,9 +183,9 @@ std::optional<FollowedObject> FlowDepthPropagator::missed_part(const FollowedObj
   if (place == before.ids.end()) return std::nullopt;
   const cv::Mat carried = before.instances == static_cast<int>(place - before.ids.begin()) + 1;
   cv::Mat rest = carried & (found == 0);
-  const double enough = kMissedShare * cv::countNonZero(carried);
+  const double enough = kMinMissedShare * cv::countNonZero(carried);
   if (cv::countNonZero(rest) < enough) return std::nullopt;
-  rest = without_rims(rest, rim());
+  rest = remove_rims(rest, rim());
   if (cv::countNonZero(rest) < enough) return std::nullopt;
   FollowedObject part = object;
   part.id = next_id_++;
@@ -209,7 +209,7 @@ void FlowDepthPropagator::set_reference(FollowedObject& object, const cv::Mat& m
   object.tracked_frame = view.frame;
 }
 
-void FlowDepthPropagator::bring_tracks_forward() {
+void FlowDepthPropagator::propagate_tracks() {
   for (std::size_t i = 1; i < history_.size(); ++i) {
     std::vector<Track*> tracks;
     for (FollowedObject& object : objects_) {
@@ -242,24 +242,24 @@ void FlowDepthPropagator::place(FollowedObject& object, const View& view) const 
 
 bool FlowDepthPropagator::supported(const FollowedObject& object, const View& view) const {
   const bool recent = view.time - object.seen_time <= options_.keep_seconds;
-  if (object.seen_frame == learnt_frame_) {
-    if (recent) return true;  // else the network is slow, and the images have to bear it out
+  if (object.seen_frame == segmented_frame_) {
+    if (recent) return true;  // else the network is slow: flow and depth must confirm it
   } else if (!recent || object.misses > std::min(object.sightings, options_.max_misses)) {
     return false;
   }
   return object.tracks.size() >= static_cast<std::size_t>(options_.min_points) &&
-         object.support >= kSupport && !object.mask.empty() &&
+         object.support >= kMinSupport && !object.mask.empty() &&
          cv::countNonZero(object.mask) * kViewScale * kViewScale >= options_.min_object_pixels;
 }
 
 void FlowDepthPropagator::renew_reference(FollowedObject& object, const View& view) const {
-  const bool worn = 3 * object.tracks.size() < object.first_tracks;
-  if (!worn || object.mask.empty()) return;
+  const bool most_lost = 3 * object.tracks.size() < object.first_tracks;
+  if (!most_lost || object.mask.empty()) return;
   if (cv::countNonZero(object.mask) == 0) return;
   set_reference(object, object.mask, object.box, view);
 }
 
-/// The nearer object has what two of them claim.
+/// Where two masks overlap, the nearer object occludes the other.
 void FlowDepthPropagator::compose(View& view) {
   std::ranges::stable_sort(objects_, {}, [](const FollowedObject& object) {
     return object.layer.known() ? object.layer.middle : 1e9f;

@@ -1,4 +1,4 @@
-// Labels that follow what they were given to.
+// Propagates labels to the current frame by optical flow and depth.
 #pragma once
 
 #include <deque>
@@ -19,11 +19,11 @@ class FlowDepthPropagator final : public Propagator {
  public:
   struct Options {
     int points = 40;               ///< followed per object
-    double max_flow_error = 1.0;   ///< px, forwards and backwards
-    int min_points = 5;            ///< fewer do not support an object that the network misses
-    double keep_seconds = 1.5;     ///< that such an object lives
-    int max_misses = 5;            ///< results in a row without the object that end it, too
-    int margin = 8;                ///< px that outlines may move outwards to an edge of depth
+    double max_flow_error = 1.0;   ///< px, forward-backward error
+    int min_points = 5;            ///< tracked, on an object that the network misses
+    double keep_seconds = 1.5;     ///< that such an object is kept
+    int max_misses = 5;            ///< consecutive results that may miss an object
+    int margin = 8;                ///< px that outlines may move outwards to a depth edge
     double depth_tolerance = 0.1;  ///< metres at 2 m
     int min_object_pixels = 100;   ///< smaller objects are left out
 
@@ -36,7 +36,7 @@ class FlowDepthPropagator final : public Propagator {
                          const Frame& to) override;
 
  private:
-  int rim() const;  // px of views that outlines may be wrong by
+  int rim() const;  // px of views: uncertainty of outlines
   View spare_view();
   const View& view_of(const Frame& frame);
   const View& followed_near(const View& view) const;
@@ -48,7 +48,7 @@ class FlowDepthPropagator final : public Propagator {
                                             const cv::Mat& found, const View& view);
   void set_reference(FollowedObject& object, const cv::Mat& mask, cv::Rect box,
                      const View& view) const;
-  void bring_tracks_forward();
+  void propagate_tracks();
   void place(FollowedObject& object, const View& view) const;
   bool supported(const FollowedObject& object, const View& view) const;
   void renew_reference(FollowedObject& object, const View& view) const;
@@ -57,9 +57,9 @@ class FlowDepthPropagator final : public Propagator {
 
   Options options_;
   std::vector<FollowedObject> objects_;
-  std::deque<View> history_;            // in order of frames, the current one last
-  std::uint32_t learnt_frame_ = kNoId;  // of the newest segmentation
-  bool known_ = false;                  // whether there have been labels
+  std::deque<View> history_;               // in order of frames, the current one last
+  std::uint32_t segmented_frame_ = kNoId;  // of the newest segmentation
+  bool known_ = false;                     // whether there have been labels
   int next_id_ = 0;
 };
 

@@ -15,7 +15,7 @@ struct FollowedObject {
   int label = 0;
   float score = 1.0f;
 
-  // What the network said of it.
+  // From the results of the network.
   std::uint32_t seen_frame = 0;  ///< index of the newest frame in which it was found
   double seen_time = 0.0;        ///< seconds, of that frame
   int sightings = 0;             ///< results that had it

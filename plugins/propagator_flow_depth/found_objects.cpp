@@ -9,7 +9,7 @@
 namespace stillpoint::propagator_flow_depth {
 namespace {
 
-constexpr double kSurfaceShare = 0.05;  // of the mask; less is no surface of its own
+constexpr double kSurfaceShare = 0.05;  // of the mask; less is no separate surface
 
 /// A box of a frame in its view.
 cv::Rect view_box(cv::Rect box, cv::Size view) {
@@ -24,15 +24,15 @@ cv::Mat inside(const cv::Mat& depth, const DepthLayer& layer) {
   return result;
 }
 
-/// What of the object lies before its layer, one surface after the other.
-std::vector<FoundObject> surfaces_before(const FoundObject& object, const View& view, int rim) {
+/// The parts of the object in front of its layer, one surface after the other.
+std::vector<FoundObject> surfaces_in_front(const FoundObject& object, const View& view, int rim) {
   std::vector<FoundObject> surfaces;
   if (!object.layer.known()) return surfaces;
   const cv::Mat depth = view.depth(object.box);
   const double enough = kSurfaceShare * object.pixels;
   cv::Mat rest = object.mask & (depth > 0) & (depth < object.layer.near);
   if (cv::countNonZero(rest) < enough) return surfaces;
-  rest = without_rims(rest, rim);
+  rest = remove_rims(rest, rim);
   while (cv::countNonZero(rest) >= enough) {
     FoundObject surface{.label = object.label, .score = object.score, .box = object.box};
     surface.layer = depth_layer(depth, rest);
@@ -62,7 +62,7 @@ FoundObjects found_objects(const Segmentation& segmentation, const View& view,
     found.objects.push_back(std::move(object));
   }
   for (std::size_t i = 0; i < named.objects.size(); ++i) {
-    for (FoundObject& surface : surfaces_before(found.objects[i], view, options.rim)) {
+    for (FoundObject& surface : surfaces_in_front(found.objects[i], view, options.rim)) {
       if (found.objects.size() == kMostObjects) return found;
       found.objects.push_back(std::move(surface));
       found.instances(found.objects.back().box)

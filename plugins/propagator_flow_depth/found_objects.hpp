@@ -1,4 +1,4 @@
-// What a result of the network shows, as following needs it.
+// The objects in a result of the network, with their depth layers.
 #pragma once
 
 #include <opencv2/core/mat.hpp>
@@ -10,10 +10,9 @@
 
 namespace stillpoint::propagator_flow_depth {
 
-/// An object of the result; or a surface of its own before the larger part of one: a mask that has
-/// grown over the desk or the floor still has the person whom it belongs to, and of two people with
-/// one mask the nearer may be the smaller. What lies behind the larger part is taken for
-/// background.
+/// An object of the result; or a separate surface in front of the larger part of one: a mask that
+/// has leaked onto the desk or the floor still contains its person, and of two people with one mask
+/// the nearer may be the smaller. What lies behind the larger part is taken for background.
 struct FoundObject {
   int label = 0;
   float score = 1.0f;
@@ -31,7 +30,7 @@ struct FoundObjects {
 struct FindOptions {
   int min_pixels = 100;  ///< of the frame; smaller parts of a class are no objects, where the
                          ///< result itself names none
-  int rim = 4;           ///< px of the view that outlines are wrong by: no surfaces of their own
+  int rim = 4;           ///< px of the view, uncertainty of outlines: no separate surfaces
 };
 
 /// Those of the result as it is, then the surfaces.

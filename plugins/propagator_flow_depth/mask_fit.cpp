@@ -7,7 +7,7 @@
 namespace stillpoint::propagator_flow_depth {
 namespace {
 
-constexpr float kDepthWeight = 1.2f;  // more than the mask's 1: depth can cut its middle, too
+constexpr float kDepthWeight = 1.2f;  // mask: 1; depth may remove its interior as well
 constexpr int kSparse = 4;            // px between the depths that are averaged
 constexpr int kSurroundings = 4;      // margins to either side, over which depths are averaged
 
@@ -26,7 +26,7 @@ cv::Mat local_depth(const cv::Mat& depth, const cv::Mat& mask, cv::Size window) 
   return mean;
 }
 
-/// > 0: depth speaks for the object.
+/// > 0: depth is evidence for the object.
 float depth_vote(float depth, float object, float surroundings, const DepthLayer& layer,
                  float tolerance) {
   if (!(depth > 0) || !layer.known()) return 0.0f;

@@ -1,4 +1,4 @@
-// Pulls the outline of a mask onto the edges of the depth image.
+// Snaps the outline of a mask to depth discontinuities.
 #pragma once
 
 #include <opencv2/core/mat.hpp>

@@ -15,9 +15,9 @@ const cv::Point2f kSampleCentre =
 constexpr float kReach = 12.0f;                 // px around a track that move with it
 constexpr float kMedianWeight = 0.1f;           // of the median motion against a track right there
 
-/// From a position in the current view back to the reference: the motion of the tracks around it.
-cv::Point2f way_back(cv::Point2f position, std::span<const Track> tracks,
-                     cv::Point2f median_shift) {
+/// Motion from a position in the current view back to the reference, interpolated from the tracks.
+cv::Point2f backward_motion(cv::Point2f position, std::span<const Track> tracks,
+                            cv::Point2f median_shift) {
   cv::Point2f sum = -kMedianWeight * median_shift;
   float weights = kMedianWeight;
   for (const Track& track : tracks) {
@@ -63,7 +63,7 @@ cv::Mat warp_mask(const cv::Mat& reference, cv::Rect box, std::span<const Track>
   for (int row = 0; row < nodes.rows; ++row)
     for (int column = 0; column < nodes.cols; ++column) {
       const cv::Point node = region.tl() + kCell * cv::Point(column, row);
-      const cv::Point2f source = cv::Point2f(node) + way_back(node, tracks, shift);
+      const cv::Point2f source = cv::Point2f(node) + backward_motion(node, tracks, shift);
       nodes.at<cv::Point2f>(row, column) = source - cv::Point2f(box.tl());
     }
   // A sample every kSample px is enough for an outline that depth will correct.

@@ -1,4 +1,4 @@
-// Where the mask of an object should be now, by the points followed on it.
+// Warps the mask of an object into the current view by the points tracked on it.
 #pragma once
 
 #include <opencv2/core/mat.hpp>
@@ -18,8 +18,9 @@ struct ObjectMotion {
 ObjectMotion median_motion(std::span<const Track> tracks);
 
 /// The reference mask (CV_8UC1, 0 or 255, of `box`) as it lies in the part `region` of the current
-/// view. Every pixel moves as the tracks around it, so that legs swing. Outside its box, the mask
-/// goes on as it is at the edge, because what comes into view is mostly more of the object.
+/// view. Every pixel moves with the tracks around it, so that limbs may move on their own. Outside
+/// its box, the mask is extrapolated from its border: what enters the view there is mostly more of
+/// the object.
 cv::Mat warp_mask(const cv::Mat& reference, cv::Rect box, std::span<const Track> tracks,
                   cv::Rect region);
 

@@ -6,9 +6,9 @@
 namespace stillpoint::propagator_flow_depth {
 namespace {
 
-constexpr double kOverlap = 0.3;          // of the smaller mask
-constexpr double kCovered = 0.5;          // of a followed object
-constexpr float kDepthDifference = 0.2f;  // of the depth
+constexpr double kMinOverlap = 0.3;       // of the smaller mask
+constexpr double kMinCovered = 0.5;       // of a followed object
+constexpr float kDepthDifference = 0.2f;  // relative
 
 struct Pair {
   std::size_t found;
@@ -30,7 +30,7 @@ cv::Mat count_pairs(const MatchInput& input) {
   return counts;
 }
 
-bool as_far(const DepthLayer& a, const DepthLayer& b) {
+bool similar_depth(const DepthLayer& a, const DepthLayer& b) {
   return !a.known() || !b.known() ||
          std::abs(a.middle - b.middle) < kDepthDifference * std::max(a.middle, b.middle);
 }
@@ -54,10 +54,11 @@ Matches match_objects(const MatchInput& input) {
       if (input.found[i].label != input.followed[f].label || overlap == 0) continue;
       of_its_class += overlap;
       const int smaller = std::min(size, static_cast<int>(cv::sum(counts.row(row))[0]));
-      if (overlap >= kOverlap * smaller && as_far(input.found[i].layer, input.followed[f].layer))
+      if (overlap >= kMinOverlap * smaller &&
+          similar_depth(input.found[i].layer, input.followed[f].layer))
         pairs.push_back({i, f, overlap});
     }
-    matches.covered[f] = of_its_class > kCovered * size;
+    matches.covered[f] = of_its_class > kMinCovered * size;
   }
   std::ranges::stable_sort(pairs, std::greater{}, &Pair::overlap);
   std::vector<bool> taken(input.followed.size(), false);

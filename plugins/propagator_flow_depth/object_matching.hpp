@@ -1,4 +1,4 @@
-// Which object found by the network is which of those followed.
+// Data association of objects found by the network with tracked objects.
 #pragma once
 
 #include <opencv2/core.hpp>
@@ -21,11 +21,11 @@ struct MatchInput {
 
 struct Matches {
   std::vector<int> followed_of;  ///< per found object: index into `followed`, -1 = new
-  std::vector<bool> covered;     ///< per followed object: found objects lie over most of it
+  std::vector<bool> covered;     ///< per followed object: found ones of its class cover most of it
 };
 
-/// Objects of one class whose masks overlap and that are about as far away, the largest overlaps
-/// first.
+/// Greedy matching of objects of one class whose masks overlap and whose depths agree, largest
+/// overlaps first.
 Matches match_objects(const MatchInput& input);
 
 }  // namespace stillpoint::propagator_flow_depth

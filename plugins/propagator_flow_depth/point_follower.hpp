@@ -26,9 +26,9 @@ void build_flow_pyramid(const cv::Mat& gray, std::vector<cv::Mat>& pyramid);
 /// gradient is that of the object against what is behind it.
 std::vector<Track> choose_points(const View& view, const cv::Mat& mask, cv::Rect box, int most);
 
-/// Moves points from one view to another. Lost are those that do not come back to within
-/// `max_error` px when followed backwards, leave the image, or jump in depth, as a point does that
-/// slides from the object onto something else.
+/// Moves points from one view to another. Lost are those whose forward-backward error exceeds
+/// `max_error` px, that leave the image, or whose depth jumps, as that of a point does that drifts
+/// from the object onto another surface.
 void follow(const View& from, const View& to, std::span<Track*> tracks, float max_error);
 
 }  // namespace stillpoint::propagator_flow_depth

@@ -1,4 +1,4 @@
-// A frame as following needs it: at half resolution, which is exact enough and four times as fast.
+// A frame at half resolution, which is accurate enough for tracking and four times as fast.
 #pragma once
 
 #include <cstdint>

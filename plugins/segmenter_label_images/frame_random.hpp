@@ -1,4 +1,4 @@
-// Random numbers that depend on the seed and the frame alone, not on what was asked for before.
+// Random numbers that depend on the seed and the frame alone, not on earlier calls.
 #pragma once
 
 #include <cstdint>
@@ -6,7 +6,7 @@
 
 namespace stillpoint::segmenter_label_images {
 
-/// What random numbers are for; those for different purposes have nothing to do with each other.
+/// What random numbers are for; streams of different purposes are independent.
 enum class Purpose : std::uint32_t { kMisses, kOutlines, kFalseObjects, kHoles, kBlobs };
 
 /// `period`: the frame, or the number of the frames that share their errors.

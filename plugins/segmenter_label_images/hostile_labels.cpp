@@ -17,11 +17,11 @@ void HostileOptions::visit(OptionVisitor& v) {
             {"everything", Kind::kEverything},
             {"nobody", Kind::kNobody},
             {"blobs", Kind::kBlobs}},
-           {.help = "instead of the labels: all of the image is of the false class; nothing is; "
-                    "ellipses anywhere are"});
-  v("mistaken", mistaken, {.help = "classes whose objects are taken for the false class"});
+           {.help = "instead of the labels: the false class everywhere, nowhere, or in random "
+                    "ellipses"});
+  v("mistaken", mistaken, {.help = "classes whose objects get the false class"});
   v("late", late,
-    {.min = 0, .max = 60, .unit = "s", .help = "labels are those of the image so long before"});
+    {.min = 0, .max = 60, .unit = "s", .help = "labels are those of the image so much earlier"});
 }
 
 HostileLabels::HostileLabels(const HostileOptions& options, const ClassNames& classes,

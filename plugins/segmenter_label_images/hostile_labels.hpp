@@ -1,5 +1,4 @@
-// Labels that have nothing to do with what a network makes of an image: what the rest of a pipeline
-// must survive.
+// Adversarial labels, for robustness tests: far more wrong than those of a network.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +13,7 @@ namespace stillpoint::segmenter_label_images {
 
 struct HostileOptions {
   enum class Kind { kNone, kEverything, kNobody, kBlobs } hostile = Kind::kNone;
-  std::vector<std::string> mistaken;  ///< classes whose objects are taken for the false class
+  std::vector<std::string> mistaken;  ///< classes whose objects get the false class
   double late = 0;                    ///< seconds
 
   void visit(OptionVisitor& visitor);
@@ -23,7 +22,7 @@ struct HostileOptions {
 /// They depend on the seed and on the frame alone.
 class HostileLabels {
  public:
-  /// `false_label`: what there is instead. Throws Error(kUsage) when `mistaken` has no such class.
+  /// `false_label`: replaces labels. Throws Error(kUsage) when `mistaken` has no such class.
   HostileLabels(const HostileOptions& options, const ClassNames& classes, int false_label,
                 std::uint64_t seed);
 

@@ -8,7 +8,7 @@
 namespace stillpoint::segmenter_label_images {
 namespace {
 
-constexpr std::size_t kHopelessStart = 10;  // frames without labels before the first with some
+constexpr std::size_t kMaxMissingAtStart = 10;  // frames without labels before the first with some
 
 std::filesystem::path label_folder(const std::string& path, const StageContext& context) {
   if (!path.empty()) return path;
@@ -17,7 +17,7 @@ std::filesystem::path label_folder(const std::string& path, const StageContext& 
               "name it as 'path' of the segmenter");
 }
 
-/// Only asked for when something is to be of it, because other lists may lack the default.
+/// Looked up only where it is used: a class list may lack the default.
 int false_label(const LabelImageSegmenter::Options& options, const ClassNames& classes) {
   using Kind = HostileOptions::Kind;
   const bool wanted = options.errors.false_objects > 0 || !options.hostile.mistaken.empty() ||
@@ -43,7 +43,7 @@ void LabelImageSegmenter::Options::visit(OptionVisitor& v) {
     {.help = "names by class id, the background first; or one of the lists [voc21], [coco80], "
              "[person]"});
   v("max_difference", max_difference,
-    {.min = 0, .max = 10, .unit = "s", .help = "labels farther from a frame are not its own"});
+    {.min = 0, .max = 10, .unit = "s", .help = "largest time difference of frame and labels"});
   v("min_object_pixels", min_object_pixels,
     {.min = 1, .unit = "px", .help = "smaller objects become background"});
   errors.visit(v);
@@ -57,7 +57,7 @@ LabelImageSegmenter::LabelImageSegmenter(Options options, const StageContext& co
       errors_(options_.errors, false_label(options_, classes_), context.seed),
       hostile_(options_.hostile, classes_, false_label(options_, classes_), context.seed),
       log_(context.log) {
-  // A folder of something else shall be found out before the run begins.
+  // A wrong folder is reported before the run begins.
   const std::filesystem::path& first = files_.entries().front().file;
   const cv::Mat labels = read_labels(first, classes_.size());
   if (!context.camera) return;
@@ -78,7 +78,7 @@ Segmentation LabelImageSegmenter::segment(const Frame& frame) {
   return result;
 }
 
-/// Null: there is none. Labels that are to be late are the first ones until they can be.
+/// Null: there is none. With `late`, the first labels serve until the delay has passed.
 const LabelFiles::Entry* LabelImageSegmenter::entry_for(const Frame& frame) {
   const LabelFiles::Entry& own = files_.nearest(frame.time);
   if (std::abs(own.time - frame.time) > options_.max_difference) {
@@ -95,7 +95,7 @@ void LabelImageSegmenter::report_missing(const Frame& frame, const LabelFiles::E
   text << std::fixed << "the frame at " << frame.time << " s has no label image; the nearest, "
        << nearest.file.filename().string() << ", is " << std::abs(nearest.time - frame.time)
        << " s away";
-  if (++missing_ >= kHopelessStart && found_ == 0)
+  if (++missing_ >= kMaxMissingAtStart && found_ == 0)
     throw Error(Fault::kData, text.str() + ", and none of the first frames has one",
                 nearest.file.parent_path().string(), "are these the labels of this recording?");
   if (missing_ == 1) log_(LogLevel::kWarning, text.str());

@@ -13,8 +13,8 @@ namespace {
 /// px along an outline over which its error stays about the same.
 constexpr int kWobbleCell = 16;
 
-/// The object with its outline moved outwards by `shift` (px; CV_32F of the image's size), inside
-/// `region`, which is the object's box with room around it.
+/// The object (CV_8UC1) with its outline moved outwards by `shift` (px; CV_32F of the same size).
+/// There must be room for it around the object.
 cv::Mat moved_outline(const cv::Mat& object, const cv::Mat& shift) {
   // Distances reach from pixel centre to pixel centre; the outline is half a pixel off either.
   cv::Mat inside, outside;
@@ -45,12 +45,12 @@ void NetworkErrorOptions::visit(OptionVisitor& v) {
   v("floor", floor,
     {.min = 0,
      .max = 10,
-     .help = "floor that is taken for the object standing on it, in its widths; 0: none"});
+     .help = "floor labelled as the object standing on it, in its widths; 0: none"});
   v("false_objects", false_objects,
     {.min = 0, .max = 1, .help = "probability that a frame has an object that is not there"});
   v("false_class", false_class, {.help = "class of the objects that are not there"});
   v("error_frames", error_frames,
-    {.min = 1, .unit = "frames", .help = "how long misses and false objects last"});
+    {.min = 1, .unit = "frames", .help = "how long misses, false objects and blobs last"});
 }
 
 cv::Mat NetworkErrors::apply(const cv::Mat& labels, std::uint32_t frame,
@@ -59,8 +59,8 @@ cv::Mat NetworkErrors::apply(const cv::Mat& labels, std::uint32_t frame,
   find_objects(truth, min_object_pixels);
   const std::uint32_t period = period_of(frame);
   cv::RNG misses = frame_random(seed_, Purpose::kMisses, period);
-  const bool moves_outlines = options_.boundary != 0 || options_.wobble > 0;
-  const cv::Mat shift = moves_outlines ? outline_shift(labels.size(), frame) : cv::Mat();
+  const bool shifts_outlines = options_.boundary != 0 || options_.wobble > 0;
+  const cv::Mat shift = shifts_outlines ? outline_shift(labels.size(), frame) : cv::Mat();
   cv::RNG holes = frame_random(seed_, Purpose::kHoles, frame);
   const int room = static_cast<int>(std::ceil(std::abs(options_.boundary) + options_.wobble)) + 2;
 
@@ -74,15 +74,15 @@ cv::Mat NetworkErrors::apply(const cv::Mat& labels, std::uint32_t frame,
     const cv::Rect region =
         cv::Rect(box.x - side, box.y - room, box.width + 2 * side, box.height + 2 * room) & image;
     cv::Mat mask = truth.instances(region) == static_cast<int>(i) + 1;
-    if (moves_outlines) mask = moved_outline(mask, shift(region));
-    spoil(mask, box - region.tl(), holes);
+    if (shifts_outlines) mask = moved_outline(mask, shift(region));
+    degrade(mask, box - region.tl(), holes);
     result(region).setTo(object.label, mask & (result(region) == 0));
   }
   add_false_object(result, period);
   return result;
 }
 
-void NetworkErrors::spoil(cv::Mat& mask, const cv::Rect& box, cv::RNG& random) const {
+void NetworkErrors::degrade(cv::Mat& mask, const cv::Rect& box, cv::RNG& random) const {
   const int legs = cvRound(options_.missing_legs * box.height);
   if (legs > 0) mask.rowRange(box.br().y - legs, mask.rows).setTo(0);
   for (int i = 0; i < options_.holes; ++i) {

@@ -1,4 +1,4 @@
-// Makes true labels as wrong as those of a network.
+// Simulates the errors of a segmentation network on true labels.
 #pragma once
 
 #include <cstdint>
@@ -15,21 +15,21 @@ struct NetworkErrorOptions {
   double wobble = 0.0;                 ///< px up to which outlines lie off at random
   double missing_legs = 0.0;           ///< share of an object's height that its lower end lacks
   int holes = 0;                       ///< in each object
-  double floor = 0.0;                  ///< times as wide as the object: floor that is taken for it
+  double floor = 0.0;                  ///< widths of the object: floor labelled as the object
   double false_objects = 0.0;          ///< probability of a false object
   std::string false_class = "person";  ///< what it is taken for
-  int error_frames = 1;                ///< frames that misses and false objects last
+  int error_frames = 1;                ///< frames that misses, false objects and blobs last
 
   void visit(OptionVisitor& visitor);
 };
 
-/// Errors depend on the seed and on the frame alone, not on which frames were asked for before.
+/// Errors depend on the seed and on the frame alone, not on earlier calls.
 class NetworkErrors {
  public:
   NetworkErrors(NetworkErrorOptions options, int false_label, std::uint64_t seed)
       : options_(std::move(options)), false_label_(false_label), seed_(seed) {}
 
-  /// Frames with the same number share misses and false objects.
+  /// Frames with the same number share misses, false objects and blobs.
   std::uint32_t period_of(std::uint32_t frame) const {
     return frame / static_cast<std::uint32_t>(options_.error_frames);
   }
@@ -43,7 +43,7 @@ class NetworkErrors {
 
  private:
   cv::Mat outline_shift(cv::Size size, std::uint32_t frame) const;
-  void spoil(cv::Mat& mask, const cv::Rect& box, cv::RNG& random) const;
+  void degrade(cv::Mat& mask, const cv::Rect& box, cv::RNG& random) const;
   void add_false_object(cv::Mat& labels, std::uint32_t period) const;
 
   NetworkErrorOptions options_;

@@ -9,9 +9,9 @@ namespace stillpoint::segmenter_opencv_dnn {
 namespace {
 
 constexpr double kNoiseSigmas = 3.0;
-constexpr float kClusterWidth = 1.15f;   // farthest over nearest depth of one surface
-constexpr double kLeastMeasured = 0.05;  // of the box's middle, for its depth to be known
-constexpr int kGap = 7;                  // px, of missing depth that is closed
+constexpr float kClusterWidth = 1.15f;  // farthest over nearest depth of one surface
+constexpr double kMinMeasured = 0.05;   // of the box's middle; with less, its depth is unknown
+constexpr int kGap = 7;                 // px, of missing depth that is closed
 
 std::vector<float> measured_in_middle(const cv::Mat& depth) {
   const cv::Rect middle(depth.cols / 4, depth.rows / 4, std::max(1, depth.cols / 2),
@@ -22,7 +22,7 @@ std::vector<float> measured_in_middle(const cv::Mat& depth) {
     std::copy_if(row + middle.x, row + middle.br().x, std::back_inserter(values),
                  [](float z) { return z > 0; });
   }
-  if (static_cast<double>(values.size()) < kLeastMeasured * middle.area()) values.clear();
+  if (static_cast<double>(values.size()) < kMinMeasured * middle.area()) values.clear();
   return values;
 }
 
@@ -38,8 +38,7 @@ float near_surface(std::vector<float> values, double share) {
   return 0.0f;
 }
 
-/// Fills the mask from the seeds that are set in it, over neighbours in the list of pixels to
-/// visit.
+/// Region growing from the seeds, over neighbouring pixels of similar depth.
 class Growth {
  public:
   Growth(const cv::Mat& depth, double noise, float middle, const BoxMaskOptions& options)
@@ -118,7 +117,7 @@ void BoxMaskOptions::visit(OptionVisitor& v) {
   v("depth_step", depth_step,
     {.min = 0, .unit = "m", .help = "between neighbouring pixels of one surface, besides noise"});
   v("depth_extent", depth_extent,
-    {.min = 0, .unit = "m", .help = "of a thing before and behind its middle"});
+    {.min = 0, .unit = "m", .help = "of an object in front of and behind its median depth"});
   v("near_share", near_share,
     {.min = 0,
      .max = 1,

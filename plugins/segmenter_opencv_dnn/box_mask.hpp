@@ -1,4 +1,4 @@
-// The thing inside a detection's box: not the box, but its foreground surface.
+// The mask of a detection: the foreground surface inside its box.
 #pragma once
 
 #include <opencv2/core/mat.hpp>
@@ -11,13 +11,13 @@ namespace stillpoint::segmenter_opencv_dnn {
 struct BoxMaskOptions {
   double overlap = 0.4;       ///< intersection over union above which the lesser box is dropped
   double depth_step = 0.05;   ///< metres between neighbours of one surface, besides noise
-  double depth_extent = 0.5;  ///< metres of a thing before and behind its middle
+  double depth_extent = 0.5;  ///< metres of an object in front of and behind its median depth
   double near_share = 0.25;   ///< of the box's centre that its nearest surface covers at least
 
   void visit(OptionVisitor& visitor);
 };
 
-/// CV_8UC1 of the box's size, 255 = the thing: the nearest surface that covers `near_share` of the
+/// CV_8UC1 of the box's size, 255 = the object: the nearest surface that covers `near_share` of the
 /// middle of the box (half its width and height), grown over neighbours of similar depth inside the
 /// box; small gaps in the depth image are closed. Where the middle has next to no depth, or there
 /// is no depth image: the ellipse in the box. `box` lies inside the image; `depth` may be empty.

@@ -24,7 +24,7 @@ std::vector<PixelRun> runs_of(const std::vector<CellPosition>& positions) {
   return runs;
 }
 
-/// One plane at the four cells around some pixels.
+/// Scores of one plane at the four cells around a pixel.
 struct Corners {
   std::array<float, 4> value;  // top left, top right, bottom left, bottom right
   int label;

@@ -41,7 +41,8 @@ std::vector<cv::Mat> planes_of(const cv::Mat& output) {
   return planes;
 }
 
-std::vector<ScorePlane> competing(const std::vector<cv::Mat>& planes, const ScoreRule& rule) {
+std::vector<ScorePlane> competing_planes(const std::vector<cv::Mat>& planes,
+                                         const ScoreRule& rule) {
   const auto constant = [&](double value) {
     return ScorePlane{cv::Mat(planes.front().size(), CV_32FC1, cv::Scalar(value)), 0};
   };

@@ -1,4 +1,4 @@
-// What the numbers of a network's output say about classes.
+// From a network's output to class scores and probabilities.
 #pragma once
 
 #include <opencv2/core/mat.hpp>
@@ -27,7 +27,7 @@ struct ScoreRule {
 std::vector<cv::Mat> planes_of(const cv::Mat& output);
 
 /// The planes that compete for a pixel under a rule.
-std::vector<ScorePlane> competing(const std::vector<cv::Mat>& planes, const ScoreRule& rule);
+std::vector<ScorePlane> competing_planes(const std::vector<cv::Mat>& planes, const ScoreRule& rule);
 
 /// Probability of every class, by class id. That of the background may be empty.
 std::vector<cv::Mat> probabilities(const std::vector<cv::Mat>& planes, ResultKind result);

@@ -14,7 +14,7 @@
 namespace stillpoint::segmenter_opencv_dnn {
 namespace {
 
-const char kOwnCode = 0;  // models lie beside the library that this is in
+const char kOwnCode = 0;  // its address identifies this library, beside which models lie
 
 double of_channel(const std::vector<double>& values, int channel) {
   return values.size() == 1 ? values[0] : values[static_cast<std::size_t>(channel)];
@@ -37,7 +37,7 @@ std::vector<std::string> chosen_outputs(const cv::dnn::Net& net, const NetworkOp
               file, "correct 'output'");
 }
 
-/// Scores that are not numbers would compare as the background.
+/// Weights that are not finite would give NaN scores, which lose every comparison.
 void check_finite(cv::dnn::Net& net, const std::string& file) {
   for (const std::string& name : net.getLayerNames()) {
     for (const cv::Mat& weights : net.getLayer(net.getLayerId(name))->blobs) {

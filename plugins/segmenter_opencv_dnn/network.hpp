@@ -25,8 +25,8 @@ struct NetworkOptions {
   void visit(OptionVisitor& visitor);
 };
 
-/// Files, layers and input size are proven by a trial on a black image when it is made; throws
-/// Error(kUsage) for what the options say wrong and Error(kData) for a file that is unusable.
+/// The constructor checks files, layers and input size by a forward pass on a black image. Throws
+/// Error(kUsage) for wrong options and Error(kData) for an unusable file.
 class Network {
  public:
   /// `all_outputs`: without an output's name, take all of them instead of the only one.
@@ -36,7 +36,7 @@ class Network {
   /// call. Throws Error(kStage) when OpenCV does, and for outputs that are not finite.
   std::vector<cv::Mat> run(const cv::Mat& bgr);
 
-  /// Of the trial.
+  /// Of that forward pass.
   const std::vector<cv::Mat>& trial_outputs() const { return trial_outputs_; }
   const std::string& file() const { return file_; }
   cv::Size input_size() const { return {options_.width, options_.height}; }

@@ -45,7 +45,7 @@ void check_config(const Kind& kind, const std::string& model, const std::string&
                 "name its " + std::string(kind.config) + " file as 'config'");
 }
 
-/// OpenCV takes what a short file lacks from uninitialised memory.
+/// OpenCV reads a truncated file without an error and leaves the missing weights uninitialised.
 void check_darknet_size(cv::dnn::Net& net, const std::string& model) {
   constexpr std::uintmax_t kSmallestHeader = 16;  // bytes
   std::uintmax_t needed = kSmallestHeader;

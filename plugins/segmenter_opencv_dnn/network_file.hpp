@@ -11,7 +11,7 @@ namespace stillpoint::segmenter_opencv_dnn {
 /// empty where the kind needs none. Throws Error(kUsage) or Error(kData).
 cv::dnn::Net read_network(const std::string& model, const std::string& config);
 
-/// What OpenCV complains about, in one line, with the layer it cannot make.
+/// OpenCV's message in one line, with the layer that is not supported.
 std::string reason(const cv::Exception& exception);
 
 }  // namespace stillpoint::segmenter_opencv_dnn

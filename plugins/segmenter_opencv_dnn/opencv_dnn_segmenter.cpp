@@ -28,7 +28,7 @@ cv::Rect pixels_of(const cv::Rect2f& box, cv::Size image) {
   return cv::Rect(first, end) & cv::Rect({}, image);
 }
 
-/// The size and box of what better objects have left of each.
+/// Updates size and box of each object: better ones may have taken pixels from it.
 void measure_objects(Segmentation& segmentation) {
   for (std::size_t i = 0; i < segmentation.objects.size(); ++i) {
     SegmentedObject& object = segmentation.objects[i];
@@ -44,7 +44,7 @@ cv::Mat mirrored(const cv::Mat& image) {
   return result;
 }
 
-/// All that is looked at, left for right.
+/// All images that segmentation reads, mirrored.
 Frame mirrored(const Frame& frame) {
   Frame result = frame;
   for (cv::Mat* image : {&result.bgr, &result.gray, &result.depth}) *image = mirrored(*image);
@@ -86,10 +86,10 @@ void OpenCvDnnSegmenter::Options::visit(OptionVisitor& v) {
   v("min_object_area", smallest.area,
     {.min = 0,
      .unit = "m^2",
-     .help = "parts of a class are background of which less is seen, by depth and times the mean "
-             "probability"});
+     .help = "parts of a class with less visible area, by depth and times the mean probability, "
+             "are background"});
   v("mirror", mirror,
-    {.help = "every second image is seen left for right, and its labels are turned back"});
+    {.help = "every second image is mirrored for the network, and its labels are mirrored back"});
   v("threads", threads,
     {.min = 0,
      .max = 256,
@@ -183,7 +183,7 @@ Segmentation OpenCvDnnSegmenter::from_scores(const cv::Mat& output, const Frame&
     grid_ =
         CellGrid(options_.cells, planes.front().size(), network_.input_size(), frame.bgr.size());
   Segmentation result;
-  result.labels = label_pixels(competing(planes, options_.rule), grid_);
+  result.labels = label_pixels(competing_planes(planes, options_.rule), grid_);
   find_objects(result, options_.smallest.pixels);
   if (!result.objects.empty())
     score_objects(result, probabilities(planes, options_.rule.result), grid_);

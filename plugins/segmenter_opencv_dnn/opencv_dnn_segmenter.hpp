@@ -25,7 +25,7 @@ class OpenCvDnnSegmenter final : public Segmenter {
     RefinementOptions refinement;
     BoxMaskOptions boxes;
     SmallestObject smallest;
-    bool mirror = false;  ///< every second image; what is overlooked one way may be seen the other
+    bool mirror = false;  ///< every second image: errors often differ in the mirrored one
     int threads = 0;      ///< of OpenCV, in the whole process; 0: as many as the runtime allows
 
     void visit(OptionVisitor& visitor);

@@ -1,4 +1,4 @@
-// OpenCV prints to stderr what it throws; here its exceptions say enough.
+// OpenCV prints the exceptions that it throws to stderr as well; here they are reported anyway.
 #pragma once
 
 #include <opencv2/core/utility.hpp>

@@ -7,7 +7,7 @@
 namespace stillpoint::segmenter_opencv_dnn {
 namespace {
 
-constexpr double kLeastMeasured = 0.25;  // of an object's pixels; else its area is not known
+constexpr double kMinMeasuredShare = 0.25;  // of an object's pixels; else its area is not known
 
 bool is_small(const Segmentation& segmentation, std::size_t object, const Frame& frame,
               const SmallestObject& smallest) {
@@ -35,7 +35,7 @@ std::optional<double> seen_area(const Segmentation& segmentation, std::size_t ob
       squares += static_cast<double>(z[u]) * z[u];
     }
   }
-  if (measured == 0 || measured < kLeastMeasured * pixels) return std::nullopt;
+  if (measured == 0 || measured < kMinMeasuredShare * pixels) return std::nullopt;
   return pixels * (squares / measured) / (frame.camera->fx * frame.camera->fy);
 }
 

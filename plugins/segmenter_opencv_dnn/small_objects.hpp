@@ -1,4 +1,4 @@
-// Which objects are too small to be what they are taken for.
+// Rejects objects that are too small for their class.
 #pragma once
 
 #include <optional>
@@ -10,7 +10,7 @@ namespace stillpoint::segmenter_opencv_dnn {
 
 struct SmallestObject {
   int pixels = 200;
-  double area = 0;  ///< m², expected: of the surface that is seen, times its score; 0: any
+  double area = 0;  ///< m², of the visible surface times the score; 0: any
 };
 
 /// In square metres, of the part of the object that is seen, as if it faced the camera. Pixels

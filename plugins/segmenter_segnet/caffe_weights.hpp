@@ -13,7 +13,7 @@ namespace stillpoint::segmenter_segnet {
 /// a blob of one dimension).
 using CaffeWeights = std::map<std::string, std::vector<cv::Mat>>;
 
-/// Reads both kinds of layers: those of today and V1. Throws Error(kData) for a file that is
+/// Reads current and V1 layers. Throws Error(kData) for a file that is
 /// missing, truncated, or something else.
 CaffeWeights read_caffe_weights(const std::filesystem::path& file);
 

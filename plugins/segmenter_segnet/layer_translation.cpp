@@ -44,7 +44,7 @@ void copy_parameters(const LayerDefinition& layer, const TextNode& from,
                      cv::dnn::LayerParams& parameters) {
   std::map<std::string, std::vector<double>> numbers;
   for (const TextNode& field : from.fields) {
-    if (field.is_message) continue;  // how training filled the weights
+    if (field.is_message) continue;  // weight fillers, for training only
     if (field.value == "true" || field.value == "false")
       parameters.set(field.name, field.value == "true");
     else if (is_number(field.value))
@@ -213,7 +213,7 @@ TranslatedLayer upsample(const LayerDefinition& layer, const Blobs&, const Input
   if (parameters.find("upsample_h") && parameters.find("upsample_w"))
     output = {values[0], values[1], parameters.integer("upsample_h", 0),
               parameters.integer("upsample_w", 0)};
-  // Caffe goes on with another width, and puts the values into the wrong places.
+  // With another width Caffe would silently put values into the wrong places.
   if (output != inputs[1].pooled)
     fail(layer,
          "makes " + shape_text(output) + " of what was pooled from " + shape_text(inputs[1].pooled),
@@ -255,7 +255,7 @@ TranslatedLayer translate(const LayerDefinition& layer, const std::vector<cv::Ma
        "SegNet's layers are " + join(types) + "; layers for training belong into another prototxt");
 }
 
-bool ends_with_scores(const LayerDefinition& layer) {
+bool reads_scores(const LayerDefinition& layer) {
   return layer.type == "ArgMax" || layer.type == "Softmax";
 }
 

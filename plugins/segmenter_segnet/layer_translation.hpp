@@ -15,7 +15,7 @@ struct BlobShape {
   std::vector<int> pooled;  ///< of a pooling layer's mask: shape of what was pooled; else empty
 };
 
-/// What OpenCV is to make of a layer. Layers that change nothing in inference have no type.
+/// The OpenCV layer for a Caffe layer. Layers that are the identity in inference have no type.
 struct TranslatedLayer {
   std::string type;
   cv::dnn::LayerParams parameters;
@@ -28,7 +28,7 @@ struct TranslatedLayer {
 TranslatedLayer translate(const LayerDefinition& layer, const std::vector<cv::Mat>& blobs,
                           const std::vector<BlobShape>& inputs);
 
-/// Whether the network's scores are what goes into this layer: it only picks or scales them.
-bool ends_with_scores(const LayerDefinition& layer);
+/// Whether the layer is a softmax or argmax, whose input are the network's scores.
+bool reads_scores(const LayerDefinition& layer);
 
 }  // namespace stillpoint::segmenter_segnet

@@ -50,7 +50,7 @@ void set_input(NetworkDefinition& network, std::string blob, std::vector<int> sh
   if (shape.size() != 4 || shape[1] != 3 ||
       std::ranges::any_of(shape, [](int size) { return size < 1 || size > kLargestSide; }))
     throw Error(Fault::kData, "the input must be 1 x 3 x height x width", where);
-  shape[0] = 1;  // Bayesian SegNet's samples of one image: the network without them has one
+  shape[0] = 1;  // Bayesian SegNet has a batch of Monte Carlo samples; without dropout one suffices
   network.input = std::move(blob);
   network.shape = std::move(shape);
 }

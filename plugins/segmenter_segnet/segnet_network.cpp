@@ -17,7 +17,7 @@ struct Blob {
   BlobShape shape;
   int layer = 0;
   int output = 0;
-  bool ended = false;  // behind a softmax or argmax, whose input stands for it
+  bool after_scores = false;  // after a softmax or argmax, which is replaced by its input
 };
 
 /// Adds the layers of a definition one after the other.
@@ -53,7 +53,7 @@ class NetworkBuilder {
     last_top_ = layer.tops.front();
     if (translated.is_identity()) {
       blobs_[last_top_] = inputs.front();
-      blobs_[last_top_].ended = inputs.front().ended || ends_with_scores(layer);
+      blobs_[last_top_].after_scores = inputs.front().after_scores || reads_scores(layer);
     } else {
       connect(layer, translated, inputs);
     }
@@ -66,7 +66,7 @@ class NetworkBuilder {
       const auto found = blobs_.find(bottom);
       if (found == blobs_.end())
         fail(layer, "reads '" + bottom + "', which no layer before it writes" + suggestion(bottom));
-      if (found->second.ended && !ends_with_scores(layer))
+      if (found->second.after_scores && !reads_scores(layer))
         fail(layer, "comes after the scores of the network, which is not supported");
       inputs.push_back(found->second);
     }

@@ -11,7 +11,7 @@
 namespace stillpoint::segmenter_segnet {
 namespace {
 
-const char kOwnCode = 0;  // models may lie beside the library that this is in
+const char kOwnCode = 0;  // its address identifies this library, beside which models may lie
 
 void check_classes(int channels, const ClassNames& classes, const std::string& prototxt) {
   if (static_cast<std::size_t>(channels) == classes.size()) return;

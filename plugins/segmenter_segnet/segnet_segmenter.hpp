@@ -21,7 +21,7 @@ class SegnetSegmenter final : public Segmenter {
     std::vector<std::string> classes = {"voc21"};  ///< a list by its name, or the names
     ChannelOrder channels = ChannelOrder::kBgr;    ///< of the network's input
     std::vector<double> mean = {0};                ///< of the network's channels; subtracted first
-    double scale = 1.0;                            ///< multiplies what is left of 0 … 255
+    double scale = 1.0;                            ///< of pixels 0 … 255 minus the mean
     int min_object_pixels = 100;                   ///< of the frame
     int threads = 0;                               ///< of OpenCV; 0: as the runtime says
 

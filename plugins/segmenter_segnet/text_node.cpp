@@ -11,7 +11,7 @@
 namespace stillpoint::segmenter_segnet {
 namespace {
 
-constexpr int kDeepest = 100;  // nested messages; Caffe's have five
+constexpr int kMaxDepth = 100;  // nested messages; Caffe's have five
 
 bool is_word(char c) {
   return std::isalnum(static_cast<unsigned char>(c)) || c == '_' || c == '.' || c == '-' ||
@@ -53,7 +53,7 @@ class TextParser {
   }
 
   void parse_fields(TextNode& message, char end, int depth) {
-    if (depth > kDeepest) fail("the messages are nested too deeply");
+    if (depth > kMaxDepth) fail("the messages are nested too deeply");
     while (peek() != end) {
       if (peek() == '\0') fail("the text ends inside '" + message.name + "'");
       parse_field(message, depth);

@@ -14,8 +14,8 @@ class UnpoolLayer final : public cv::dnn::Layer {
 
   explicit UnpoolLayer(const cv::dnn::LayerParams& parameters);
 
-  /// Makes it known to OpenCV DNN, once. Its name is no type of Caffe's, so that networks of others
-  /// in this process do not find it by chance.
+  /// Registers the type with OpenCV DNN, once. The name is no Caffe type, so that other networks in
+  /// this process do not use it by accident.
   static void register_type();
 
   bool getMemoryShapes(const std::vector<cv::dnn::MatShape>& inputs, int required_outputs,

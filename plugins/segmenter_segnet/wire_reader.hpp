@@ -17,8 +17,8 @@ struct WireField {
   std::span<const std::byte> data;  ///< the others: the bytes of the value
 };
 
-/// Reads the fields of one message. Throws Error(kData) where the bytes are no message, such as at
-/// a length that reaches beyond the end.
+/// Reads the fields of one message. Throws Error(kData) for invalid bytes, such as a length beyond
+/// the end.
 class WireReader {
  public:
   explicit WireReader(std::span<const std::byte> message) : rest_(message) {}

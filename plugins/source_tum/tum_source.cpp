@@ -10,8 +10,8 @@ namespace {
 using tum_recording::open_recording;
 using tum_recording::PairsFrom;
 
-constexpr std::size_t kHopelessStart = 10;  // unusable pairs before the first usable one
-constexpr std::size_t kReportedImages = 20;
+constexpr std::size_t kMaxUnusableAtStart = 10;  // unusable pairs before the first usable one
+constexpr std::size_t kMaxReportedImages = 20;
 
 CameraModel required_camera(const StageContext& context) {
   if (context.camera) return *context.camera;
@@ -59,7 +59,7 @@ void check_size(const cv::Mat& image, const CameraModel& model, const std::files
 void TumSource::Options::visit(OptionVisitor& v) {
   v("path", path, {.help = "folder of the recording", .is_path = true});
   v("max_difference", pairing.max_difference,
-    {.min = 0, .max = 10, .unit = "s", .help = "colour and depth farther apart are no pair"});
+    {.min = 0, .max = 10, .unit = "s", .help = "largest time difference of an associated pair"});
   v("time_offset", pairing.time_offset,
     {.min = -10,
      .max = 10,
@@ -71,7 +71,7 @@ void TumSource::Options::visit(OptionVisitor& v) {
   v("start", start, {.min = 0, .unit = "pairs", .help = "first pair to use"});
   v("end", end, {.min = 0, .unit = "pairs", .help = "one past the last pair; 0 for all"});
   v("stride", stride, {.min = 1, .unit = "pairs", .help = "use every n-th pair"});
-  v("limit", limit, {.min = 0, .unit = "frames", .help = "stop after so many; 0 for no limit"});
+  v("limit", limit, {.min = 0, .unit = "frames", .help = "most frames to read; 0 for no limit"});
 }
 
 TumSource::TumSource(Options options, const StageContext& context)
@@ -109,7 +109,7 @@ Frame TumSource::load(const ImagePair& pair) {
 void TumSource::skip(const Error& reason) {
   ++report_.skipped;
   const std::size_t total = recording_.pairs.size();
-  const bool hopeless = given_ == 0 && report_.skipped >= std::min(kHopelessStart, total);
+  const bool hopeless = given_ == 0 && report_.skipped >= std::min(kMaxUnusableAtStart, total);
   if (hopeless || 2 * report_.skipped > total)
     throw Error(
         Fault::kData,
@@ -120,8 +120,8 @@ void TumSource::skip(const Error& reason) {
         recording_.folder.string());
   const std::string warning = std::string("skipped: ") + reason.what();
   log_(LogLevel::kWarning, warning);
-  if (report_.skipped <= kReportedImages) report_.warnings.push_back(warning);
-  if (report_.skipped == kReportedImages + 1)
+  if (report_.skipped <= kMaxReportedImages) report_.warnings.push_back(warning);
+  if (report_.skipped == kMaxReportedImages + 1)
     report_.warnings.push_back("more images were skipped; the log names them");
 }
 

@@ -26,8 +26,8 @@ class TumSource final : public Source {
     RecordingOptions pairing;
     int start = 0;   ///< first pair
     int end = 0;     ///< one past the last pair, 0 = all
-    int stride = 1;  ///< of the pairs, every how manieth
-    int limit = 0;   ///< most frames, 0 = no limit
+    int stride = 1;  ///< every n-th pair
+    int limit = 0;   ///< largest number of frames, 0 = no limit
 
     void visit(OptionVisitor& visitor);
   };
@@ -49,7 +49,7 @@ class TumSource final : public Source {
   std::function<void(LogLevel, std::string_view)> log_;
   ImageReader reader_;
   std::size_t position_ = 0;  // in recording_.pairs
-  std::uint32_t given_ = 0;   // frames
+  std::uint32_t given_ = 0;   // frames returned by next()
   SourceReport report_;
 };
 

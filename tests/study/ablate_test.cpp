@@ -133,8 +133,8 @@ TEST_F(Ablate, NamesEveryFaultOfAStudyWithItsPlace) {
       "2:1: error: study: unknown key 'sequencs'; did you mean 'sequences'?",
       "4:12: error: 'a b' also names a folder: letters, digits and _ - + . only",
       "4:24: error: no scene named 'fr3_walking_xzy'; did you mean 'fr3_walking_xyz'?",
-      "5:5: error: study.sequences[1]: 'frames' and 'set' are for a 'scene'; a recording is what "
-      "it is",
+      "5:5: error: study.sequences[1]: 'frames' and 'set' are for a 'scene'; they cannot "
+      "change a recording",
       "/nowhere' is no folder",
       "6:35: error: --set source.frmaes=3: source: unknown key 'frmaes'; did you mean 'frames'?",
       "7:5: error: study.sequences[3]: needs either 'dataset', the folder of a recording, or "
