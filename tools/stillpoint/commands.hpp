@@ -16,6 +16,8 @@ void add_evaluate(CLI::App& app);
 void add_inspect(CLI::App& app);
 void add_map(CLI::App& app);
 void add_plugins(CLI::App& app);
+/// Below `plugins`.
+void add_plugins_check(CLI::App& plugins);
 void add_run(CLI::App& app);
 void add_simulate(CLI::App& app);
 

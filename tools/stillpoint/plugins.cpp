@@ -145,6 +145,8 @@ void add_plugins(CLI::App& app) {
       ->type_name("TYPE")
       ->required();
   describe_command->callback([folders, name] { describe_all(search_plugins(*folders), *name); });
+
+  add_plugins_check(*command);
 }
 
 }  // namespace stillpoint

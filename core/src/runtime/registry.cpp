@@ -72,13 +72,15 @@ void Registry::search(const fs::path& folder) {
   const fs::path absolute = fs::absolute(folder).lexically_normal();
   if (std::ranges::find(searched_, absolute) != searched_.end()) return;
   searched_.push_back(absolute);
-  for (const fs::path& file : plugin_files(absolute)) {
-    PluginLibrary library = load_plugin_library(file);
-    if (library.descriptor)
-      add(*library.descriptor, file, std::move(library.handle));
-    else
-      unusable_.push_back({file, library.reason});
-  }
+  for (const fs::path& file : plugin_files(absolute)) load(file);
+}
+
+void Registry::load(const fs::path& file) {
+  PluginLibrary library = load_plugin_library(file);
+  if (library.descriptor)
+    add(*library.descriptor, file, std::move(library.handle));
+  else
+    unusable_.push_back({file, library.reason});
 }
 
 void Registry::add(const PluginDescriptor& descriptor, const fs::path& file,

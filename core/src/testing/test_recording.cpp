@@ -233,16 +233,7 @@ MovingPoints TestRecording::moving_points(std::size_t i) const {
 
 KeyFrame TestRecording::keyframe(std::size_t i, KeyFrameId id) const {
   const View& view = views_.at(i);
-  KeyFrame keyframe{.id = id,
-                    .frame = view.frame->index,
-                    .time = view.frame->time,
-                    .world_from_camera = view.world_from_camera,
-                    .camera = camera_,
-                    .features = orb_features(*view.frame)};
-  keyframe.track_weights = at_features(view.weights->track, *keyframe.features);
-  keyframe.map_weights = at_features(view.weights->map, *keyframe.features);
-  keyframe.landmarks.assign(keyframe.features->size(), kNoId);
-  return keyframe;
+  return orb_keyframe(*view.frame, *view.weights, view.world_from_camera, id);
 }
 
 DenseKeyFrame TestRecording::dense_keyframe(std::size_t i, KeyFrameId id) const {
@@ -252,6 +243,20 @@ DenseKeyFrame TestRecording::dense_keyframe(std::size_t i, KeyFrameId id) const 
           .segmentation = view.segmentation,
           .weights = view.weights,
           .world_from_camera = view.world_from_camera};
+}
+
+KeyFrame orb_keyframe(const Frame& frame, const StaticWeights& weights,
+                      const Pose& world_from_camera, KeyFrameId id) {
+  KeyFrame keyframe{.id = id,
+                    .frame = frame.index,
+                    .time = frame.time,
+                    .world_from_camera = world_from_camera,
+                    .camera = frame.camera,
+                    .features = orb_features(frame)};
+  keyframe.track_weights = at_features(weights.track, *keyframe.features);
+  keyframe.map_weights = at_features(weights.map, *keyframe.features);
+  keyframe.landmarks.assign(keyframe.features->size(), kNoId);
+  return keyframe;
 }
 
 StageContext test_context() {

@@ -40,6 +40,8 @@ class STILLPOINT_EXPORT Registry {
   /// Loads every libstillpoint_*.so of a folder; one that does not exist is among
   /// missing_folders().
   void search(const std::filesystem::path& folder);
+  /// Loads one library, of whatever name.
+  void load(const std::filesystem::path& library);
 
   const std::vector<PluginType>& types() const { return types_; }
   const std::vector<UnusableLibrary>& unusable() const { return unusable_; }

@@ -2,13 +2,14 @@
 #pragma once
 
 #include "stillpoint/contracts/frame.hpp"
+#include "stillpoint/export.hpp"
 
 namespace stillpoint {
 
 /// The frame with its images copied to pages that are read-only. Whatever writes to them gets
 /// SIGSEGV at that very place, on whichever thread; a StageGuard names the stage, unless it was on
 /// a thread of the stage's own. Throws Error(kStage) without memory.
-Frame with_read_only_images(Frame frame);
+STILLPOINT_EXPORT Frame with_read_only_images(Frame frame);
 
 /// Whether an address lies in such an image. For signal handlers.
 bool in_read_only_image(const void* address);

@@ -13,37 +13,40 @@
 #include "stillpoint/contracts/segmentation.hpp"
 #include "stillpoint/contracts/static_weights.hpp"
 #include "stillpoint/contracts/tracker.hpp"
+#include "stillpoint/export.hpp"
 
 namespace stillpoint {
 
 /// Of a source: `index` is the one that comes next, `previous` the frame before, or null.
-void check_frame(const Frame& frame, std::uint32_t index, const Frame* previous);
+STILLPOINT_EXPORT void check_frame(const Frame& frame, std::uint32_t index, const Frame* previous);
 
 /// Of a segmenter or a propagator, for a frame of this size; `classes`: how many labels there are,
 /// the background included. Labels that are not known are right.
-void check_segmentation(const Segmentation& segmentation, cv::Size frame, std::size_t classes);
+STILLPOINT_EXPORT void check_segmentation(const Segmentation& segmentation, cv::Size frame,
+                                          std::size_t classes);
 
 /// Of a moving check.
-void check_moving_points(const MovingPoints& moving);
+STILLPOINT_EXPORT void check_moving_points(const MovingPoints& moving);
 
 /// Of a map check.
-void check_evidence(const MapEvidence& evidence);
+STILLPOINT_EXPORT void check_evidence(const MapEvidence& evidence);
 
 /// Of a decision on these labels.
-void check_weights(const StaticWeights& weights, const Segmentation& segmentation, cv::Size frame);
+STILLPOINT_EXPORT void check_weights(const StaticWeights& weights, const Segmentation& segmentation,
+                                     cv::Size frame);
 
 /// Of a tracker, before it tracks `frame`.
-void check_prepared(const PreparedFrame* prepared, const Frame& frame);
+STILLPOINT_EXPORT void check_prepared(const PreparedFrame* prepared, const Frame& frame);
 
 /// Of a tracker, for a frame; `next` is the id of the next key frame.
-void check_tracking(const TrackResult& result, const Frame& frame, const SparseMap& map,
-                    KeyFrameId next);
+STILLPOINT_EXPORT void check_tracking(const TrackResult& result, const Frame& frame,
+                                      const SparseMap& map, KeyFrameId next);
 
 /// Of a local mapper that has inserted a key frame, or refined around one.
-void check_inserted(const SparseMap& map, const SparseMap& before);
-void check_refined(const SparseMap& map, const SparseMap& before);
+STILLPOINT_EXPORT void check_inserted(const SparseMap& map, const SparseMap& before);
+STILLPOINT_EXPORT void check_refined(const SparseMap& map, const SparseMap& before);
 
 /// Of a loop closer, for a map.
-void check_correction(const MapCorrection& correction, const SparseMap& map);
+STILLPOINT_EXPORT void check_correction(const MapCorrection& correction, const SparseMap& map);
 
 }  // namespace stillpoint

@@ -7,22 +7,23 @@
 #include "stillpoint/contracts/map_evidence.hpp"
 #include "stillpoint/contracts/moving_points.hpp"
 #include "stillpoint/contracts/tracker.hpp"
+#include "stillpoint/export.hpp"
 
 namespace stillpoint {
 
 /// Of a source: depths.
-void check_thoroughly(const Frame& frame);
+STILLPOINT_EXPORT void check_thoroughly(const Frame& frame);
 
 /// Of a moving check.
-void check_thoroughly(const MovingPoints& moving);
+STILLPOINT_EXPORT void check_thoroughly(const MovingPoints& moving);
 
 /// Of a map check.
-void check_thoroughly(const MapEvidence& evidence);
+STILLPOINT_EXPORT void check_thoroughly(const MapEvidence& evidence);
 
 /// Of a tracker, for a frame: features and covariances.
-void check_thoroughly(const TrackResult& result, const Frame& frame);
+STILLPOINT_EXPORT void check_thoroughly(const TrackResult& result, const Frame& frame);
 
 /// Of a local mapper, or after a correction: links, poses and positions.
-void check_thoroughly(const SparseMap& map);
+STILLPOINT_EXPORT void check_thoroughly(const SparseMap& map);
 
 }  // namespace stillpoint

@@ -49,8 +49,7 @@ class STILLPOINT_EXPORT TestRecording {
   std::shared_ptr<const StaticWeights> weights(std::size_t i) const { return views_.at(i).weights; }
   /// Points on a grid of 16 px in frame i - 1, followed exactly to frame i; none for i = 0.
   MovingPoints moving_points(std::size_t i) const;
-  /// A key frame at the true pose, with ORB features, their depth and their weights, and without
-  /// landmarks.
+  /// The key frame that orb_keyframe() makes of it, at the true pose.
   KeyFrame keyframe(std::size_t i, KeyFrameId id) const;
   DenseKeyFrame dense_keyframe(std::size_t i, KeyFrameId id) const;
 
@@ -68,6 +67,10 @@ class STILLPOINT_EXPORT TestRecording {
   std::shared_ptr<const Camera> camera_;
   std::vector<View> views_;
 };
+
+/// A key frame with ORB features, their depth and their weights, and without landmarks.
+STILLPOINT_EXPORT KeyFrame orb_keyframe(const Frame& frame, const StaticWeights& weights,
+                                        const Pose& world_from_camera, KeyFrameId id);
 
 /// A context as the program makes one, for a pipeline with the classes of a TestRecording.
 /// Messages of warning and worse are printed.

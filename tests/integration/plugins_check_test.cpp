@@ -1,0 +1,146 @@
+// `stillpoint plugins check`: what is shipped passes, and each careless plugin fails in the case
+// made for it.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "support/program.hpp"
+#include "support/simulated_recording.hpp"
+
+namespace stillpoint::testing {
+namespace {
+
+namespace fs = std::filesystem;
+using ::testing::HasSubstr;
+
+const fs::path kShipped = fs::path(STILLPOINT_BINARY_DIR) / "lib/stillpoint/plugins";
+const fs::path kBad = fs::path(STILLPOINT_BINARY_DIR) / "tests/plugins_bad/plugins";
+
+std::string library(const fs::path& folder, const std::string& name) {
+  return (folder / ("libstillpoint_" + name + ".so")).string();
+}
+
+class PluginsCheckShipped : public ::testing::TestWithParam<const char*> {};
+
+TEST_P(PluginsCheckShipped, Passes) {
+  const Outcome outcome = call({"plugins", "check", library(kShipped, GetParam())});
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.out << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr(" cases passed"));
+}
+
+INSTANTIATE_TEST_SUITE_P(Libraries, PluginsCheckShipped,
+                         ::testing::Values("decision_objects", "map_checks", "map_octomap",
+                                           "map_voxel_cloud", "moving_checks", "orb_slam",
+                                           "output_files", "propagator_flow_depth",
+                                           "segmenter_opencv_dnn", "source_simulation"));
+
+TEST(PluginsCheck, StagesThatReadARecordingAreCheckedWithOne) {
+  const std::string path = "path=" + simulated_recording().string();
+  const std::string camera = (simulated_recording() / "camera.yaml").string();
+  Outcome outcome = call(
+      {"plugins", "check", library(kShipped, "source_tum"), "--set", path, "--camera", camera});
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.out << outcome.err;
+  outcome = call({"plugins", "check", library(kShipped, "source_tum")});
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_THAT(outcome.out, HasSubstr("not checked: source (tum_rgbd): no recording is given"));
+  EXPECT_THAT(outcome.out, HasSubstr("give what it needs with --set OPTION=VALUE"));
+  EXPECT_THAT(outcome.err, HasSubstr("nothing could be checked"));
+}
+
+struct Careless {
+  const char* how;
+  const char* failing;  // case
+  const char* what;
+};
+
+class PluginsCheckCareless : public ::testing::TestWithParam<Careless> {};
+
+TEST_P(PluginsCheckCareless, FailsInTheCaseMadeForIt) {
+  const std::string how = std::string("how=") + GetParam().how;
+  const Outcome outcome = call({"plugins", "check", library(kBad, "careless"), "careless", "--set",
+                                how, "--case", GetParam().failing, "--timeout", "20", "--json"});
+  EXPECT_EQ(outcome.exit_code, 1) << outcome.err;
+  EXPECT_THAT(outcome.err, HasSubstr("1 of 1 cases failed"));
+  const nlohmann::json result = nlohmann::json::parse(outcome.out)["types"][0]["cases"][0];
+  EXPECT_EQ(result["outcome"], "failed");
+  EXPECT_EQ(result["name"], GetParam().failing);
+  const nlohmann::json& finding = result["finding"];
+  EXPECT_THAT(finding["what"], HasSubstr(GetParam().what));
+  EXPECT_GT(finding["why"].get<std::string>().size(), 20U);
+  EXPECT_GT(finding["remedy"].get<std::string>().size(), 20U);
+}
+
+constexpr Careless kCareless[] = {
+    {"random", "one seed, two runs", "two runs with one seed gave different results"},
+    {"shared", "two stages at once", "called in turn, gave other results than one alone"},
+    {"reused", "usual recording", "an image that it had given changed during a later call"},
+    {"unknown_labels", "no labels, no moving points, no weights", "it crashed: SIGSEGV"},
+    {"fixed_size", "images of 161 x 121 pixels",
+     "the weights have 320 x 240 pixels, but the frame has 161 x 121"},
+    {"unfinished", "destroyed at any time", "its destructor failed: it crashed: SIGSEGV"},
+    {"writes", "usual recording", "it wrote to an image of a frame, which all stages share"},
+    {"depth", "images without depth", "decide failed on frame 1: no depth"},
+    {"index", "large indices and ids", "a negative index"},
+    {"background", "everything is a person", "no background"},
+    {"black", "black images", "a black image"},
+    {"rest", "a camera at rest", "no motion"},
+    {"options", "options", "read back as others"},
+    {"thread", "usual recording", "a thread of its own was ended by SIGSEGV"},
+};
+INSTANTIATE_TEST_SUITE_P(Ways, PluginsCheckCareless, ::testing::ValuesIn(kCareless),
+                         [](const auto& info) { return std::string(info.param.how); });
+
+TEST(PluginsCheck, TheyPassTheUsualRecording) {
+  for (const std::string how : {"shared", "fixed_size", "unfinished"}) {
+    const Outcome outcome = call({"plugins", "check", library(kBad, "careless"), "--set",
+                                  "how=" + how, "--case", "usual recording"});
+    EXPECT_EQ(outcome.exit_code, 0) << how << outcome.out << outcome.err;
+  }
+}
+
+TEST(PluginsCheck, AStageThatHangsCostsItsCaseOnly) {
+  const Outcome outcome =
+      call({"plugins", "check", library(kBad, "careless"), "--set", "how=hang", "--timeout", "2"});
+  EXPECT_EQ(outcome.exit_code, 1);
+  EXPECT_THAT(outcome.out, HasSubstr("it did not end within 2 s"));
+}
+
+TEST(PluginsCheck, LibrariesThatCannotBeUsedSayWhy) {
+  const auto check = [](const std::string& file) {
+    const Outcome outcome = call({"plugins", "check", file, "--timeout", "5"});
+    EXPECT_EQ(outcome.exit_code, 1) << file;
+    return outcome.out;
+  };
+  EXPECT_THAT(check(library(kBad, "wrong_tag")), HasSubstr("cannot be used: built with gcc7"));
+  EXPECT_THAT(check(library(kBad, "no_stamp")), HasSubstr("cannot be used: "));
+  EXPECT_THAT(check(library(kBad / "crashes_when_loaded", "crashes_when_loaded")),
+              HasSubstr("it crashed: SIGSEGV"));
+  EXPECT_THAT(check(library(kBad / "hangs_when_loaded", "hangs_when_loaded")),
+              HasSubstr("it did not end within 5 s"));
+  EXPECT_THAT(check(library(kBad, "bad_options")), HasSubstr("two options are named 'points'"));
+}
+
+TEST(PluginsCheck, RefusesWhatIsNotThere) {
+  const auto error_of = [](const std::vector<std::string>& arguments) {
+    std::vector<std::string> all = {"plugins", "check"};
+    all.insert(all.end(), arguments.begin(), arguments.end());
+    const Outcome outcome = call(all);
+    EXPECT_EQ(outcome.exit_code, 2) << outcome.out;
+    return outcome.err;
+  };
+  const std::string good = library(kShipped, "map_checks");
+  EXPECT_THAT(error_of({"nowhere.so"}), HasSubstr("nowhere.so: there is no such file"));
+  EXPECT_THAT(error_of({good, "depth_consistancy"}),
+              HasSubstr("did you mean 'depth_consistency'?"));
+  EXPECT_THAT(error_of({good, "--case", "black image"}), HasSubstr("did you mean 'black images'?"));
+  const Outcome unknown = call({"plugins", "check", good, "--set", "margn=1"});
+  EXPECT_EQ(unknown.exit_code, 2);
+  EXPECT_THAT(unknown.out, HasSubstr("unknown key 'margn'; did you mean 'margin'?"));
+}
+
+}  // namespace
+}  // namespace stillpoint::testing

@@ -1,0 +1,40 @@
+// What a stage is driven with: a usual recording, and cases that happen in the world and that
+// authors forget.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "stillpoint/contracts/map_evidence.hpp"
+#include "stillpoint/testing/test_recording.hpp"
+
+namespace stillpoint::plugin_check {
+
+/// All that any stage may be given for one frame.
+struct Input {
+  FramePtr frame;
+  SegmentationPtr segmentation;
+  MovingPoints moving;
+  MapEvidence evidence;
+  std::shared_ptr<const StaticWeights> weights;
+  Pose world_from_camera = Pose::Identity();  ///< the truth
+};
+
+struct Scenario {
+  std::string name;
+  std::string why;     ///< it happens in the world
+  std::string remedy;  ///< for a stage that fails on it
+  std::vector<Input> inputs;
+  KeyFrameId first_keyframe = 0;
+  bool of_images = true;  ///< false: only labels, points and weights differ from the usual
+
+  /// With features, weights and true pose.
+  KeyFrame keyframe(std::size_t i, KeyFrameId id) const;
+  DenseKeyFrame dense_keyframe(std::size_t i, KeyFrameId id) const;
+};
+
+/// The usual one first. Images of all frames are in read-only memory.
+std::vector<Scenario> make_scenarios();
+
+}  // namespace stillpoint::plugin_check

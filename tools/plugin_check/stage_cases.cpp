@@ -1,0 +1,252 @@
+#include "plugin_check/stage_cases.hpp"
+
+#include <algorithm>
+#include <array>
+#include <fstream>
+#include <functional>
+#include <memory>
+#include <tuple>
+
+#include "plugin_check/drive.hpp"
+#include "stillpoint/runtime/yaml_loader.hpp"
+#include "stillpoint/runtime/yaml_option_reader.hpp"
+#include "stillpoint/support/did_you_mean.hpp"
+
+namespace stillpoint::plugin_check {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kOptions = "options";
+constexpr const char* kSameSeed = "one seed, two runs";
+constexpr const char* kTwoAtOnce = "two stages at once";
+constexpr const char* kDestroyed = "destroyed at any time";
+
+using Interfaces = std::tuple<Source, Segmenter, Propagator, MovingChecker, MapChecker, Decision,
+                              Tracker, LocalMapper, LoopCloser, MapBackend, Output>;
+
+/// Calls function.template operator()<Interface>() for the contract of a kind.
+template <class Function, std::size_t... I>
+void with_contract(const std::string& kind, const Function& function, std::index_sequence<I...>) {
+  const auto call_if = [&]<class Interface>() {
+    if (kind == Interface::kKind) function.template operator()<Interface>();
+  };
+  (call_if.template operator()<std::tuple_element_t<I, Interfaces>>(), ...);
+}
+
+ConfigNode options_of(const CheckedType& checked) {
+  FaultList faults;
+  ConfigNode options;
+  for (const std::string& assignment : checked.assignments)
+    options = merge_sections(std::move(options), parse_assignment(assignment, faults));
+  if (options.kind == ConfigNode::Kind::kMap) {
+    YamlOptionReader reader(&options, checked.type.kind);
+    describe_options(checked.type, reader);
+    reader.finish();
+    faults.add(reader.faults());
+  }
+  faults.throw_if_any();
+  return options;
+}
+
+class StageCase {
+ public:
+  StageCase(const CheckedType& checked, const fs::path& folder)
+      : checked_(checked),
+        options_(options_of(checked)),
+        folder_(folder),
+        name_(checked.type.kind + " (" + checked.type.type + ")") {}
+
+  template <class Interface>
+  std::shared_ptr<Interface> make(const fs::path& folder) const {
+    StageContext context = testing::test_context();
+    context.output_directory = folder;
+    context.camera = checked_.camera;
+    YamlOptionReader reader(options_.kind == ConfigNode::Kind::kMap ? &options_ : nullptr,
+                            checked_.type.kind);
+    return create<Interface>(checked_.type, reader, context);
+  }
+  fs::path empty_folder(const std::string& name) const {
+    fs::remove_all(folder_ / name);
+    fs::create_directory(folder_ / name);
+    return folder_ / name;
+  }
+
+  /// One stage through a scenario. Gives the digest of its results.
+  template <class Interface>
+  std::uint32_t run(const Scenario& scenario, CaseResult* result = nullptr) const {
+    Observer observer(name_);
+    const fs::path folder = empty_folder("one");
+    auto stage = make<Interface>(folder);
+    auto drive = make_drive<Interface>(*stage, {scenario, folder, observer});
+    while (drive->step()) {
+    }
+    drive->finish();
+    observer.require_unchanged();
+    if (result) {
+      result->remark = drive->remark();
+      result->times = observer.times();
+    }
+    drive.reset();
+    destroy(stage, observer);
+    return observer.digest();
+  }
+
+  template <class Interface>
+  void run_twice(const Scenario& scenario) const {
+    if (run<Interface>(scenario) != run<Interface>(scenario))
+      throw Failure(
+          {"two runs with one seed gave different results",
+           "mode `inline` promises the same trajectory, byte for byte; studies and bug "
+           "reports rely on it",
+           "seed random numbers with StageContext::seed; do not decide by the clock, by "
+           "addresses, by the order of unordered containers, or by uninitialised memory"});
+  }
+
+  template <class Interface>
+  void run_two_at_once(const Scenario& scenario) const {
+    const std::uint32_t alone = run<Interface>(scenario);
+    std::array<std::unique_ptr<Observer>, 2> observers;
+    std::array<std::shared_ptr<Interface>, 2> stages;
+    std::array<std::unique_ptr<Drive>, 2> drives;
+    const std::array folders = {empty_folder("first"), empty_folder("second")};
+    for (std::size_t i = 0; i < 2; ++i) {
+      observers[i] = std::make_unique<Observer>(name_);
+      stages[i] = make<Interface>(folders[i]);
+      drives[i] = make_drive<Interface>(*stages[i], {scenario, folders[i], *observers[i]});
+    }
+    for (bool first = true, second = true; first || second;) {
+      first = first && drives[0]->step();
+      second = second && drives[1]->step();
+    }
+    for (const auto& drive : drives) drive->finish();
+    for (const auto& observer : observers)
+      if (observer->digest() != alone)
+        throw Failure({"two stages, called in turn, gave other results than one alone",
+                       "programs may have several pipelines, and outputs of one type several "
+                       "instances",
+                       "keep all state in members: no static or global variables that change"});
+  }
+
+  template <class Interface>
+  void destroy_at_any_time(const Scenario& scenario) const {
+    for (const int steps : {0, 1, 2, 1000}) {
+      Observer observer(name_);
+      const fs::path folder = empty_folder("one");
+      auto stage = make<Interface>(folder);
+      auto drive = make_drive<Interface>(*stage, {scenario, folder, observer});
+      for (int i = 0; i < steps && drive->step(); ++i) {
+      }
+      drive.reset();
+      destroy(stage, observer);
+    }
+  }
+
+ private:
+  template <class Interface>
+  static void destroy(std::shared_ptr<Interface>& stage, Observer& observer) {
+    observer.check("its destructor", {}, [&] { stage.reset(); });
+  }
+
+  const CheckedType& checked_;
+  const ConfigNode options_;
+  const fs::path folder_;
+  const std::string name_;
+};
+
+std::string yaml_of(const CheckedType& checked, const ConfigNode* options) {
+  YamlOptionReader reader(options, checked.type.kind);
+  describe_options(checked.type, reader);
+  reader.finish();
+  reader.faults().throw_if_any();
+  return print_yaml(reader.record());
+}
+
+/// Writes options to a file, reads it and writes what was read.
+std::string written_and_read(const CheckedType& checked, const std::string& text,
+                             const fs::path& file) {
+  std::ofstream(file) << (text.empty() ? "{}\n" : text);
+  FaultList faults;
+  const ConfigNode node = load_config_file(file, "pipelines", faults);
+  faults.throw_if_any();
+  return yaml_of(checked, &node);
+}
+
+/// `check --print` writes all options; a run from that file must be the same run.
+std::string check_options(const CheckedType& checked, const fs::path& folder) {
+  const ConfigNode given = options_of(checked);
+  const std::string defaults =
+      yaml_of(checked, given.kind == ConfigNode::Kind::kMap ? &given : nullptr);
+  // Relative paths become absolute when they are first read.
+  const std::string text = written_and_read(checked, defaults, folder / "options.yaml");
+  if (written_and_read(checked, text, folder / "options.yaml") != text)
+    throw Failure({"the options that `stillpoint check --print` writes read back as others",
+                   "a run could not be repeated from its effective.yaml",
+                   "visit() must name the same options in every call, and not change values"});
+  const auto lines = std::ranges::count(text, '\n');
+  return std::to_string(lines) + (lines == 1 ? " line" : " lines");
+}
+
+const Scenario& scenario_named(const std::string& name, const std::vector<Scenario>& scenarios) {
+  const auto found = std::ranges::find(scenarios, name, &Scenario::name);
+  return found == scenarios.end() ? scenarios.front() : *found;
+}
+
+template <class Interface>
+void run_stage_case(const CheckedType& checked, const std::vector<Scenario>& scenarios,
+                    const fs::path& folder, CaseResult& result) {
+  const StageCase one(checked, folder);
+  const Scenario& usual = scenarios.front();
+  if (result.name == kSameSeed)
+    one.run_twice<Interface>(usual);
+  else if (result.name == kTwoAtOnce)
+    one.run_two_at_once<Interface>(usual);
+  else if (result.name == kDestroyed)
+    one.destroy_at_any_time<Interface>(usual);
+  else if (result.name == usual.name)
+    one.run<Interface>(usual, &result);
+  else
+    one.run<Interface>(scenario_named(result.name, scenarios));
+}
+
+}  // namespace
+
+std::vector<std::string> cases_of(const std::string& kind, const std::vector<Scenario>& scenarios) {
+  std::vector<std::string> names = {scenarios.front().name, kOptions, kSameSeed, kTwoAtOnce,
+                                    kDestroyed};
+  if (kind == Source::kKind) return names;
+  for (const Scenario& scenario : scenarios)
+    if (&scenario != &scenarios.front() && (scenario.of_images || kind != Segmenter::kKind))
+      names.push_back(scenario.name);
+  return names;
+}
+
+CaseResult run_case(const CheckedType& checked, const std::string& name,
+                    const std::vector<Scenario>& scenarios, const fs::path& folder) {
+  CaseResult result{.name = name};
+  try {
+    if (name == kOptions)
+      result.remark = check_options(checked, folder);
+    else
+      with_contract(
+          checked.type.kind,
+          [&]<class Interface>() { run_stage_case<Interface>(checked, scenarios, folder, result); },
+          std::make_index_sequence<std::tuple_size_v<Interfaces>>());
+  } catch (const Failure& failure) {
+    result.outcome = CaseResult::Outcome::kFailed;
+    result.finding = failure.finding;
+  } catch (const Error& error) {
+    // A stage that wants a file or a recording first is not wrong.
+    const bool wants_options = error.fault() != Fault::kStage;
+    result.outcome = wants_options ? CaseResult::Outcome::kNotRun : CaseResult::Outcome::kFailed;
+    const Scenario& scenario = scenario_named(name, scenarios);
+    result.finding = {error.what(), scenario.why, scenario.remedy};
+    if (name == kDestroyed) {
+      result.finding.why = "Ctrl-C or the failure of another stage end a run at any time";
+      result.finding.remedy = "expect the destructor after any number of calls, also after none";
+    }
+  }
+  return result;
+}
+
+}  // namespace stillpoint::plugin_check
