@@ -14,6 +14,7 @@
 #include <iterator>
 #include <map>
 #include <memory>
+#include <optional>
 #include <sstream>
 #include <string>
 #include <string_view>
@@ -216,22 +217,25 @@ void write(const Files& files, const fs::path& folder) {
   }
 }
 
-bool is_on_path(const fs::path& program) {
+/// The folder of PATH that the shell takes the program from, if it is this one.
+std::optional<fs::path> folder_on_path(const fs::path& program) {
   const char* value = std::getenv("PATH");
   std::istringstream folders(value ? value : "");
   for (std::string folder; std::getline(folders, folder, ':');) {
     std::error_code error;
     const fs::path candidate = fs::path(folder) / program.filename();
-    if (fs::exists(candidate, error)) return fs::equivalent(candidate, program, error);
+    if (!fs::exists(candidate, error)) continue;
+    return fs::equivalent(candidate, program, error) ? std::optional<fs::path>(folder)
+                                                     : std::nullopt;
   }
-  return false;
+  return std::nullopt;
 }
 
 /// Commands that work as they are in the user's working folder.
 void print_next_steps(const NewPlugin& plugin) {
   const fs::path prefix = installation_folder();
   const fs::path executable = fs::read_symlink("/proc/self/exe");
-  const bool on_path = is_on_path(executable);
+  const std::optional<fs::path> on_path = folder_on_path(executable);
   const std::string program = on_path ? "stillpoint" : quoted(executable.string());
   const std::string build = quoted((plugin.folder / "build").string());
   std::string configure = "cmake -S " + quoted(plugin.folder.string()) + " -B " + build;
@@ -239,9 +243,10 @@ void print_next_steps(const NewPlugin& plugin) {
     std::cout
         << "\nThis Stillpoint is not installed, and a plugin is built against an installation. "
            "Put its\nfolder for DIR:\n  cmake --install "
-        << quoted(prefix.string()) << " --prefix DIR";
+        << quoted(prefix.string()) << " --prefix DIR\n";
     configure += " -D CMAKE_PREFIX_PATH=DIR";
-  } else if (!on_path) {  // CMake looks beside the folders of PATH
+  } else if (std::error_code error;  // CMake looks beside the folders of PATH
+             !on_path || !fs::equivalent(on_path->parent_path(), prefix, error)) {
     configure += " -D CMAKE_PREFIX_PATH=" + quoted(prefix.string());
   }
   std::vector<std::string> commands = {configure, "cmake --build " + build,
@@ -260,7 +265,7 @@ void make(NewPlugin plugin) {
   require_free(plugin.folder);
   const Files project = project_of(plugin);
   write(project, plugin.folder);
-  std::cout << "made the project of a " << plugin.kind << " in " << plugin.folder.string()
+  std::cout << "made a project of kind " << plugin.kind << " in " << plugin.folder.string()
             << ":\n ";
   for (const auto& [name, text] : project) std::cout << ' ' << name;
   std::cout << '\n';
