@@ -16,7 +16,7 @@ namespace fs = std::filesystem;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-constexpr int kWrongUsage = 2;
+constexpr int kRefused = 2;
 
 class NewPlugin : public ::testing::Test {
  protected:
@@ -27,7 +27,7 @@ class NewPlugin : public ::testing::Test {
     return call(arguments, {.folder = folder_.path()});
   }
   void expect_refused(const Outcome& outcome, const std::string& message) const {
-    EXPECT_EQ(outcome.exit_code, kWrongUsage) << outcome.err;
+    EXPECT_EQ(outcome.exit_code, kRefused) << outcome.err;
     EXPECT_THAT(outcome.err, HasSubstr("error: "));
     EXPECT_THAT(outcome.err, HasSubstr(message));
     EXPECT_EQ(outcome.out, "");
