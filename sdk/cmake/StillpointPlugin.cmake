@@ -1,11 +1,16 @@
 # For authors of plugins: find_package(Stillpoint REQUIRED COMPONENTS Sdk) brings this function.
 
-# stillpoint_add_plugin(NAME SOURCES…): the target NAME, a library libstillpoint_NAME.so that exports
-# its descriptor and nothing else. Installing puts it where the program looks for plugins; from a
-# build folder it is found with STILLPOINT_PLUGIN_PATH.
+# stillpoint_add_plugin(NAME SOURCES… [CHECK_OPTIONS …]): the target NAME, a library
+# libstillpoint_NAME.so that exports its descriptor and nothing else. Installing puts it where the
+# program looks for plugins; from a build folder it is found with STILLPOINT_PLUGIN_PATH. Where tests
+# are enabled, NAME.KeepsItsContracts runs `stillpoint plugins check` on it, with CHECK_OPTIONS after
+# the library, such as --set path=DIR.
 function(stillpoint_add_plugin name)
   include(GNUInstallDirs)
-  add_library(${name} MODULE ${ARGN})
+  cmake_parse_arguments(ARG "" "" "CHECK_OPTIONS" ${ARGN})
+  add_library(${name} MODULE ${ARG_UNPARSED_ARGUMENTS})
+  add_test(NAME ${name}.KeepsItsContracts
+    COMMAND stillpoint::stillpoint plugins check $<TARGET_FILE:${name}> ${ARG_CHECK_OPTIONS})
   target_link_libraries(${name} PRIVATE stillpoint::sdk)
   # Symbols missing at load time would be found out by the user instead of the author.
   target_link_options(${name} PRIVATE -Wl,--no-undefined)

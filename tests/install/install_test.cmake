@@ -1,32 +1,6 @@
-# Installs into an empty prefix, builds a plugin of one file and a program with the engine against it,
-# and calls them and the installed program from a folder that has nothing to do with the project.
-set(work ${BUILD_DIR}/install_test)
-set(prefix ${work}/prefix)
-set(elsewhere ${work}/elsewhere)
-file(REMOVE_RECURSE ${work})
-file(MAKE_DIRECTORY ${elsewhere})
-
-# run(COMMAND…): from the other folder; fails the test unless the command succeeds. Its output is
-# left in `output`.
-function(run)
-  execute_process(COMMAND ${ARGN} WORKING_DIRECTORY ${elsewhere}
-    RESULT_VARIABLE result OUTPUT_VARIABLE out ERROR_VARIABLE out)
-  if(NOT result EQUAL 0)
-    list(JOIN ARGN " " command)
-    message(FATAL_ERROR "failed (${result}): ${command}\n${out}")
-  endif()
-  set(output "${out}" PARENT_SCOPE)
-endfunction()
-
-function(expect_in_output text)
-  string(FIND "${output}" "${text}" position)
-  if(position EQUAL -1)
-    message(FATAL_ERROR "'${text}' is missing in:\n${output}")
-  endif()
-endfunction()
-
-run(${CMAKE_COMMAND} --install ${BUILD_DIR} --prefix ${prefix})
-set(program ${prefix}/bin/stillpoint)
+# Builds a plugin of one file and a program with the engine against the installation, and calls them and
+# the installed program from a folder that has nothing to do with the project.
+include(${SOURCE_DIR}/tests/install/support.cmake)
 
 run(${program} --version)
 expect_in_output("stillpoint ")
@@ -62,18 +36,10 @@ run(${CMAKE_COMMAND} -S ${SOURCE_DIR}/sdk/examples/icp_tracker -B ${work}/icp_tr
   -G ${GENERATOR} -D CMAKE_CXX_COMPILER=${CXX_COMPILER} -D CMAKE_BUILD_TYPE=Release
   -D CMAKE_PREFIX_PATH=${prefix})
 run(${CMAKE_COMMAND} --build ${work}/icp_tracker)
-run(${program} simulate fr3_walking_xyz_empty --frames 60 -o ${work}/recording
-  --set camera.width=320 --set camera.height=240 --set camera.fx=267.7 --set camera.fy=269.6
-  --set camera.cx=159.8 --set camera.cy=123.6)
 run(${CMAKE_COMMAND} -E env STILLPOINT_PLUGIN_PATH=${work}/icp_tracker
   ${program} run ${SOURCE_DIR}/sdk/examples/icp_tracker/icp_odometry.yaml
-  --dataset ${work}/recording -o ${work}/run)
-run(${program} evaluate --json --reference ${work}/recording/groundtruth.txt
-  --estimate ${work}/run/trajectory.txt)
-string(JSON error GET "${output}" ate se3_m rmse)
-if(NOT error LESS 0.02)
-  message(FATAL_ERROR "ICP has an error of ${error} m")
-endif()
+  --dataset ${recording} -o ${work}/run)
+expect_small_error(${work}/run 0.02)
 if(NOT EXISTS ${work}/run/map/map.ot)
   message(FATAL_ERROR "ICP's key frames gave no dense map")
 endif()
@@ -85,4 +51,3 @@ if(PYTHON)
   expect_in_output("weights: plate 0, wall 255")
   expect_in_output(" 0 of them at the plate")
 endif()
-file(REMOVE_RECURSE ${work})

@@ -1,4 +1,4 @@
-// stillpoint plugins: what is installed, and the options of each type.
+// stillpoint plugins: what is installed, the options of each type, and projects for new ones.
 #include <algorithm>
 #include <iomanip>
 #include <iostream>
@@ -123,7 +123,8 @@ void describe_all(const Registry& registry, const std::string& name) {
 }  // namespace
 
 void add_plugins(CLI::App& app) {
-  CLI::App* command = app.add_subcommand("plugins", "Show the plugins and their options");
+  CLI::App* command =
+      app.add_subcommand("plugins", "Show the plugins and their options; begin a new one");
   command->require_subcommand(1);
   auto folders = std::make_shared<std::vector<std::string>>();
   command->add_option("--path", *folders, "Folder to search first; may be repeated")
@@ -147,6 +148,7 @@ void add_plugins(CLI::App& app) {
   describe_command->callback([folders, name] { describe_all(search_plugins(*folders), *name); });
 
   add_plugins_check(*command);
+  add_plugins_new(*command);
 }
 
 }  // namespace stillpoint

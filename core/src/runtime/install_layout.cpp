@@ -1,6 +1,7 @@
 #include "stillpoint/engine/install_layout.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cstdlib>
 #include <sstream>
 
@@ -11,13 +12,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// The library with this code lies in lib, on Debian in a folder of lib per architecture.
-fs::path installation() {
-  static const char here = 0;
-  const fs::path folder = folder_of(&here), above = folder.parent_path();
-  const bool per_architecture = folder == above.parent_path() / STILLPOINT_LIBRARY_FOLDER;
-  return per_architecture ? above.parent_path() : above;
-}
+// Debian's libraries lie in a folder of lib per architecture; a build tree has plain lib.
+constexpr std::array kLibraryFolders = {STILLPOINT_LIBRARY_FOLDER, "lib"};
 
 std::vector<fs::path> folders_of_variable(const char* name) {
   std::vector<fs::path> folders;
@@ -30,11 +26,25 @@ std::vector<fs::path> folders_of_variable(const char* name) {
 
 }  // namespace
 
+fs::path installation_folder() {
+  static const char here = 0;  // in the library of the engine
+  const fs::path folder = folder_of(&here), above = folder.parent_path();
+  const bool per_architecture = folder == above.parent_path() / STILLPOINT_LIBRARY_FOLDER;
+  return per_architecture ? above.parent_path() : above;
+}
+
+bool installation_has_sdk() {
+  return std::ranges::any_of(kLibraryFolders, [](const char* libraries) {
+    std::error_code error;
+    return fs::exists(installation_folder() / libraries / "cmake/Stillpoint/StillpointConfig.cmake",
+                      error);
+  });
+}
+
 std::vector<fs::path> default_plugin_folders() {
   std::vector<fs::path> folders = folders_of_variable("STILLPOINT_PLUGIN_PATH");
-  // Debian's libraries lie in a folder per architecture; a build tree has plain lib.
-  for (const char* libraries : {STILLPOINT_LIBRARY_FOLDER, "lib"}) {
-    const fs::path folder = installation() / libraries / "stillpoint/plugins";
+  for (const char* libraries : kLibraryFolders) {
+    const fs::path folder = installation_folder() / libraries / "stillpoint/plugins";
     if (std::ranges::find(folders, folder) == folders.end()) folders.push_back(folder);
   }
   return folders;
@@ -42,7 +52,7 @@ std::vector<fs::path> default_plugin_folders() {
 
 std::vector<fs::path> config_folders() {
   std::vector<fs::path> folders = folders_of_variable("STILLPOINT_CONFIG_PATH");
-  folders.push_back(installation() / "share/stillpoint/configs");
+  folders.push_back(installation_folder() / "share/stillpoint/configs");
   return folders;
 }
 

@@ -9,6 +9,12 @@
 
 namespace stillpoint {
 
+/// The folder that holds bin, lib and share.
+STILLPOINT_EXPORT std::filesystem::path installation_folder();
+
+/// Whether find_package(Stillpoint) finds the SDK there: in an installation, not in a build tree.
+STILLPOINT_EXPORT bool installation_has_sdk();
+
 /// STILLPOINT_PLUGIN_PATH, then the installation's plugin folders.
 STILLPOINT_EXPORT std::vector<std::filesystem::path> default_plugin_folders();
 
