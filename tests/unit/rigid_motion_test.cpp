@@ -23,7 +23,8 @@ class RigidMotionTest : public ::testing::Test {
     }
   }
   std::optional<RigidMotion> find(std::span<const Pose> guesses = {}, std::uint64_t seed = 1) {
-    return find_rigid_motion(matches_, camera_, {.pixel = 0.4, .inverse_depth = 0.004}, guesses, 60, seed);
+    return find_rigid_motion(matches_, camera_, {.pixel = 0.4, .inverse_depth = 0.004}, guesses, 60,
+                             seed);
   }
   static void expect_near(const Pose& a, const Pose& b) {
     EXPECT_LT((a.inverse() * b).translation().norm(), 0.003);

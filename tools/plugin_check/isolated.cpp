@@ -114,7 +114,7 @@ IsolatedEnd run_isolated(const std::function<std::string()>& function, double se
   end.console = last_lines(console.get());
   if (!in_time) {
     std::ostringstream text;
-    text << "it did not end within " << seconds << " s";
+    text << "it did not end within " << seconds << " s (--timeout)";
     end.how = text.str();
   } else if (WIFSIGNALED(status)) {
     end.how = std::string("a thread of its own was ended by SIG") + sigabbrev_np(WTERMSIG(status)) +

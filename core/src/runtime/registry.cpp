@@ -75,7 +75,9 @@ void Registry::search(const fs::path& folder) {
   for (const fs::path& file : plugin_files(absolute)) load(file);
 }
 
-void Registry::load(const fs::path& file) {
+void Registry::load(const fs::path& library_file) {
+  const fs::path file =
+      fs::absolute(library_file).lexically_normal();  // dlopen() searches for names
   PluginLibrary library = load_plugin_library(file);
   if (library.descriptor)
     add(*library.descriptor, file, std::move(library.handle));
