@@ -98,7 +98,7 @@ constexpr Careless kCareless[] = {
     {"thread", "usual recording", "a thread of its own was ended by SIGSEGV"},
 };
 INSTANTIATE_TEST_SUITE_P(Ways, PluginsCheckCareless, ::testing::ValuesIn(kCareless),
-                         [](const auto& info) { return std::string(info.param.how); });
+                         [](const auto& careless) { return std::string(careless.param.how); });
 
 TEST(PluginsCheck, TheyPassTheUsualRecording) {
   for (const std::string how : {"shared", "fixed_size", "unfinished"}) {

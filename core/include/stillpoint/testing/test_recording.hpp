@@ -29,9 +29,9 @@ struct TestRecordingOptions {
 };
 
 /// A furnished room (6 m × 3 m × 6 m) with texture on every surface, a camera that moves sideways
-/// and turns, and a person, two spheres in a row, who walks across at 1 m/s, 2 m away. Rendered
-/// exactly, without lens distortion; world is the first camera's frame. All of it is made in the
-/// constructor, some 20 ms per frame of the usual size; safe to read from any thread.
+/// and turns, and a person, two spheres one above the other, who walks across at 1 m/s, 2 m away.
+/// Rendered exactly, without lens distortion; world is the first camera's frame. All of it is made
+/// in the constructor, some 20 ms per frame of the usual size; safe to read from any thread.
 class STILLPOINT_EXPORT TestRecording {
  public:
   explicit TestRecording(const TestRecordingOptions& options = {});
