@@ -39,8 +39,8 @@ INSTANTIATE_TEST_SUITE_P(Libraries, PluginsCheckShipped,
                                            "segmenter_opencv_dnn"));
 
 TEST(PluginsCheck, TheSimulatorPasses) {
-  const Outcome outcome =
-      call({"plugins", "check", library(kShipped, "source_simulation"), "--set", "frames=3"});
+  const Outcome outcome = call({"plugins", "check", library(kShipped, "source_simulation"), "--set",
+                                "frames=3", "--timeout", "300"});
   EXPECT_EQ(outcome.exit_code, 0) << outcome.out << outcome.err;
 }
 
