@@ -130,6 +130,12 @@ TEST(PluginsCheck, LibrariesThatCannotBeUsedSayWhy) {
   EXPECT_THAT(check(library(kBad, "bad_options")), HasSubstr("two options are named 'points'"));
 }
 
+TEST(PluginsCheck, TheFolderMayStandBeforeAndBehindTheCommand) {
+  for (const auto& words : {std::vector<std::string>{"plugins", "--path", kBad, "list"},
+                            std::vector<std::string>{"plugins", "list", "--path", kBad}})
+    EXPECT_THAT(call(words).out, HasSubstr("libstillpoint_careless.so"));
+}
+
 TEST(PluginsCheck, RefusesWhatIsNotThere) {
   const auto error_of = [](const std::vector<std::string>& arguments) {
     std::vector<std::string> all = {"plugins", "check"};

@@ -137,6 +137,7 @@ void add_plugins(CLI::App& app) {
   list_command->add_flag("--json", options->json, "For programs");
   list_command->add_flag("--strict", options->strict,
                          "Exit code 2 when a library, a type or a folder cannot be used");
+  list_command->fallthrough();  // --path may stand behind it, too
   list_command->callback([folders, options] { list(search_plugins(*folders), *options); });
 
   CLI::App* describe_command =
@@ -145,6 +146,7 @@ void add_plugins(CLI::App& app) {
   describe_command->add_option("type", *name, "TYPE, or KIND/TYPE when several kinds have the type")
       ->type_name("TYPE")
       ->required();
+  describe_command->fallthrough();
   describe_command->callback([folders, name] { describe_all(search_plugins(*folders), *name); });
 
   add_plugins_check(*command);
