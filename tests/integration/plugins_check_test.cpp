@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "support/program.hpp"
@@ -113,6 +114,29 @@ TEST(PluginsCheck, AStageThatHangsCostsItsCaseOnly) {
       call({"plugins", "check", library(kBad, "careless"), "--set", "how=hang", "--timeout", "2"});
   EXPECT_EQ(outcome.exit_code, 1);
   EXPECT_THAT(outcome.out, HasSubstr("it did not end within 2 s"));
+}
+
+TEST(PluginsCheck, CtrlCEndsItAndLeavesNothing) {
+  const TemporaryFolder folder;
+  Program program({"plugins", "check", library(kBad, "careless"), "--set", "how=hang"},
+                  {.environment = {{"TMPDIR", folder.path().string()}}});
+  const auto case_has_begun = [&] {  // it has made a folder of its own in the check's
+    for (const fs::directory_entry& entry : fs::directory_iterator(folder.path()))
+      if (!fs::is_empty(entry.path())) return true;
+    return false;
+  };
+  while (!case_has_begun()) std::this_thread::yield();
+  program.send(SIGINT);
+  const Outcome outcome = program.finish();
+  EXPECT_EQ(outcome.signal, SIGINT);
+  EXPECT_TRUE(fs::is_empty(folder.path()));
+}
+
+TEST(PluginsCheck, NeedsAFolderForItsFiles) {
+  const Outcome outcome = call({"plugins", "check", library(kShipped, "map_checks")},
+                               {.environment = {{"TMPDIR", "/nowhere"}}});
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_THAT(outcome.err, HasSubstr("no temporary folder can be made; set TMPDIR to a folder"));
 }
 
 TEST(PluginsCheck, LibrariesThatCannotBeUsedSayWhy) {

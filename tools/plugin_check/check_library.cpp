@@ -21,9 +21,11 @@ namespace fs = std::filesystem;
 class TemporaryFolder {
  public:
   TemporaryFolder() {
-    std::string name = (fs::temp_directory_path() / "stillpoint_check_XXXXXX").string();
-    if (!::mkdtemp(name.data()))
-      throw Error(Fault::kStage, "no temporary folder can be made", name,
+    std::error_code error;
+    const fs::path parent = fs::temp_directory_path(error);
+    std::string name = (parent / "stillpoint_check_XXXXXX").string();
+    if (error || !::mkdtemp(name.data()))
+      throw Error(Fault::kUsage, "no temporary folder can be made", "plugins check",
                   "set TMPDIR to a folder that can be written to");
     path_ = name;
   }

@@ -5,6 +5,7 @@
 #include <stop_token>
 
 #include "plugin_check/frame_drive.hpp"
+#include "stillpoint/runtime/null_stages.hpp"
 #include "stillpoint/runtime/stage_results.hpp"
 #include "stillpoint/runtime/thorough_checks.hpp"
 
@@ -17,11 +18,7 @@ constexpr std::size_t kFramesPerKeyFrame = 3;
 
 /// As a pipeline without a local mapper does it.
 SparseMap inserted(SparseMap map, KeyFrame keyframe) {
-  const KeyFrameId id = keyframe.id;
-  MapEdit edit(std::move(map));
-  edit.add_keyframe(std::move(keyframe));
-  edit.update_covisibility(id);
-  return std::move(edit).finish();
+  return make_null_stage<LocalMapper>()->insert(std::move(map), std::move(keyframe));
 }
 
 std::stop_token requested_stop() {

@@ -8,6 +8,7 @@
 #include <array>
 #include <cerrno>
 #include <chrono>
+#include <csignal>
 #include <cstdio>
 #include <cstring>
 #include <memory>
@@ -32,6 +33,49 @@ using File = std::unique_ptr<std::FILE, CloseFile>;
   throw Error(Fault::kStage, std::string(what) + ": " + std::strerror(errno), "plugins check");
 }
 
+volatile std::sig_atomic_t interrupting_signal = 0;
+extern "C" void on_interrupt(int signal) { interrupting_signal = signal; }
+
+/// While it lives, SIGINT and SIGTERM end a wait() and not the process. They come during a wait()
+/// only, so that none is missed.
+class InterruptibleWait {
+ public:
+  InterruptibleWait() {
+    interrupting_signal = 0;
+    sigset_t held;
+    sigemptyset(&held);
+    struct sigaction action {};
+    action.sa_handler = on_interrupt;
+    for (std::size_t i = 0; i < kSignals.size(); ++i) {
+      sigaddset(&held, kSignals[i]);
+      sigaction(kSignals[i], &action, &before_[i]);
+    }
+    sigprocmask(SIG_BLOCK, &held, &mask_);
+  }
+  ~InterruptibleWait() { restore(); }
+  InterruptibleWait(const InterruptibleWait&) = delete;
+  InterruptibleWait& operator=(const InterruptibleWait&) = delete;
+
+  /// For the child, too.
+  void restore() {
+    for (std::size_t i = 0; i < kSignals.size(); ++i) sigaction(kSignals[i], &before_[i], nullptr);
+    sigprocmask(SIG_SETMASK, &mask_, nullptr);
+  }
+  /// Whether `file` can be read from. False: not in time, or interrupted.
+  bool wait(int file, std::chrono::nanoseconds time) const {
+    pollfd ready{.fd = file, .events = POLLIN, .revents = 0};
+    const timespec limit{.tv_sec = time.count() / 1'000'000'000,
+                         .tv_nsec = time.count() % 1'000'000'000};
+    return ::ppoll(&ready, 1, &limit, &mask_) > 0;
+  }
+
+ private:
+  static constexpr std::array kSignals = {SIGINT, SIGTERM};
+
+  std::array<struct sigaction, 2> before_{};
+  sigset_t mask_{};
+};
+
 [[noreturn]] void be_the_child(const std::function<std::string()>& function, int pipe,
                                std::FILE* console) {
   ::dup2(::fileno(console), STDOUT_FILENO);
@@ -55,17 +99,13 @@ using File = std::unique_ptr<std::FILE, CloseFile>;
   ::_exit(exit_code);  // nothing of the plugin is run any more
 }
 
-/// What the child writes until it ends; false when it takes longer than `seconds`.
-bool read_all(int pipe, double seconds, std::string& text) {
+/// What the child writes until it ends; false when it takes longer than `seconds`, or interrupted.
+bool read_all(const InterruptibleWait& wait, int pipe, double seconds, std::string& text) {
   const auto end = Clock::now() + std::chrono::duration<double>(seconds);
   std::array<char, 4096> buffer{};
   for (;;) {
-    const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(end - Clock::now());
-    if (left.count() <= 0) return false;
-    pollfd ready{.fd = pipe, .events = POLLIN, .revents = 0};
-    const int count = ::poll(&ready, 1, static_cast<int>(left.count()));
-    if (count < 0 && errno == EINTR) continue;
-    if (count <= 0) return false;
+    const auto left = std::chrono::duration_cast<std::chrono::nanoseconds>(end - Clock::now());
+    if (left.count() <= 0 || !wait.wait(pipe, left)) return false;
     const auto read = ::read(pipe, buffer.data(), buffer.size());
     if (read <= 0) return true;
     text.append(buffer.data(), static_cast<std::size_t>(read));
@@ -96,21 +136,24 @@ IsolatedEnd run_isolated(const std::function<std::string()>& function, double se
   std::array<int, 2> pipe{};
   if (!console || ::pipe(pipe.data()) != 0) fail("no temporary file or pipe");
   std::fflush(nullptr);
+  InterruptibleWait wait;
   const pid_t child = ::fork();
   if (child < 0) fail("no process");
   if (child == 0) {
+    wait.restore();
     ::close(pipe[0]);
     be_the_child(function, pipe[1], console.get());
   }
   ::close(pipe[1]);
   IsolatedEnd end;
   std::string result;
-  const bool in_time = read_all(pipe[0], seconds, result);
+  const bool in_time = read_all(wait, pipe[0], seconds, result);
   ::close(pipe[0]);
   if (!in_time) ::kill(child, SIGKILL);
   int status = 0;
   while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
   }
+  if (interrupting_signal != 0) throw Interrupted(interrupting_signal);
   end.console = last_lines(console.get());
   if (!in_time) {
     std::ostringstream text;

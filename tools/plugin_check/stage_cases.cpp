@@ -5,12 +5,11 @@
 #include <fstream>
 #include <functional>
 #include <memory>
-#include <tuple>
 
 #include "plugin_check/drive.hpp"
 #include "stillpoint/runtime/yaml_loader.hpp"
 #include "stillpoint/runtime/yaml_option_reader.hpp"
-#include "stillpoint/support/did_you_mean.hpp"
+#include "stillpoint/support/contract_list.hpp"
 
 namespace stillpoint::plugin_check {
 namespace {
@@ -22,18 +21,6 @@ constexpr const char* kSameSeed = "one seed, two runs";
 constexpr const char* kTwoAtOnce = "two stages at once";
 constexpr const char* kDestroyed = "destroyed at any time";
 constexpr std::size_t kFramesOfBeginning = 8;
-
-using Interfaces = std::tuple<Source, Segmenter, Propagator, MovingChecker, MapChecker, Decision,
-                              Tracker, LocalMapper, LoopCloser, MapBackend, Output>;
-
-/// Calls function.template operator()<Interface>() for the contract of a kind.
-template <class Function, std::size_t... I>
-void with_contract(const std::string& kind, const Function& function, std::index_sequence<I...>) {
-  const auto call_if = [&]<class Interface>() {
-    if (kind == Interface::kKind) function.template operator()<Interface>();
-  };
-  (call_if.template operator()<std::tuple_element_t<I, Interfaces>>(), ...);
-}
 
 ConfigNode options_of(const CheckedType& checked) {
   FaultList faults;
@@ -231,10 +218,10 @@ CaseResult run_case(const CheckedType& checked, const std::string& name,
     if (name == kOptions)
       result.remark = check_options(checked, folder);
     else
-      with_contract(
-          checked.type.kind,
-          [&]<class Interface>() { run_stage_case<Interface>(checked, scenarios, folder, result); },
-          std::make_index_sequence<std::tuple_size_v<Interfaces>>());
+      Contracts::for_each([&]<class Interface>() {
+        if (checked.type.kind == Interface::kKind)
+          run_stage_case<Interface>(checked, scenarios, folder, result);
+      });
   } catch (const Failure& failure) {
     result.outcome = CaseResult::Outcome::kFailed;
     result.finding = failure.finding;

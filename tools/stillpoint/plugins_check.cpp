@@ -1,4 +1,5 @@
 // stillpoint plugins check: the cases of a library's stages, as a table and as findings.
+#include <csignal>
 #include <iomanip>
 #include <iostream>
 #include <memory>
@@ -6,6 +7,7 @@
 #include "commands.hpp"
 #include "plugin_check/case_json.hpp"
 #include "plugin_check/check_library.hpp"
+#include "plugin_check/isolated.hpp"
 
 namespace stillpoint {
 namespace {
@@ -145,7 +147,13 @@ void add_plugins_check(CLI::App& plugins) {
       ->check(CLI::Range(0.1, 3600.0))
       ->capture_default_str();
   command->add_flag("--json", options->json, "For programs");
-  command->callback([options] { check(*options); });
+  command->callback([options] {
+    try {
+      check(*options);
+    } catch (const plugin_check::Interrupted& interrupted) {
+      std::raise(interrupted.signal);  // so that a calling script sees that it was interrupted
+    }
+  });
 }
 
 }  // namespace stillpoint

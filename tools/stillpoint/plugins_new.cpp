@@ -22,8 +22,8 @@
 
 #include "commands.hpp"
 #include "stillpoint/engine/install_layout.hpp"
-#include "stillpoint/sdk.hpp"
 #include "stillpoint/support/atomic_file.hpp"
+#include "stillpoint/support/contract_list.hpp"
 #include "stillpoint/support/did_you_mean.hpp"
 
 namespace stillpoint {
@@ -39,14 +39,9 @@ struct NewPlugin {
 /// Contents by file name.
 using Files = std::map<std::string, std::string>;
 
-template <class... Interfaces>
-std::vector<std::string> kinds_of() {
-  return {Interfaces::kKind...};
-}
-const std::vector<std::string>& kinds() {
-  static const auto kinds =
-      kinds_of<Source, Segmenter, Propagator, MovingChecker, MapChecker, Decision, Tracker,
-               LocalMapper, LoopCloser, MapBackend, Output>();
+std::vector<std::string> kinds() {
+  std::vector<std::string> kinds;
+  for (const KindApi& contract : Contracts::kKinds) kinds.emplace_back(contract.kind);
   return kinds;
 }
 
@@ -69,7 +64,7 @@ constexpr std::string_view kTaken =
     "stdout stillpoint test testing ";
 
 void require_kind(const std::string& kind) {
-  if (std::ranges::find(kinds(), kind) != kinds().end()) return;
+  if (std::ranges::find(Contracts::kKinds, kind, &KindApi::kind) != Contracts::kKinds.end()) return;
   throw Error(Fault::kUsage, "there is no kind of plugin '" + kind + "'" +
                                  did_you_mean(kind, kinds()) + "\n  available: " + join(kinds()));
 }

@@ -8,24 +8,12 @@
 #include <vector>
 
 #include "stillpoint/runtime/elf_file.hpp"
-#include "stillpoint/sdk.hpp"
+#include "stillpoint/support/contract_list.hpp"
 
 namespace stillpoint {
 namespace {
 
 constexpr const char* kRebuild = "; rebuild it against Stillpoint " STILLPOINT_VERSION;
-
-struct KindApi {
-  std::string_view kind;
-  std::uint32_t api;
-};
-
-template <class... Interfaces>
-constexpr std::array<KindApi, sizeof...(Interfaces)> apis_of() {
-  return {KindApi{Interfaces::kKind, Interfaces::kApi}...};
-}
-constexpr auto kKinds = apis_of<Source, Segmenter, Propagator, MovingChecker, MapChecker, Decision,
-                                Tracker, LocalMapper, LoopCloser, MapBackend, Output>();
 
 struct Stamp {
   std::uint32_t api = 0;
@@ -94,8 +82,8 @@ std::string why_library_does_not_fit(const std::filesystem::path& file) {
 }
 
 std::string why_kind_does_not_fit(std::string_view kind, std::uint32_t kind_api) {
-  const auto known = std::ranges::find(kKinds, kind, &KindApi::kind);
-  if (known == kKinds.end()) return "there is no kind '" + std::string(kind) + "'";
+  const auto known = std::ranges::find(Contracts::kKinds, kind, &KindApi::kind);
+  if (known == Contracts::kKinds.end()) return "there is no kind '" + std::string(kind) + "'";
   if (known->api == kind_api) return {};
   return "built for API " + std::to_string(kind_api) + " of kind '" + std::string(kind) +
          "', this program has API " + std::to_string(known->api) + kRebuild;

@@ -28,7 +28,7 @@ std::shared_ptr<Decision> make_null_stage();
 template <>
 std::shared_ptr<Tracker> make_null_stage();
 template <>
-std::shared_ptr<LocalMapper> make_null_stage();
+STILLPOINT_EXPORT std::shared_ptr<LocalMapper> make_null_stage();
 template <>
 std::shared_ptr<LoopCloser> make_null_stage();
 template <>
