@@ -45,7 +45,7 @@ class BadNetwork : public ::testing::Test {
 TEST_F(BadNetwork, Missing) {
   options_.network.model = folder_.path() / "missing.onnx";
   EXPECT_THAT(fault(Fault::kUsage), AllOf(HasSubstr("missing.onnx"), HasSubstr("does not exist"),
-                                          HasSubstr("tools/get_models")));
+                                          HasSubstr("stillpoint-get-models")));
 }
 
 TEST_F(BadNetwork, TruncatedOnnx) {

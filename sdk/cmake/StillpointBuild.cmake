@@ -100,13 +100,15 @@ function(stillpoint_add_project_plugin name)
   stillpoint_add_library(${name}_code TEST ${name}_test ${ARGN})
 
   add_library(stillpoint_${name} MODULE plugin.cpp)
+  target_precompile_headers(stillpoint_${name} REUSE_FROM stillpoint_code_headers)
   stillpoint_compile_options(stillpoint_${name})
   target_link_libraries(stillpoint_${name} PRIVATE ${name}_code)
   target_link_options(stillpoint_${name} PRIVATE -Wl,--no-undefined -Wl,--exclude-libs,ALL)
   set_target_properties(stillpoint_${name} PROPERTIES
     LIBRARY_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/lib/stillpoint/plugins
     INSTALL_RPATH "$ORIGIN/../..")
-  install(TARGETS stillpoint_${name} LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/stillpoint/plugins)
+  install(TARGETS stillpoint_${name} COMPONENT program
+    LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/stillpoint/plugins)
   stillpoint_ship_models(${name})
 endfunction()
 
@@ -124,7 +126,7 @@ function(stillpoint_ship_models name)
       set(copy ${name}_${file})
     endif()
     configure_file(${model} ${PROJECT_BINARY_DIR}/lib/stillpoint/plugins/models/${copy} COPYONLY)
-    install(FILES ${model} RENAME ${copy}
+    install(FILES ${model} RENAME ${copy} COMPONENT program
       DESTINATION ${CMAKE_INSTALL_LIBDIR}/stillpoint/plugins/models)
   endforeach()
   if(STILLPOINT_BUILD_TESTS)

@@ -51,7 +51,7 @@ TEST_F(ModelLookup, NamesEveryPlaceWhenThereIsNone) {
     EXPECT_EQ(error.fault(), Fault::kUsage);
     for (const auto& folder : model_folders(&own))
       EXPECT_THAT(error.what(), HasSubstr((folder / "net.onnx").string()));
-    EXPECT_THAT(error.what(), HasSubstr("tools/get_models"));
+    EXPECT_THAT(error.what(), HasSubstr("stillpoint-get-models"));
   }
 }
 

@@ -35,13 +35,8 @@ struct AblateArguments {
   std::string study;
   fs::path output;
   int jobs = 1;
+  bool quiet = false;
 };
-
-std::string minutes(double seconds) {
-  const long whole = std::lround(seconds);
-  return std::to_string(whole / 60) + ":" + (whole % 60 < 10 ? "0" : "") +
-         std::to_string(whole % 60);
-}
 
 /// One call of `stillpoint ablate`.
 class Ablation {
@@ -51,7 +46,9 @@ class Ablation {
         output_(fs::absolute(arguments.output.empty() ? fs::path("out") / file_.file.stem()
                                                       : arguments.output)
                     .lexically_normal()),
-        jobs_(arguments.jobs) {}
+        jobs_(arguments.jobs),
+        quiet_(arguments.quiet),
+        console_(arguments.quiet) {}
 
   /// Throws Error when runs have failed, after everything has been written.
   void run() {
@@ -65,7 +62,7 @@ class Ablation {
       signal = Interrupt::signal();
       if (signal == 0) return throw_if_failed(results);
     }
-    console_.line("stopped; the same command resumes the study");
+    console_.note("stopped; the same command resumes the study");
     std::raise(signal);  // so that a calling script sees that it was interrupted
   }
 
@@ -101,7 +98,7 @@ class Ablation {
     if (!sequence.scene.empty()) {
       const std::string description = describe_scene(sequence);
       if (!is_recorded(recording, description)) {
-        console_.line("simulating " + sequence.name);
+        console_.note("simulating " + sequence.name);
         if (!record(this_program(), sequence, description, recording, stop)) return false;
       }
     }
@@ -165,7 +162,7 @@ class Ablation {
   void say_what_is_there(const StudyResults& results) {
     const std::size_t there = results.cells.size() - results.missing();
     if (there == 0) return;
-    console_.line(std::to_string(there) + " of " + std::to_string(results.cells.size()) +
+    console_.note(std::to_string(there) + " of " + std::to_string(results.cells.size()) +
                   " runs are there already");
     const std::string current = program();
     const auto older = std::ranges::count_if(
@@ -187,7 +184,7 @@ class Ablation {
       text += result.message;
     text += ", " + minutes(result.seconds);
     if (progress.done < progress.of) text += ", " + minutes(progress.remaining_seconds) + " left";
-    console_.line(text);
+    console_.note(text);
   }
 
   void write(const StudyResults& results) const {
@@ -195,6 +192,7 @@ class Ablation {
     write_text(output_ / "study.yaml", file_.effective_yaml);
     write_text(output_ / "results.csv", csv_report(results));
     write_text(output_ / "results.md", tables);
+    if (quiet_) return;
     std::cout << tables << "\nfiles in " << output_.string()
               << ": results.md results.csv study.yaml runs/\n"
               << std::flush;
@@ -216,6 +214,7 @@ class Ablation {
   const StudyFile file_;
   const fs::path output_;
   const int jobs_;
+  const bool quiet_;
   Console console_;
 };
 
@@ -237,6 +236,7 @@ void add_ablate(CLI::App& app) {
       ->capture_default_str()
       ->check(CLI::Range(1, 1024))
       ->type_name("N");
+  command->add_flag("-q,--quiet", arguments->quiet, "Print only warnings and errors");
   command->callback([arguments] { Ablation(*arguments).run(); });
 }
 

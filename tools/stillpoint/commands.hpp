@@ -4,6 +4,8 @@
 
 #include <CLI/CLI.hpp>
 #include <initializer_list>
+#include <string>
+#include <vector>
 
 #include "stillpoint/engine/pipeline_config.hpp"
 #include "stillpoint/runtime/stage_guard.hpp"
@@ -21,6 +23,9 @@ void add_plugins_check(CLI::App& plugins);
 void add_plugins_new(CLI::App& plugins);
 void add_run(CLI::App& app);
 void add_simulate(CLI::App& app);
+
+/// What the last of the words after the program's name can become, for the completion of shells.
+void print_completions(const CLI::App& app, std::vector<std::string> words);
 
 /// PIPELINE, --dataset, --camera and --set, for every subcommand that reads a pipeline file.
 void add_pipeline_options(CLI::App& command, PipelineRequest& request);

@@ -3,6 +3,7 @@
 #include <sys/ioctl.h>
 #include <unistd.h>
 
+#include <cmath>
 #include <iostream>
 
 namespace stillpoint {
@@ -12,7 +13,13 @@ constexpr const char* kClearLine = "\r\033[K";
 
 }  // namespace
 
-Console::Console() : is_terminal_(isatty(STDERR_FILENO) == 1) {}
+std::string minutes(double seconds) {
+  const long whole = std::lround(seconds);
+  return std::to_string(whole / 60) + ":" + (whole % 60 < 10 ? "0" : "") +
+         std::to_string(whole % 60);
+}
+
+Console::Console(bool quiet) : quiet_(quiet), is_terminal_(isatty(STDERR_FILENO) == 1) {}
 
 int Console::columns() const {
   winsize size{};
@@ -25,8 +32,12 @@ void Console::line(const std::string& text) {
   std::cerr << text << '\n' << status_ << std::flush;
 }
 
+void Console::note(const std::string& text) {
+  if (!quiet_) line(text);
+}
+
 void Console::status(const std::string& text) {
-  if (!is_terminal_) return;
+  if (quiet_ || !is_terminal_) return;
   const std::lock_guard lock(mutex_);
   status_ = text;
   std::cerr << kClearLine << status_ << std::flush;

@@ -6,19 +6,26 @@
 
 namespace stillpoint {
 
+/// "4:07", minutes and seconds.
+std::string minutes(double seconds);
+
 /// May be used from any thread.
 class Console {
  public:
-  Console();
+  /// Quiet: without notes and status lines.
+  explicit Console(bool quiet = false);
 
   bool is_terminal() const { return is_terminal_; }
   /// Of the terminal as it is now: a status line must not be longer.
   int columns() const;
   void line(const std::string& text);
+  /// A line that is left out when quiet.
+  void note(const std::string& text);
   /// Replaces the status line; empty: removes it. Does nothing without a terminal.
   void status(const std::string& text);
 
  private:
+  const bool quiet_;
   const bool is_terminal_;
   std::mutex mutex_;
   std::string status_;  // guarded by mutex_

@@ -46,7 +46,7 @@ void add_inspect(CLI::App& app) {
       ->add_option("--camera", arguments->camera,
                    "Camera file, or the name of one in configs/cameras; default: the camera.yaml "
                    "beside the recording")
-      ->type_name("NAME|FILE");
+      ->type_name("CAMERA");
   inspection::RecordingOptions& pairing = arguments->options.pairing;
   command
       ->add_option("--max-difference", pairing.max_difference,

@@ -1,11 +1,11 @@
-// The command line. Exit codes: 0 done, 1 a stage failed, 2 wrong usage or configuration,
-// 3 unusable data.
+// The command line.
 #include <csignal>
 #include <cstdlib>
 #include <exception>
 #include <iostream>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "commands.hpp"
@@ -25,6 +25,10 @@ constexpr void (*kCommands[])(CLI::App&) = {
     stillpoint::add_run,     stillpoint::add_simulate,
 };
 
+constexpr const char* kExitCodes =
+    "Exit codes: 0 done, 1 a stage failed, 2 wrong usage or configuration, 3 unusable data, "
+    "130 stopped by Ctrl-C (128 + the number of the signal)";
+
 /// CLI11 would only say that a subcommand is required. `words` begins with what should be one.
 void check_command(const CLI::App& app, std::span<char*> words, const std::string& where) {
   const std::vector<const CLI::App*> commands = app.get_subcommands({});
@@ -35,27 +39,62 @@ void check_command(const CLI::App& app, std::span<char*> words, const std::strin
     names.push_back(command->get_name());
     if (names.back() == word) return check_command(*command, words.subspan(1), where + ' ' + word);
   }
-  throw Error(Fault::kUsage, "no command '" + word + "'" + stillpoint::did_you_mean(word, names),
-              where, "there are: " + stillpoint::join(names));
+  const std::string suggestion = stillpoint::did_you_mean(word, names);
+  throw Error(Fault::kUsage, "no command '" + word + "'" + suggestion, where,
+              suggestion.empty() ? "there are: " + stillpoint::join(names) : "");
+}
+
+/// The command that the words chose, and its name as it was typed.
+std::pair<const CLI::App*, std::string> chosen_command(const CLI::App& app) {
+  const CLI::App* command = &app;
+  std::string name = app.get_name();
+  while (!command->get_subcommands().empty()) {
+    command = command->get_subcommands().front();
+    name += ' ' + command->get_name();
+  }
+  return {command, name};
+}
+
+std::vector<std::string> option_names(const CLI::App& command) {
+  std::vector<std::string> names;
+  for (const CLI::Option* option : command.get_options())
+    for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+  return names;
+}
+
+/// CLI11 would only say which words were not expected.
+void check_options(const CLI::App& app) {
+  const auto [command, name] = chosen_command(app);
+  for (const std::string& word : app.remaining(true)) {
+    if (word.size() < 2 || word[0] != '-') continue;
+    const std::string option = word.substr(0, word.find('='));
+    const std::string suggestion = stillpoint::did_you_mean(option, option_names(*command));
+    throw Error(Fault::kUsage, "no option '" + option + "'" + suggestion, name,
+                suggestion.empty() ? "'" + name + " --help' lists them" : "");
+  }
 }
 
 int run(int argc, char** argv) {
   CLI::App app{"RGB-D SLAM for scenes in which people and things move", "stillpoint"};
-  app.set_version_flag("--version", "stillpoint " STILLPOINT_VERSION);
+  app.set_version_flag("-V,--version", "stillpoint " STILLPOINT_VERSION);
   app.set_help_all_flag("--help-all", "Help of every subcommand");
   app.require_subcommand(1);
   app.fallthrough(false);
-  app.footer(
-      "Exit codes: 0 done, 1 a stage failed, 2 wrong usage or configuration, 3 unusable data");
+  app.footer(kExitCodes);
   app.failure_message([](const CLI::App* command, const CLI::Error& error) {
-    return std::string("error: ") + error.what() + "\nRun '" + command->get_name() +
+    return std::string("error: ") + error.what() + "\nRun '" + chosen_command(*command).second +
            " --help' for help.\n";
   });
   for (const auto add : kCommands) add(app);
+  if (argc > 1 && argv[1] == std::string("--complete")) {
+    stillpoint::print_completions(app, {argv + 2, argv + argc});
+    return 0;
+  }
   check_command(app, std::span(argv, static_cast<std::size_t>(argc)).subspan(1), "stillpoint");
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() != 0) check_options(app);
     return app.exit(error) == 0 ? 0 : static_cast<int>(Fault::kUsage);
   }
   return 0;

@@ -26,7 +26,7 @@ void add_pipeline_options(CLI::App& command, PipelineRequest& request) {
   command
       .add_option("--camera", request.camera,
                   "Camera file, or the name of one in configs/cameras; replaces the camera section")
-      ->type_name("NAME|FILE");
+      ->type_name("CAMERA");
   command
       .add_option("--set", request.assignments,
                   "Change one setting, as in --set tracker.features=2000; may be repeated")

@@ -141,7 +141,7 @@ void add_plugins_check(CLI::App& plugins) {
       ->type_name("OPTION=VALUE")
       ->allow_extra_args(false);
   command->add_option("--camera", options->camera, "Camera of a source that needs one")
-      ->type_name("NAME|FILE");
+      ->type_name("CAMERA");
   command->add_option("--timeout", options->request.seconds, "Seconds that a case may take")
       ->type_name("S")
       ->check(CLI::Range(0.1, 3600.0))

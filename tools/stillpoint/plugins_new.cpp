@@ -151,7 +151,7 @@ std::string text_of(const fs::path& file) {
   std::string text(std::istreambuf_iterator<char>(stream), {});
   if (!stream)
     throw Error(Fault::kUsage, std::string("cannot be read: ") + std::strerror(errno),
-                file.string(), "install Stillpoint anew");
+                file.string(), "the package libstillpoint-dev has it");
   return text;
 }
 
@@ -162,7 +162,7 @@ Files files_in(const fs::path& folder) {
     files[entry.path().filename().string()] = text_of(entry.path());
   if (error)
     throw Error(Fault::kUsage, "cannot be read: " + error.message(), folder.string(),
-                "install Stillpoint anew");
+                "the package libstillpoint-dev has it");
   return files;
 }
 

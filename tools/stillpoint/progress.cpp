@@ -21,13 +21,6 @@ std::string with_bar(double share, const std::string& text, int columns) {
   return line + "  " + text.substr(0, static_cast<std::size_t>(std::max(0, columns - 3)));
 }
 
-std::string minutes(double seconds) {
-  const int whole = static_cast<int>(seconds + 0.5);
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%d:%02d", whole / 60, whole % 60);
-  return text.data();
-}
-
 }  // namespace
 
 Progress::Progress(Console& console, std::optional<std::size_t> frames)

@@ -31,6 +31,8 @@ struct RunArguments {
   fs::path output;
   fs::path save_map, load_map;
   bool localise_only = false;
+  bool images = false;
+  bool quiet = false;
 };
 
 void print_files(const RunFolder& folder, const fs::path& ground_truth) {
@@ -50,12 +52,13 @@ auto in_source(const Stages& stages, Function function) {
 }
 
 // Runs, and prints the table also when a stage has failed: what was computed is saved.
-void run_and_print(Stages stages, const PipelineConfig& config, const RunFolder& folder,
+void run_and_print(Stages stages, const PipelineConfig& config, const RunFolder& folder, bool quiet,
                    std::stop_token stop) {
   const fs::path ground_truth = in_source(stages, &Source::ground_truth);
   const auto table = std::make_shared<RunTable>();
   stages.outputs.push_back({{table, "table"}});
   const auto print = [&] {
+    if (quiet) return;
     table->print(std::cout);
     print_files(folder, ground_truth);
     std::cout << std::flush;
@@ -98,11 +101,13 @@ void warn_of_labels(const PipelineConfig& config, const RunFolder& folder) {
 void run(const RunArguments& arguments) {
   std::optional<LateCalls> loading(watch_loading());
   Registry registry;
-  const PipelineConfig config = load_pipeline(arguments.request, registry);
+  PipelineRequest request = arguments.request;
+  if (arguments.images) request.outputs.emplace_back("images");
+  const PipelineConfig config = load_pipeline(request, registry);
   SparseMap known_map = arguments.load_map.empty() ? SparseMap() : load_map(arguments.load_map);
   std::shared_ptr<MapSaver> saver;
   if (!arguments.save_map.empty()) saver = std::make_shared<MapSaver>(arguments.save_map);
-  Console console;
+  Console console(arguments.quiet);
   RunFolder folder(
       arguments.output.empty() ? fs::path("out") / config.file.stem() : arguments.output, console);
   folder.log(LogLevel::kInfo, "stillpoint " STILLPOINT_VERSION ", " + config.file.string());
@@ -115,15 +120,16 @@ void run(const RunArguments& arguments) {
       make_stages(config, folder.path(),
                   [&folder](LogLevel level, std::string_view text) { folder.log(level, text); });
   folder.begin(config.effective_yaml);
-  stages.outputs.push_back(
-      {{std::make_shared<Progress>(console, in_source(stages, &Source::size)), "progress"}});
+  if (!arguments.quiet)
+    stages.outputs.push_back(
+        {{std::make_shared<Progress>(console, in_source(stages, &Source::size)), "progress"}});
   stages.known_map = std::move(known_map);
   stages.localise_only = arguments.localise_only;
   if (saver) stages.outputs.push_back({{std::move(saver), "map saver"}});
   int signal = 0;
   {
     const Interrupt interrupt([&console](const std::string& line) { console.line(line); });
-    run_and_print(std::move(stages), config, folder, interrupt.token());
+    run_and_print(std::move(stages), config, folder, arguments.quiet, interrupt.token());
     signal = Interrupt::signal();
   }
   if (signal == 0) return folder.log(LogLevel::kInfo, "done");
@@ -141,6 +147,14 @@ void add_run(CLI::App& app) {
       ->add_option("-o,--output", arguments->output,
                    "Folder for the results; default: out/PIPELINE")
       ->type_name("DIR");
+  command
+      ->add_option("--with", arguments->request.outputs,
+                   "Add an output of this type to those of the file; may be repeated")
+      ->type_name("TYPE")
+      ->allow_extra_args(false);
+  command->add_flag("--images", arguments->images,
+                    "Draw every frame with labels and features: --with images");
+  command->add_flag("-q,--quiet", arguments->quiet, "Print only warnings and errors");
   command->add_option("--save-map", arguments->save_map, "Keep the sparse map in this file")
       ->type_name("FILE");
   CLI::Option* load = command

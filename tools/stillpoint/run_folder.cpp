@@ -131,7 +131,7 @@ void RunFolder::remove_earlier_results() const {
     if (error) fail(path_ / name, error.message());
   }
   if (found)
-    console_.line("note: " + path_.string() + " holds an earlier run, which is overwritten");
+    console_.note("note: " + path_.string() + " holds an earlier run, which is overwritten");
 }
 
 }  // namespace stillpoint

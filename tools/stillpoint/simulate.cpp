@@ -25,16 +25,18 @@ struct SimulateArguments {
   std::vector<std::string> assignments;
   int frames = 0;
   int threads = 0;
+  bool quiet = false;
 };
 
 /// Says on standard output how far it is; may be told by several threads.
 class Count {
  public:
-  explicit Count(int frames) : frames_(frames) {}
+  Count(int frames, bool quiet) : frames_(frames), quiet_(quiet) {}
 
   void one_more() {
     const std::scoped_lock lock(mutex_);
-    if (++done_ % 100 != 0 && done_ != frames_) return;
+    ++done_;
+    if (quiet_ || (done_ % 100 != 0 && done_ != frames_)) return;
     const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - begin_;
     std::cout << done_ << " of " << frames_ << " frames, " << std::lround(done_ / seconds.count())
               << " per second\n"
@@ -43,6 +45,7 @@ class Count {
 
  private:
   int frames_;
+  bool quiet_;
   std::mutex mutex_;
   int done_ = 0;
   std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
@@ -50,9 +53,9 @@ class Count {
 
 /// Each thread renders whole frames: none waits for another before the last.
 void write_frames(const simulation::Simulator& simulator, simulation::RecordingWriter& writer,
-                  int threads) {
+                  int threads, bool quiet) {
   std::vector<simulation::Simulator> simulators(static_cast<std::size_t>(threads), simulator);
-  Count count(simulator.size());
+  Count count(simulator.size(), quiet);
   std::atomic<int> next = 0;
   simulation::parallel_for(threads, threads, [&](int thread) {
     try {
@@ -77,8 +80,8 @@ void simulate(const SimulateArguments& arguments) {
   simulation::RecordingWriter writer(arguments.output);
   std::ofstream(arguments.output / "camera.yaml") << "version: 1\n" << camera_yaml(file.camera);
   writer.write_ground_truth(simulator, simulator.size());
-  write_frames(simulator, writer, threads);
-  std::cout << "recording in " << arguments.output.string() << '\n';
+  write_frames(simulator, writer, threads, arguments.quiet);
+  if (!arguments.quiet) std::cout << "recording in " << arguments.output.string() << '\n';
 }
 
 }  // namespace
@@ -102,6 +105,7 @@ void add_simulate(CLI::App& app) {
       ->check(CLI::PositiveNumber);
   command->add_option("--threads", arguments->threads, "Default: one per core")
       ->check(CLI::PositiveNumber);
+  command->add_flag("-q,--quiet", arguments->quiet, "Print only warnings and errors");
   command->callback([arguments] { simulate(*arguments); });
 }
 

@@ -9,7 +9,7 @@
 namespace stillpoint::study {
 namespace {
 
-using Json = nlohmann::json;
+using Json = nlohmann::ordered_json;
 
 constexpr std::array<Metric, kMetricCount> kMetrics = {{
     {"ate_m", "Absolute trajectory error, SE(3), RMSE", "m", 4},

@@ -15,7 +15,7 @@ constexpr float kMiddle = 0.5F;
 // triangles, far fewer than a depth camera loses. Light is baked along walls and into corners.
 constexpr RTCSceneFlags kForImages = RTC_SCENE_FLAG_NONE;
 constexpr RTCSceneFlags kForLight = RTC_SCENE_FLAG_ROBUST;
-constexpr float kNear = 0.02F;
+constexpr float kFirstHit = 0.02F;  // metres from the camera
 
 template <auto Release>
 struct Releaser {
@@ -151,7 +151,7 @@ void RayCaster::cast(const Eigen::Vector3f& origin, const RayPacket& directions,
     packet.ray.org_x[i] = origin.x();
     packet.ray.org_y[i] = origin.y();
     packet.ray.org_z[i] = origin.z();
-    packet.ray.tnear[i] = kNear;
+    packet.ray.tnear[i] = kFirstHit;
     packet.ray.tfar[i] = std::numeric_limits<float>::infinity();
     packet.ray.time[i] = moment;
     packet.ray.mask[i] = ~0U;

@@ -17,15 +17,6 @@ bool is_file(const fs::path& path) {
   return fs::is_regular_file(path, error);
 }
 
-std::vector<std::string> available_names(const std::string& category) {
-  std::set<std::string> names;
-  std::error_code error;
-  for (const fs::path& folder : config_folders())
-    for (const auto& entry : fs::directory_iterator(folder / category, error))
-      if (entry.path().extension() == ".yaml") names.insert(entry.path().stem());
-  return {names.begin(), names.end()};
-}
-
 std::string singular_of(const std::string& category) {
   if (category.ends_with("ies")) return category.substr(0, category.size() - 3) + "y";
   return category.substr(0, category.size() - 1);
@@ -44,10 +35,19 @@ fs::path find_config(const std::string& name_or_file, const std::string& categor
   for (const fs::path& configs : config_folders())
     if (const fs::path file = configs / category / (name_or_file + ".yaml"); is_file(file))
       return file;
-  const std::vector<std::string> names = available_names(category);
+  const std::vector<std::string> names = config_names(category);
   throw Error(Fault::kUsage, "no " + singular + " named '" + name_or_file + "'" +
                                  did_you_mean(name_or_file, names) +
                                  (names.empty() ? "" : "\n  available: " + join(names)));
+}
+
+std::vector<std::string> config_names(const std::string& category) {
+  std::set<std::string> names;
+  std::error_code error;
+  for (const fs::path& folder : config_folders())
+    for (const auto& entry : fs::directory_iterator(folder / category, error))
+      if (entry.path().extension() == ".yaml") names.insert(entry.path().stem());
+  return {names.begin(), names.end()};
 }
 
 }  // namespace stillpoint

@@ -1,5 +1,8 @@
 #include "stillpoint/runtime/pipeline_tree.hpp"
 
+#include <algorithm>
+#include <utility>
+
 #include "stillpoint/engine/config_lookup.hpp"
 #include "stillpoint/runtime/section_file.hpp"
 #include "stillpoint/runtime/yaml_loader.hpp"
@@ -9,18 +12,23 @@ namespace {
 
 namespace fs = std::filesystem;
 
+ConfigNode scalar(std::string key, std::string value, const Location& where) {
+  ConfigNode node;
+  node.kind = ConfigNode::Kind::kScalar;
+  node.key = std::move(key);
+  node.scalar = std::move(value);
+  node.location = node.key_location = where;
+  return node;
+}
+
 /// `source: {path: DIR}` as if it were written on the command line.
 ConfigNode dataset_overlay(const fs::path& dataset) {
   const Location where{"--dataset " + dataset.string()};
-  ConfigNode path;
-  path.kind = ConfigNode::Kind::kScalar;
-  path.key = "path";
-  path.scalar = fs::absolute(dataset).lexically_normal().string();
-  path.location = path.key_location = where;
   ConfigNode source = empty_map(where);
   source.key = "source";
   source.key_location = where;
-  source.children.push_back(std::move(path));
+  source.children.push_back(
+      scalar("path", fs::absolute(dataset).lexically_normal().string(), where));
   ConfigNode tree = empty_map(where);
   tree.children.push_back(std::move(source));
   return tree;
@@ -34,6 +42,30 @@ ConfigNode command_line_overlay(const PipelineRequest& request, FaultList& fault
     overlay = merge_sections(std::move(overlay), change);
   }
   return overlay;
+}
+
+bool has_output(const ConfigNode& outputs, const std::string& type) {
+  return std::ranges::any_of(outputs.children, [&](const ConfigNode& output) {
+    const ConfigNode* its = output.find("type");
+    return its && its->scalar == type;
+  });
+}
+
+/// `{type: TYPE}` at the end of `outputs:`; what is no list is a fault that is found later.
+void add_output(ConfigNode& tree, const std::string& type) {
+  const Location where{"--with " + type};
+  if (!tree.find("outputs")) {
+    ConfigNode list;
+    list.kind = ConfigNode::Kind::kList;
+    list.key = "outputs";
+    list.location = list.key_location = where;
+    tree.set(std::move(list));
+  }
+  ConfigNode* outputs = tree.find("outputs");
+  if (outputs->kind != ConfigNode::Kind::kList || has_output(*outputs, type)) return;
+  ConfigNode output = empty_map(where);
+  output.children.push_back(scalar("type", type, where));
+  outputs->children.push_back(std::move(output));
 }
 
 /// The camera.yaml of the recording that the source reads; empty when there is none.
@@ -67,7 +99,9 @@ ConfigNode load_pipeline_tree(const fs::path& file, const PipelineRequest& reque
            !camera || camera->kind == ConfigNode::Kind::kNull)
     camera_file = camera_beside_recording(finished(merge_sections(tree, overlay), found_again));
   if (!camera_file.empty()) tree.set(load_section(camera_file, "camera", faults));
-  return finished(merge_sections(std::move(tree), overlay), faults);
+  tree = finished(merge_sections(std::move(tree), overlay), faults);
+  for (const std::string& type : request.outputs) add_output(tree, type);
+  return tree;
 }
 
 fs::path recording_of(const ConfigNode& tree) {

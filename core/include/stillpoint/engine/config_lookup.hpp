@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "stillpoint/export.hpp"
 
@@ -14,5 +15,8 @@ namespace stillpoint {
 STILLPOINT_EXPORT std::filesystem::path find_config(const std::string& name_or_file,
                                                     const std::string& category,
                                                     const std::filesystem::path& folder = {});
+
+/// The names that find_config takes without a file of that path, in the order of the alphabet.
+STILLPOINT_EXPORT std::vector<std::string> config_names(const std::string& category);
 
 }  // namespace stillpoint

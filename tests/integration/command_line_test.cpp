@@ -1,0 +1,122 @@
+// What the command line says about itself, and how little it says when it is to be quiet.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "support/simulated_recording.hpp"
+
+namespace stillpoint::testing {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::AnyOf;
+using ::testing::Contains;
+using ::testing::Each;
+using ::testing::ElementsAre;
+using ::testing::Eq;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::Not;
+using ::testing::StartsWith;
+
+std::vector<std::string> completions(std::vector<std::string> words) {
+  words.insert(words.begin(), "--complete");
+  const Outcome outcome = call(std::move(words));
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  std::vector<std::string> candidates;
+  std::istringstream lines(outcome.out);
+  for (std::string line; std::getline(lines, line);)
+    candidates.push_back(line.substr(0, line.find('\t')));
+  return candidates;
+}
+
+TEST(CommandLine, SaysItsVersionAndAllExitCodes) {
+  EXPECT_THAT(call({"-V"}).out, StartsWith("stillpoint 0."));
+  EXPECT_EQ(call({"-V"}).out, call({"--version"}).out);
+  for (const char* code : {"0 done", "1 a stage failed", "2 wrong usage", "3 unusable data", "130"})
+    EXPECT_THAT(call({"run", "--help"}).out, HasSubstr(code));
+}
+
+TEST(CommandLine, OptionsThatDoNotExistGetASuggestion) {
+  const auto refusal = [](std::vector<std::string> words) {
+    const Outcome outcome = call(std::move(words));
+    EXPECT_EQ(outcome.exit_code, 2);
+    return outcome.err;
+  };
+  EXPECT_THAT(refusal({"run", "orb_baseline", "--datset", "x"}),
+              Eq("error: stillpoint run: no option '--datset'; did you mean '--dataset'?\n"));
+  EXPECT_THAT(refusal({"run", "--outptu=x"}), HasSubstr("did you mean '--output'?"));
+  EXPECT_THAT(refusal({"plugins", "list", "--jsno"}),
+              HasSubstr("stillpoint plugins list: no option '--jsno'; did you mean '--json'?"));
+  EXPECT_THAT(refusal({"run", "orb_baseline", "-x"}),
+              HasSubstr("no option '-x'; 'stillpoint run --help' lists them"));
+  EXPECT_THAT(refusal({"run"}), HasSubstr("Run 'stillpoint run --help' for help."));
+}
+
+TEST(Completion, OfCommandsAndOptions) {
+  EXPECT_THAT(completions({"r"}), ElementsAre("run"));
+  EXPECT_THAT(completions({"plugins", ""}), AllOf(Contains("list"), Contains("new")));
+  EXPECT_THAT(completions({"run", "--s"}), ElementsAre("--set", "--save-map"));
+  EXPECT_THAT(completions({}), AllOf(Contains("run"), Contains("simulate"), Not(Contains("list"))));
+}
+
+TEST(Completion, OfValues) {
+  EXPECT_THAT(completions({"run", "st"}), Contains("stillpoint"));
+  EXPECT_THAT(completions({"run", "stillpoint", "--camera", "tum"}),
+              AllOf(Contains("tum_fr3"), Contains("<files>")));
+  EXPECT_THAT(completions({"run", "stillpoint", "--dataset", ""}), ElementsAre("<folders>"));
+  EXPECT_THAT(completions({"run", "stillpoint", "--load-map", ""}), ElementsAre("<files>"));
+  EXPECT_THAT(completions({"run", "--dataset", "x", "orb_b"}), Contains("orb_baseline"));
+  EXPECT_THAT(completions({"plugins", "new", "map_"}), ElementsAre("map_checker", "map_backend"));
+  EXPECT_THAT(completions({"map", "render", "m.ot", "--mode", "c"}), ElementsAre("color", "class"));
+  EXPECT_THAT(completions({"run", "stillpoint", "too_much"}), IsEmpty());
+  EXPECT_THAT(completions({"simulate", "fr3_walking_x"}),
+              Each(AnyOf(StartsWith("fr3_walking_x"), StartsWith("<"))));
+}
+
+class CommandLineRun : public ::testing::Test {
+ protected:
+  Outcome run(std::vector<std::string> arguments) const {
+    arguments.insert(arguments.begin(),
+                     {"run", "orb_baseline", "-o", out().string(), "--dataset",
+                      simulated_recording().string(), "--set", "runtime.mode=inline"});
+    return call(std::move(arguments));
+  }
+  std::filesystem::path out() const { return folder_.path() / "out"; }
+
+ private:
+  TemporaryFolder folder_;
+};
+
+TEST_F(CommandLineRun, QuietPrintsNothing) {
+  for (const char* word : {"-q", "--quiet"}) {  // the second overwrites the first
+    const Outcome outcome = run({word});
+    EXPECT_EQ(outcome.exit_code, 0);
+    EXPECT_EQ(outcome.out, "");
+    EXPECT_EQ(outcome.err, "");
+  }
+  EXPECT_EQ(count_poses(out() / "trajectory.txt"), kSimulatedFrames);
+}
+
+TEST_F(CommandLineRun, QuietStillPrintsErrors) {
+  const Outcome outcome = run({"-q", "--set", "tracker.features=-1"});
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_THAT(outcome.err, HasSubstr("features"));
+}
+
+TEST_F(CommandLineRun, OutputsCanBeAdded) {
+  ASSERT_EQ(run({"--images", "--with", "trajectory"}).exit_code, 0);  // the file has the second
+  EXPECT_EQ(count_poses(out() / "trajectory.txt"), kSimulatedFrames);
+  EXPECT_FALSE(std::filesystem::is_empty(out() / "images"));
+  EXPECT_THAT(text_of(out() / "pipeline.yaml"), HasSubstr("type: images"));
+  const Outcome wrong = run({"--with", "imags"});
+  EXPECT_EQ(wrong.exit_code, 2);
+  EXPECT_THAT(wrong.err, AllOf(HasSubstr("--with imags"), HasSubstr("did you mean 'images'?")));
+}
+
+}  // namespace
+}  // namespace stillpoint::testing
