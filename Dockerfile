@@ -1,0 +1,17 @@
+# Stillpoint from its packages: `docker build -t stillpoint .`, then
+#   docker run --rm -v "$PWD:/data" -w /data stillpoint run stillpoint --dataset DIR -o OUT
+FROM debian:bookworm-slim AS build
+COPY . /stillpoint
+WORKDIR /stillpoint
+RUN tools/setup \
+ && cmake --preset release -DSTILLPOINT_BUILD_TESTS=OFF -DSTILLPOINT_BUILD_BENCHMARKS=OFF \
+ && cmake --build --preset release \
+ && cpack --config build/release/CPackConfig.cmake
+
+FROM debian:bookworm-slim
+COPY --from=build /stillpoint/build/release/packages/*.deb /packages/
+RUN apt-get update \
+ && DEBIAN_FRONTEND=noninteractive apt-get install -y --no-install-recommends \
+      /packages/*.deb cmake make libgtest-dev \
+ && rm -rf /var/lib/apt/lists/* /packages
+ENTRYPOINT ["stillpoint"]
