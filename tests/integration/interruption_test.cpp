@@ -7,6 +7,7 @@
 #include <opencv2/core.hpp>
 #include <string>
 
+#include "support/absolute_error.hpp"
 #include "support/simulated_recording.hpp"
 
 namespace stillpoint::testing {

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <string>
 
+#include "support/absolute_error.hpp"
 #include "support/simulated_recording.hpp"
 
 namespace stillpoint::testing {

@@ -5,6 +5,7 @@
 #include <map>
 #include <string>
 
+#include "support/absolute_error.hpp"
 #include "support/pasted_people.hpp"
 #include "support/shared_data.hpp"
 #include "support/simulated_recording.hpp"

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "support/absolute_error.hpp"
 #include "support/simulated_recording.hpp"
 
 namespace stillpoint::testing {

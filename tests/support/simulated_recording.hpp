@@ -151,15 +151,4 @@ inline std::size_t count_poses(const std::filesystem::path& trajectory) {
   return count;
 }
 
-/// RMSE of the absolute trajectory error in metres, by `stillpoint evaluate`.
-inline double absolute_error(const std::filesystem::path& recording,
-                             const std::filesystem::path& trajectory) {
-  const Outcome outcome =
-      call({"evaluate", "--json", "--reference", (recording / "groundtruth.txt").string(),
-            "--estimate", trajectory.string()});
-  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
-  if (outcome.exit_code != 0) return 1e9;
-  return nlohmann::json::parse(outcome.out)["ate"]["se3_m"]["rmse"];
-}
-
 }  // namespace stillpoint::testing

@@ -16,6 +16,7 @@
 #include "stillpoint/engine/engine.hpp"
 #include "stillpoint/engine/map_file.hpp"
 #include "stillpoint/support/rectifier.hpp"
+#include "support/absolute_error.hpp"
 #include "support/simulated_recording.hpp"
 
 namespace stillpoint::testing {
@@ -42,11 +43,12 @@ std::vector<ImagePair> pairs_of(const fs::path& recording) {
   return pairs;
 }
 
-EngineSetup setup_of(const fs::path& folder, const std::string& mode) {
+EngineSetup setup_of(const fs::path& folder, const std::string& mode,
+                     const std::string& pipeline = "stillpoint") {
   // A test program lies elsewhere than an installed library.
   ::setenv("STILLPOINT_CONFIG_PATH", STILLPOINT_SOURCE_DIR "/configs", 1);
   return {
-      .request = {.pipeline = "stillpoint",
+      .request = {.pipeline = pipeline,
                   .assignments = {"runtime.mode=" + mode},
                   .pushed = true,
                   .plugin_folders = {fs::path(STILLPOINT_BINARY_DIR) / "lib/stillpoint/plugins"}},
@@ -105,6 +107,13 @@ TEST(PushedRecording, IsTrackedOnThreadsAndItsMapCanBeGoneOnWith) {
   Engine engine(std::move(again));
   push_all(engine, recording);
   EXPECT_EQ(engine.map()->keyframe_count(), keyframes);
+}
+
+TEST(PushedRecording, IsTrackedOnThreadsThatWaitForLabels) {
+  const TemporaryFolder folder;
+  Engine engine(setup_of(folder.path(), "threaded", "ds_slam"));
+  push_all(engine, recording_with_people());
+  EXPECT_LT(absolute_error(recording_with_people(), folder.path() / "trajectory.txt"), 0.02);
 }
 
 TEST(PushedRecording, TwoEnginesDoNotWriteIntoOneFolder) {

@@ -10,6 +10,7 @@
 
 #include "stillpoint/engine/engine.hpp"
 #include "stillpoint/engine/make_stages.hpp"
+#include "support/absolute_error.hpp"
 #include "support/simulated_recording.hpp"
 
 namespace stillpoint::testing {
