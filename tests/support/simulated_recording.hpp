@@ -46,8 +46,11 @@ class FileLock {
   int descriptor_;
 };
 
+/// A build without the program has the recordings of another one.
 inline std::filesystem::file_time_type newest_of_simulator() {
-  auto newest = std::filesystem::last_write_time(program_file());
+  auto newest = std::filesystem::file_time_type::min();
+  if (std::filesystem::exists(program_file()))
+    newest = std::filesystem::last_write_time(program_file());
   for (const auto& file : std::filesystem::directory_iterator(
            std::filesystem::path(STILLPOINT_SOURCE_DIR) / "configs/scenes"))
     newest = std::max(newest, file.last_write_time());

@@ -112,10 +112,9 @@ CaseResult run_alone(const CheckRequest& request, const TypeResult& type, const 
       request.seconds);
   if (end.result) return nlohmann::json::parse(*end.result).get<CaseResult>();
   CaseResult result{.outcome = CaseResult::Outcome::kFailed, .name = name};
-  result.finding = {
-      end.how + (end.console.empty() ? "" : "; it said:\n" + end.console),
-      "a run would end, and nobody would know why",
-      "debug it: gdb -ex 'set follow-fork-mode child' --args stillpoint plugins check …"};
+  result.finding = {end.how + (end.console.empty() ? "" : "; it said:\n" + end.console),
+                    "a run would end, and nobody would know why",
+                    "how to follow a case with gdb: docs/plugins/debugging.md"};
   return result;
 }
 

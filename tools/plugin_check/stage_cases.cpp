@@ -169,7 +169,7 @@ std::string check_options(const CheckedType& checked, const fs::path& folder) {
   const std::string text = written_and_read(checked, defaults, folder / "options.yaml");
   if (written_and_read(checked, text, folder / "options.yaml") != text)
     throw Failure({"the options that `stillpoint check --print` writes read back as others",
-                   "a run could not be repeated from its effective.yaml",
+                   "a run could not be repeated from its pipeline.yaml",
                    "visit() must name the same options in every call, and not change values"});
   const auto lines = std::ranges::count(text, '\n');
   return std::to_string(lines) + (lines == 1 ? " line" : " lines");

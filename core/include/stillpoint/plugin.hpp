@@ -54,7 +54,8 @@ inline constexpr const char* kAbiTag = "gcc" STILLPOINT_TEXT(__GNUC__)          
 
 enum class LogLevel { kDebug, kInfo, kWarning, kError };
 
-/// What the program tells a stage besides its options.
+/// What the program tells a stage besides its options. Valid during the constructor: what is needed
+/// later is copied. `log` may be called on any thread.
 struct StageContext {
   std::uint64_t seed = 1;                  ///< of this stage alone
   int threads = 1;                         ///< that its solvers may use

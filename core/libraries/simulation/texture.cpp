@@ -16,11 +16,11 @@ using TwoTexels = std::uint16_t __attribute__((vector_size(16)));
 using Color = float __attribute__((vector_size(16)));
 
 TwoTexels widen(std::uint32_t first, std::uint32_t second) {
-  using Bytes = std::uint8_t __attribute__((vector_size(16)));
+  using SixteenBytes = std::uint8_t __attribute__((vector_size(16)));
   using Words = std::uint32_t __attribute__((vector_size(16)));
-  const auto bytes = std::bit_cast<Bytes>(Words{first, second});
-  return std::bit_cast<TwoTexels>(__builtin_shufflevector(bytes, Bytes{}, 0, 16, 1, 17, 2, 18, 3,
-                                                          19, 4, 20, 5, 21, 6, 22, 7, 23));
+  const auto bytes = std::bit_cast<SixteenBytes>(Words{first, second});
+  return std::bit_cast<TwoTexels>(__builtin_shufflevector(bytes, SixteenBytes{}, 0, 16, 1, 17, 2,
+                                                          18, 3, 19, 4, 20, 5, 21, 6, 22, 7, 23));
 }
 
 /// Of the first or the second texel.

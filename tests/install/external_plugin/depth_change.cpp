@@ -1,4 +1,4 @@
-// The example of docs/writing_a_plugin.md: for a camera that stands still, whatever comes closer
+// The example of docs/plugins/moving_checker.md: for a camera that stands still, whatever comes closer
 // moves.
 #include <stillpoint/sdk.hpp>
 

@@ -11,13 +11,16 @@
 
 namespace stillpoint {
 
+/// Says what is used for tracking and what for the map. Tracking waits for it.
 class STILLPOINT_EXPORT Decision {
  public:
   static constexpr const char* kKind = "decision";
   static constexpr std::uint32_t kApi = 1;  ///< see kPluginApi
   virtual ~Decision();
 
-  /// Called once per frame, in order. Weight images have the frame's size or are empty.
+  /// Called once per frame, in order. Labels, points and evidence are those of this frame, and each
+  /// can be empty: not known. Arguments are valid during the call. Weight images have the frame's
+  /// size or are empty (255 everywhere).
   virtual StaticWeights decide(const Frame& frame, const Segmentation& segmentation,
                                const MovingPoints& moving, const MapEvidence& evidence) = 0;
 };

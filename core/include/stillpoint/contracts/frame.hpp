@@ -9,7 +9,8 @@
 
 namespace stillpoint {
 
-/// Made by the source and never changed afterwards: its images are shared between threads.
+/// Made by the source and never changed afterwards: its images are shared between threads. A copy
+/// shares the pixels and may be kept (2.5 MB of 640 × 480 px); to change an image, clone() it.
 struct Frame {
   std::uint32_t index = 0;  ///< 0, 1, 2 … in the order in which the source gave them
   double time = 0.0;        ///< seconds, of the colour image

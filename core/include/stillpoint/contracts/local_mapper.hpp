@@ -18,7 +18,8 @@ class STILLPOINT_EXPORT LocalMapper {
   static constexpr std::uint32_t kApi = 1;  ///< see kPluginApi
   virtual ~LocalMapper();
 
-  /// Adds the key frame under its own id, with its landmarks. Quick.
+  /// Adds the key frame under its own id, which is map.keyframe_id_end(), with its landmarks.
+  /// Quick. `map` is the newest version, with corrections of loops that came since the last call.
   virtual SparseMap insert(SparseMap map, KeyFrame keyframe) = 0;
 
   /// Triangulates, fuses, culls and adjusts around the key frame inserted last. `hurry` is

@@ -11,13 +11,16 @@
 
 namespace stillpoint {
 
+/// Has features, weights and poses of key frames, no images. A copy of the map may be kept.
 class STILLPOINT_EXPORT LoopCloser {
  public:
   static constexpr const char* kKind = "loop_closer";
   static constexpr std::uint32_t kApi = 1;  ///< see kPluginApi
   virtual ~LoopCloser();
 
-  /// Nothing when `latest` closes no loop or when `stop` is requested.
+  /// Nothing when `latest` closes no loop or when `stop` is requested. Called for each key frame,
+  /// in order, with the map as it was when that had been refined; refining may have removed it from
+  /// the map. Left out while a correction is on its way into the map.
   virtual std::optional<MapCorrection> close(const SparseMap& map, KeyFrameId latest,
                                              std::stop_token stop) = 0;
 

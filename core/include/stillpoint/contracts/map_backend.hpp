@@ -13,16 +13,20 @@
 
 namespace stillpoint {
 
+/// Calls never overlap. A DenseKeyFrame may be kept, with 2.5 MB of images of 640 × 480 px.
 class STILLPOINT_EXPORT MapBackend {
  public:
   static constexpr const char* kKind = "map_backend";
   static constexpr std::uint32_t kApi = 1;  ///< see kPluginApi
   virtual ~MapBackend();
 
+  /// Once per key frame, in order, after local mapping has refined it.
   virtual void integrate(const DenseKeyFrame& keyframe) = 0;
-  /// Key frames that were moved by mapping or a loop closure.
+  /// Key frames that were moved by mapping or a loop closure, with their new poses; also such as
+  /// have left the sparse map meanwhile, and those of a loaded map, which were never integrated.
   virtual void move(std::span<const MovedKeyFrame> moved) = 0;
-  /// Writes the map's files into an existing folder; may bring the map up to date before.
+  /// Writes the map's files into an existing folder; may bring the map up to date before. Called on
+  /// thread 1 at the end of a run, also of one that failed or was stopped; can be called again.
   virtual void save(const std::filesystem::path& directory) = 0;
   /// One point per occupied cell of the map so far. Empty for a map that is not made of points.
   /// Called on any thread, but never during another call.

@@ -30,18 +30,21 @@ struct TrackedFrame {
   }
 };
 
+/// Compares with what it has been given to remember, or with the landmarks of the map. A
+/// TrackedFrame, and a copy of a frame or of the map, may be kept.
 class STILLPOINT_EXPORT MapChecker {
  public:
   static constexpr const char* kKind = "map_checker";
   static constexpr std::uint32_t kApi = 1;  ///< see kPluginApi
   virtual ~MapChecker();
 
-  /// Before a frame is tracked. `guesses` are poses it may have (world_from_camera), the likeliest
-  /// first, at least one.
+  /// Before a frame is tracked, when the frame before it was. `guesses` are poses it may have
+  /// (world_from_camera), the likeliest first, at least one.
   virtual MapEvidence check(const Frame& frame, std::span<const Pose> guesses,
                             const SparseMap& map) = 0;
 
-  /// After each frame that has been tracked, in order, before the next one is checked.
+  /// After each frame that has been tracked, in order, before the next one is checked, on the same
+  /// thread. Not for the last one.
   virtual void remember(const TrackedFrame& frame) = 0;
 };
 

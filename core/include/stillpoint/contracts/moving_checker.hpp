@@ -21,18 +21,21 @@ struct TrackingHistory {
   std::vector<DenseKeyFrame> keyframes;     ///< newest first
 };
 
+/// Needs no labels. Frames are valid during the call; copies, and what the history points to, may
+/// be kept.
 class STILLPOINT_EXPORT MovingChecker {
  public:
   static constexpr const char* kKind = "moving_checker";
   static constexpr std::uint32_t kApi = 1;  ///< see kPluginApi
   virtual ~MovingChecker();
 
-  /// For each frame but the first, in order. Both frames have the same size.
+  /// For each frame but the first, in order. `previous` is the frame processed before, tracked or
+  /// not. Both have the same size.
   virtual MovingPoints check(const Frame& previous, const Frame& current,
                              const TrackingHistory& history) = 0;
 
-  /// How many key frames of the history check() looks at, at most; asked once. Their images stay in
-  /// memory, 2.4 MB each of 640 × 480 pixels.
+  /// How many key frames of the history check() looks at, at most; asked once, before the first
+  /// frame. Without an own one: none. Their images stay in memory, 2.5 MB each of 640 × 480 pixels.
   virtual std::size_t wanted_keyframes() const;
 };
 

@@ -71,14 +71,15 @@ struct RunSummary {
   std::string failure;               ///< the message of the stage that failed, if any
 };
 
+/// A copy of a report may be kept; its images are shared.
 class STILLPOINT_EXPORT Output {
  public:
   static constexpr const char* kKind = "output";
   static constexpr std::uint32_t kApi = 1;  ///< see kPluginApi
   virtual ~Output();
 
-  /// In order of the frames. Threaded, tracking is some frames ahead; with `when_full: drop` it may
-  /// be so far ahead that frames are left out.
+  /// In order of the frames. Threaded, tracking is up to eight frames ahead and then waits; with
+  /// `when_full: drop`, frames are left out instead.
   virtual void frame(const FrameReport&) {}
   /// Always called, also after a failure or Ctrl-C: what was computed is saved. After the last
   /// frame(), on thread 1; references are valid during the call only.

@@ -22,8 +22,10 @@ struct SegmentedObject {
 struct Segmentation {
   cv::Mat labels;     ///< CV_8UC1, class id per pixel, 0 = background; or empty
   cv::Mat instances;  ///< CV_8UC1, 1 + index into `objects` per pixel, 0 = none; or empty
-  std::vector<SegmentedObject> objects;
-  std::uint32_t frame = 0;  ///< index of the frame that the labels belong to
+  std::vector<SegmentedObject> objects;  ///< of `instances`, in their order
+  /// Index of the frame that the labels belong to. Set by who makes them; propagators tell by it
+  /// whether the labels are new.
+  std::uint32_t frame = 0;
 
   bool known() const { return !labels.empty(); }
 };

@@ -19,19 +19,24 @@ struct SourceReport {
   std::vector<std::string> warnings;  ///< one line each
 };
 
+/// Gives the frames of a recording. next() is called on a thread of its own in `mode: threaded` and
+/// with `pace: sensor`, up to three frames ahead of tracking, otherwise on thread 1.
 class STILLPOINT_EXPORT Source {
  public:
   static constexpr const char* kKind = "source";
   static constexpr std::uint32_t kApi = 1;  ///< see kPluginApi
   virtual ~Source();
 
-  /// The next frame in order of time, or nothing at the end. Indices count up from 0 without gaps.
-  /// Throws Error(kData) when the recording cannot be used any further.
+  /// The next frame in order of time, or nothing at the end, and nothing again after it. Indices
+  /// count up from 0 without gaps. The images are the pipeline's from then on: they must not
+  /// change, nor their memory be used again. Throws Error(kData) when the recording cannot be used
+  /// any further.
   virtual std::optional<Frame> next() = 0;
 
-  /// Frames to expect, for progress; nothing when not known.
+  /// Frames to expect, for progress; nothing when not known. Asked once, before the first frame.
   virtual std::optional<std::size_t> size() const { return std::nullopt; }
 
+  /// Asked once, after the last frame, on thread 1.
   virtual SourceReport report() const { return {}; }
 
   /// TUM-format file of true poses, if the source has one; for the hint at the end of a run.

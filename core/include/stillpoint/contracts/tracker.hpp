@@ -30,7 +30,9 @@ struct TrackedFeature {
 /// follow when mapping or a loop moves the reference.
 struct TrackResult {
   TrackState state = TrackState::kWaiting;
-  KeyFrameId reference = kNoId;  ///< valid only while tracking
+  /// A key frame of the map, or the one that this frame becomes. Valid only while tracking: before
+  /// the first key frame there is none.
+  KeyFrameId reference = kNoId;
   Pose reference_from_camera = Pose::Identity();
   Pose world_from_camera = Pose::Identity();   ///< at the time of tracking
   int features = 0;                            ///< extracted
@@ -61,6 +63,8 @@ struct TrackHints {
   bool localise_only = false;    ///< the map stays as it is: no key frames
 };
 
+/// Called for every frame, in order: prepare(), then track() with what it gave. When a run is
+/// stopped in between, track() is left out.
 class STILLPOINT_EXPORT Tracker {
  public:
   static constexpr const char* kKind = "tracker";
@@ -70,8 +74,9 @@ class STILLPOINT_EXPORT Tracker {
   /// Everything that needs neither weights nor map; overlaps the network (paper III-D).
   virtual PreparedFramePtr prepare(FramePtr frame) = 0;
 
-  /// `prepared` is what prepare() gave for the frame, never null. Never writes the map. With an
-  /// empty map, the first usable frame becomes the first key frame, at the origin.
+  /// `prepared` is what prepare() gave for the frame, never null. Never writes the map, a snapshot
+  /// in which the newest key frame can be missing yet; it is valid during the call, and a copy may
+  /// be kept. With an empty map, the first usable frame becomes the first key frame, at the origin.
   virtual TrackResult track(PreparedFramePtr prepared, const StaticWeights& weights,
                             const SparseMap& map, TrackHints hints) = 0;
 };
