@@ -1,5 +1,5 @@
-// The example of docs/plugins/moving_checker.md: for a camera that stands still, whatever comes closer
-// moves.
+// The example of docs/plugins/moving_checker.md: for a camera that stands still, whatever comes
+// closer moves.
 #include <stillpoint/sdk.hpp>
 
 namespace {
