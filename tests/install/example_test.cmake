@@ -46,7 +46,7 @@ function(number_in file pattern variable)
   set(${variable} ${CMAKE_MATCH_1} PARENT_SCOPE)
 endfunction()
 
-# `orb_baseline`, which takes people for the room, is off by 0.14 m on this recording.
+# `orb_baseline`, which takes people for the room, is off by more than 0.1 m on this recording.
 set(accurate 0.02)  # metres
 
 function(check_colour_segmenter)
@@ -107,8 +107,8 @@ function(check_json_lines)
     endif()
     math(EXPR index "${index} + 1")
   endforeach()
-  if(NOT index EQUAL 60)
-    message(FATAL_ERROR "${index} lines for 60 frames")
+  if(NOT index EQUAL 40)
+    message(FATAL_ERROR "${index} lines for 40 frames")
   endif()
   # A reader that goes early costs no results.
   set(command "${program} run -q json_lines.yaml --dataset recording --set source.limit=20 -o closed")

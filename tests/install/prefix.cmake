@@ -7,4 +7,4 @@ run(${CMAKE_COMMAND} --install ${BUILD_DIR} --prefix ${prefix})
 run(${program} simulate fr3_walking_xyz_empty --frames 60 -o ${recording}
   --set camera.width=320 --set camera.height=240 --set camera.fx=267.7 --set camera.fy=269.6
   --set camera.cx=159.8 --set camera.cy=123.6)
-run(${program} simulate fr3_walking_xyz --frames 60 -o ${recording_with_people})
+run(${program} simulate fr3_walking_xyz --frames 40 -o ${recording_with_people})

@@ -4,7 +4,7 @@ set(work ${BUILD_DIR}/install_test)
 set(prefix ${work}/prefix)
 set(program ${prefix}/bin/stillpoint)
 set(recording ${work}/recording)  # 60 frames of 320 x 240, nobody in them
-set(recording_with_people ${work}/recording_with_people)  # 60 frames of 640 x 480
+set(recording_with_people ${work}/recording_with_people)  # 40 frames of 640 x 480
 set(elsewhere ${work}/elsewhere)  # has nothing to do with the project
 
 # run(COMMAND…): in `elsewhere`; fails the test unless the command succeeds. Its output is left in

@@ -1,6 +1,6 @@
 #include "floor.hpp"
 
-#include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -42,8 +42,9 @@ std::optional<Floor> largest_plane(const Points& points, const Eigen::Vector3f& 
   auto most = static_cast<std::ptrdiff_t>(kMinShare * static_cast<float>(points.size()));
   for (int i = 0; i < kSamples; ++i) {
     const Eigen::Vector3f a = draw(), b = draw(), c = draw();
-    const Eigen::Vector3f normal = (b - a).cross(c - a).normalized();
-    if (!(std::abs(normal.dot(up)) > kMinCosine)) continue;  // NaN: three points on a line
+    Eigen::Vector3f normal = (b - a).cross(c - a).normalized();
+    if (normal.dot(up) < 0) normal = -normal;
+    if (!(normal.dot(up) > kMinCosine)) continue;  // nor are they on one line
     const Floor plane{.up = normal, .height = normal.dot(a)};
     const auto count =
         std::ranges::count_if(points, [&](const auto& p) { return is_on(plane, p); });
@@ -54,18 +55,20 @@ std::optional<Floor> largest_plane(const Points& points, const Eigen::Vector3f& 
   return best;
 }
 
-/// The plane fitted to the points on it, its normal on the side of `up`.
-Floor fitted(const Floor& plane, const Points& points, const Eigen::Vector3f& up) {
-  Points on;
-  std::ranges::copy_if(points, std::back_inserter(on),
-                       [&](const auto& p) { return is_on(plane, p); });
-  Eigen::Map<Eigen::Matrix3Xf> columns(on.front().data(), 3, static_cast<Eigen::Index>(on.size()));
-  const Eigen::Vector3f mean = columns.rowwise().mean();
-  columns.colwise() -= mean;
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3f> axes(columns * columns.transpose());
-  Eigen::Vector3f normal = axes.eigenvectors().col(0);  // points extend least along it
-  if (normal.dot(up) < 0) normal = -normal;
-  return {.up = normal, .height = normal.dot(mean)};
+/// The plane that fits the points on the given one best, by least squares along its normal.
+Floor fitted(const Floor& plane, const Points& points) {
+  const Eigen::Vector3f side = plane.up.unitOrthogonal(), other = plane.up.cross(side);
+  Eigen::Matrix3f squares = Eigen::Matrix3f::Zero();
+  Eigen::Vector3f products = Eigen::Vector3f::Zero();
+  for (const Eigen::Vector3f& point : points) {
+    if (!is_on(plane, point)) continue;
+    const Eigen::Vector3f at(side.dot(point), other.dot(point), 1);
+    squares += at * at.transpose();
+    products += at * (plane.up.dot(point) - plane.height);
+  }
+  const Eigen::Vector3f change = squares.inverse() * products;  // two slopes, metres
+  const Eigen::Vector3f up = plane.up - change.x() * side - change.y() * other;
+  return {.up = up.normalized(), .height = (plane.height + change.z()) / up.norm()};
 }
 
 /// Where the lowest large surface is along `up`.
@@ -92,6 +95,6 @@ std::optional<Floor> find_floor(const std::vector<Eigen::Vector3f>& points,
   const Points some = spread(points);
   std::optional<Floor> plane = largest_plane(some, up);
   if (!plane) return std::nullopt;
-  for (int i = 0; i < kFits; ++i) plane = fitted(*plane, some, up);
+  for (int i = 0; i < kFits; ++i) plane = fitted(*plane, some);
   return Floor{.up = plane->up, .height = lowest_level(some, plane->up)};
 }

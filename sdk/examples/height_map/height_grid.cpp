@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <numeric>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 #include <optional>
 #include <stillpoint/support/atomic_file.hpp>
+#include <utility>
 
 namespace {
 
@@ -126,15 +128,15 @@ HeightGrid make_grid(const std::vector<Eigen::Vector3f>& points_in_world, const 
     if (point.z() >= options.min_height && point.z() <= options.max_height) points.push_back(point);
   }
   make_cells(grid, points);
-  std::vector<std::vector<float>> heights(grid.heights.total());  // of the points in each cell
+  std::map<std::pair<int, int>, std::vector<float>> heights;  // of the points by row and column
   for (const Eigen::Vector3f& point : points) {
     const cv::Point cell = grid.cell_of(point);
-    heights[static_cast<std::size_t>(cell.y * grid.heights.cols + cell.x)].push_back(point.z());
+    heights[{cell.y, cell.x}].push_back(point.z());
   }
-  for (std::size_t i = 0; i < heights.size(); ++i)
-    if (const auto height = surface_of(heights[i], options.min_points)) {
-      grid.heights.at<float>(static_cast<int>(i)) = *height;
-      grid.known.at<std::uint8_t>(static_cast<int>(i)) = 255;
+  for (auto& [cell, of_points] : heights)
+    if (const auto height = surface_of(of_points, options.min_points)) {
+      grid.heights.at<float>(cell.first, cell.second) = *height;
+      grid.known.at<std::uint8_t>(cell.first, cell.second) = 255;
     }
   return grid;
 }

@@ -89,7 +89,7 @@ void require_size(cv::Size size, const CameraModel& camera, const fs::path& file
 
 cv::Mat read_depth(const fs::path& file, const CameraModel& camera) {
   const QuietOpenCv quiet;
-  const cv::Mat depth = cv::imread(file.string(), cv::IMREAD_UNCHANGED);
+  cv::Mat depth = cv::imread(file.string(), cv::IMREAD_UNCHANGED);
   if (depth.type() != CV_16UC1)
     throw Error(Fault::kData, "this is no PNG with one channel of 16 bits", file.string());
   require_size(depth.size(), camera, file);

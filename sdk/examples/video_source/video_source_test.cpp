@@ -19,28 +19,34 @@ const TestRecording& recording() {
   return recording;
 }
 
-/// A folder with a video of three frames, and what may be wrong with it.
+fs::path depth_file(const fs::path& folder, std::size_t i) {
+  return folder / "depth" / (std::to_string(i) + ".png");
+}
+
+/// A video of three frames with all that belongs to it.
+void write_recording(const fs::path& folder) {
+  fs::remove_all(folder);
+  fs::create_directories(folder / "depth");
+  cv::VideoWriter video((folder / "video.avi").string(), cv::CAP_OPENCV_MJPEG,
+                        cv::VideoWriter::fourcc('M', 'J', 'P', 'G'), 30, {320, 240});
+  std::ofstream times(folder / "times.txt");
+  for (std::size_t i = 0; i < kFrames; ++i) {
+    video.write(recording().frame(i)->bgr);
+    cv::Mat depth;
+    recording().frame(i)->depth.convertTo(depth, CV_16U, 5000);
+    cv::imwrite(depth_file(folder, i).string(), depth);
+    times << 10 + recording().frame(i)->time << '\n';
+  }
+  std::ofstream(folder / "camera.yaml")
+      << "camera: {width: 320, height: 240, fx: 262.4, fy: 262.4, cx: 159.5, cy: 119.5}\n";
+}
+
+/// A recording for each test, to be damaged.
 class VideoSourceTest : public ::testing::Test {
  protected:
-  VideoSourceTest() : folder_(fs::path(::testing::TempDir()) / "video_source_test") {
-    fs::remove_all(folder_);
-    fs::create_directories(folder_ / "depth");
-    cv::VideoWriter video((folder_ / "video.avi").string(), cv::CAP_OPENCV_MJPEG,
-                          cv::VideoWriter::fourcc('M', 'J', 'P', 'G'), 30, {320, 240});
-    std::ofstream times(folder_ / "times.txt");
-    for (std::size_t i = 0; i < kFrames; ++i) {
-      video.write(recording().frame(i)->bgr);
-      cv::Mat depth;
-      recording().frame(i)->depth.convertTo(depth, CV_16U, 5000);
-      cv::imwrite(depth_file(i).string(), depth);
-      times << 10 + recording().frame(i)->time << '\n';
-    }
-  }
+  VideoSourceTest() { write_recording(folder_); }
   ~VideoSourceTest() override { fs::remove_all(folder_); }
 
-  fs::path depth_file(std::size_t i) const {
-    return folder_ / "depth" / (std::to_string(i) + ".png");
-  }
   VideoSource open() const {
     stillpoint::StageContext context = stillpoint::testing::test_context();
     context.camera = {.name = "mine", .width = 320, .height = 240};
@@ -61,8 +67,10 @@ class VideoSourceTest : public ::testing::Test {
     EXPECT_NE(message().find(words), std::string::npos) << message();
   }
 
-  const fs::path folder_;
+  const fs::path folder_ = fs::path(::testing::TempDir()) / "video_source_test";
 };
+
+TEST(PluginsCheck, GetsARecording) { write_recording("video"); }
 
 TEST_F(VideoSourceTest, GivesColourDepthAndTimes) {
   VideoSource source = open();
@@ -92,16 +100,16 @@ TEST_F(VideoSourceTest, SaysWhatIsNoVideo) {
 }
 
 TEST_F(VideoSourceTest, SaysThatDepthImagesAreMissing) {
-  fs::remove(depth_file(2));
+  fs::remove(depth_file(folder_, 2));
   expect_message_with("2 depth images, but 3 times");
   std::ofstream(folder_ / "times.txt") << "1\n2\n";
   expect_message_with("the video goes on, but there are only 2 depth images");
 }
 
 TEST_F(VideoSourceTest, SaysThatSizesDiffer) {
-  cv::imwrite(depth_file(1).string(), cv::Mat(24, 32, CV_16UC1, cv::Scalar(5000)));
+  cv::imwrite(depth_file(folder_, 1).string(), cv::Mat(24, 32, CV_16UC1, cv::Scalar(5000)));
   expect_message_with("images have 32 x 24 pixels, but camera 'mine' has 320 x 240");
-  cv::imwrite(depth_file(0).string(), cv::Mat(240, 320, CV_8UC1, cv::Scalar(9)));
+  cv::imwrite(depth_file(folder_, 0).string(), cv::Mat(240, 320, CV_8UC1, cv::Scalar(9)));
   expect_message_with("0.png: this is no PNG with one channel of 16 bits");
 }
 
@@ -113,7 +121,7 @@ TEST_F(VideoSourceTest, SaysWhatIsNoTime) {
 }
 
 TEST_F(VideoSourceTest, AShortVideoIsReported) {
-  cv::imwrite(depth_file(3).string(), cv::Mat(240, 320, CV_16UC1, cv::Scalar(5000)));
+  cv::imwrite(depth_file(folder_, 3).string(), cv::Mat(240, 320, CV_16UC1, cv::Scalar(5000)));
   std::ofstream(folder_ / "times.txt", std::ios::app) << "99\n";
   VideoSource source = open();
   while (source.next()) continue;
