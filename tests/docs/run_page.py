@@ -49,7 +49,10 @@ docs_simulate() {  # the same recording for all pages: simulating one takes long
   kept=$DOCS_CACHE/$(printf '%s ' "${words[@]}" | tr -c 'a-zA-Z0-9_.=-' _)
   (
     flock 9
-    if [[ ! -d $kept ]]; then stillpoint "${words[@]}" -o "$kept.part" && mv "$kept.part" "$kept"; fi
+    if [[ ! -d $kept ]]; then
+      rm -rf "$kept.part"  # left by a test that was stopped
+      stillpoint "${words[@]}" -o "$kept.part" && mv "$kept.part" "$kept"
+    fi
   ) 9>"$kept.lock"
   if [[ -e $out ]]; then stillpoint simulate "$@"; return; fi  # says what is wrong
   mkdir -p "$(dirname "$out")"

@@ -17,8 +17,7 @@ function(expect_depends package)
   endforeach()
 endfunction()
 
-file(GLOB old ${BUILD_DIR}/packages/*.deb)
-file(REMOVE ${old})
+file(REMOVE_RECURSE ${BUILD_DIR}/packages)
 execute_process(COMMAND ${CMAKE_CPACK_COMMAND} --config ${BUILD_DIR}/CPackConfig.cmake
   WORKING_DIRECTORY ${BUILD_DIR} RESULT_VARIABLE result OUTPUT_VARIABLE output ERROR_VARIABLE output)
 if(NOT result EQUAL 0)
