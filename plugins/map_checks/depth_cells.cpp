@@ -14,14 +14,14 @@ constexpr float kSurfaceEdge = 0.06F;  // of the depth, between neighbouring cel
 CellCamera::CellCamera(const Camera& camera)
     : fx(static_cast<float>(camera.fx / kCell)),
       fy(static_cast<float>(camera.fy / kCell)),
-      cx(static_cast<float>((camera.cx - kCell / 2) / kCell)),
-      cy(static_cast<float>((camera.cy - kCell / 2) / kCell)),
+      cx(static_cast<float>((camera.cx - kCellMiddle) / kCell)),
+      cy(static_cast<float>((camera.cy - kCellMiddle) / kCell)),
       surface_noise(static_cast<float>(camera.surface_noise)) {}
 
 cv::Mat sample_depth(const cv::Mat& depth) {
   cv::Mat cells(depth.rows / kCell, depth.cols / kCell, CV_32F);
   for (int y = 0; y < cells.rows; ++y) {
-    const auto* in = depth.ptr<float>(y * kCell + kCell / 2) + kCell / 2;
+    const auto* in = depth.ptr<float>(y * kCell + kCellMiddle) + kCellMiddle;
     auto* out = cells.ptr<float>(y);
     for (int x = 0; x < cells.cols; ++x) out[x] = in[x * kCell];
   }

@@ -6,6 +6,7 @@
 namespace stillpoint::map_checks {
 
 inline constexpr int kCell = 4;  // px, the side of a cell
+inline constexpr int kCellMiddle = kCell / 2;
 
 /// Pinhole camera whose pixels are cells.
 struct CellCamera {

@@ -22,8 +22,9 @@ std::shared_ptr<const Camera> reduced(const Camera& camera, int stride) {
   result->height = camera.height / stride;
   result->fx /= stride;
   result->fy /= stride;
-  result->cx = (camera.cx - stride / 2) / stride;
-  result->cy = (camera.cy - stride / 2) / stride;
+  const int middle = stride / 2;
+  result->cx = (camera.cx - middle) / stride;
+  result->cy = (camera.cy - middle) / stride;
   return result;
 }
 

@@ -172,7 +172,7 @@ void add_diff(CLI::App& map) {
   command->add_flag("--json", arguments->json, "Print JSON instead of a table");
   command->callback([arguments] {
     const MapDifference difference =
-        compare(read_octree(arguments->first), read_octree(arguments->second));
+        dense_map::compare(read_octree(arguments->first), read_octree(arguments->second));
     if (!arguments->points.empty())
       write_ply(difference.points, {"both", "first", "second"}, arguments->points);
     if (arguments->json)

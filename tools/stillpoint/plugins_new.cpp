@@ -122,7 +122,7 @@ std::string minor_version() {
 }
 
 /// For a shell.
-std::string quoted(const std::string& text) {
+std::string shell_word(const std::string& text) {
   constexpr std::string_view kPlain =
       "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-./+,:=@";
   if (!text.empty() && text.find_first_not_of(kPlain) == std::string::npos) return text;
@@ -134,7 +134,7 @@ std::string quoted(const std::string& text) {
 /// A recording to try it with, and a run. `in` precedes every path.
 std::vector<std::string> run_commands(const std::string& kind, const std::string& program,
                                       const fs::path& in) {
-  const auto path = [&](const char* name) { return quoted((in / name).string()); };
+  const auto path = [&](const char* name) { return shell_word((in / name).string()); };
   const std::string run = program + " run " + path("pipeline.yaml");
   if (kind == Source::kKind) return {run + " -o " + path("out")};
   return {program + " simulate fr3_walking_xyz --frames 60 -o " + path("recording"),
@@ -231,18 +231,18 @@ void print_next_steps(const NewPlugin& plugin) {
   const fs::path prefix = installation_folder();
   const fs::path executable = fs::read_symlink("/proc/self/exe");
   const std::optional<fs::path> on_path = folder_on_path(executable);
-  const std::string program = on_path ? "stillpoint" : quoted(executable.string());
-  const std::string build = quoted((plugin.folder / "build").string());
-  std::string configure = "cmake -S " + quoted(plugin.folder.string()) + " -B " + build;
+  const std::string program = on_path ? "stillpoint" : shell_word(executable.string());
+  const std::string build = shell_word((plugin.folder / "build").string());
+  std::string configure = "cmake -S " + shell_word(plugin.folder.string()) + " -B " + build;
   if (!installation_has_sdk()) {
     std::cout
         << "\nThis Stillpoint is not installed, and a plugin is built against an installation. "
            "Put its\nfolder for DIR:\n  cmake --install "
-        << quoted(prefix.string()) << " --prefix DIR\n";
+        << shell_word(prefix.string()) << " --prefix DIR\n";
     configure += " -D CMAKE_PREFIX_PATH=DIR";
   } else if (std::error_code error;  // CMake looks beside the folders of PATH
              !on_path || !fs::equivalent(on_path->parent_path(), prefix, error)) {
-    configure += " -D CMAKE_PREFIX_PATH=" + quoted(prefix.string());
+    configure += " -D CMAKE_PREFIX_PATH=" + shell_word(prefix.string());
   }
   std::vector<std::string> commands = {configure, "cmake --build " + build,
                                        "ctest --test-dir " + build + " --output-on-failure",

@@ -150,7 +150,7 @@ cv::Mat Painter::whiteboard(cv::Size size) {
   const std::array<cv::Scalar, 4> pens = {
       {{160, 60, 30}, {40, 40, 40}, {50, 40, 170}, {60, 120, 30}}};
   for (int i = 0; i < 16; ++i) {
-    const cv::Scalar pen = pens[static_cast<std::size_t>(uniform(0, 4))];
+    const cv::Scalar& pen = pens[static_cast<std::size_t>(uniform(0, 4))];
     const cv::Point at(uniform(20, size.width - 200), uniform(20, size.height - 150));
     if (i % 3 == 0) {
       cv::ellipse(image, at + cv::Point(80, 60), {uniform(30, 90), uniform(20, 60)}, 0, 0, 360, pen,

@@ -2,6 +2,7 @@
 
 #include <embree3/rtcore.h>
 
+#include <algorithm>
 #include <cstring>
 
 #include "stillpoint/error.hpp"
@@ -37,7 +38,7 @@ Scene mesh_scene(RTCDevice device, const Mesh& mesh, RTCSceneFlags flags) {
       rtcSetNewGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
                               3 * sizeof(std::uint32_t), mesh.triangles.size());
   if (!vertices || !triangles) throw Error(Fault::kStage, "no memory for a mesh", "simulation");
-  std::memcpy(vertices, mesh.vertices.data(), mesh.vertices.size() * sizeof(Eigen::Vector3f));
+  std::ranges::copy(mesh.vertices, static_cast<Eigen::Vector3f*>(vertices));
   std::memcpy(triangles, mesh.triangles.data(), mesh.triangles.size() * 3 * sizeof(std::uint32_t));
   rtcCommitGeometry(geometry.get());
   Scene scene(rtcNewScene(device));

@@ -12,7 +12,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-bool is_file(const fs::path& path) {
+bool is_config_file(const fs::path& path) {
   std::error_code error;
   return fs::is_regular_file(path, error);
 }
@@ -27,13 +27,13 @@ std::string singular_of(const std::string& category) {
 fs::path find_config(const std::string& name_or_file, const std::string& category,
                      const fs::path& folder) {
   const fs::path from_folder = (folder / name_or_file).lexically_normal();
-  if (is_file(from_folder)) return from_folder;
+  if (is_config_file(from_folder)) return from_folder;
   const std::string singular = singular_of(category);
   const fs::path path = name_or_file;
   if (path.has_parent_path() || path.extension() == ".yaml")
     throw Error(Fault::kUsage, "no such " + singular + " file", from_folder.string());
   for (const fs::path& configs : config_folders())
-    if (const fs::path file = configs / category / (name_or_file + ".yaml"); is_file(file))
+    if (const fs::path file = configs / category / (name_or_file + ".yaml"); is_config_file(file))
       return file;
   const std::vector<std::string> names = config_names(category);
   throw Error(Fault::kUsage, "no " + singular + " named '" + name_or_file + "'" +
