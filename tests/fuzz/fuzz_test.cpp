@@ -23,6 +23,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
+// Most mistakes do no visible harm without AddressSanitizer.
+#ifdef __SANITIZE_ADDRESS__
+constexpr std::uint64_t kCases = 10'000;
+#else
+constexpr std::uint64_t kCases = 1'000;
+#endif
+
 std::uint64_t number_of(const char* variable, std::uint64_t otherwise) {
   const char* text = std::getenv(variable);
   return text ? std::strtoull(text, nullptr, 10) : otherwise;
@@ -59,7 +66,7 @@ TEST_P(Fuzz, EndsWithAResultOrInWords) {
     ASSERT_NO_THROW(target_.parse(file_)) << "a valid file";
   }
   Mutator mutator(number_of("STILLPOINT_FUZZ_SEED", 1), target_.words);
-  const std::uint64_t cases = number_of("STILLPOINT_FUZZ_CASES", 10'000);
+  const std::uint64_t cases = number_of("STILLPOINT_FUZZ_CASES", kCases);
   for (std::uint64_t i = 0; i < cases && !HasFailure(); ++i) {
     const Bytes& one = corpus[mutator.below(corpus.size())];
     const Bytes& other = corpus[mutator.below(corpus.size())];

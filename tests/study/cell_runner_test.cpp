@@ -61,7 +61,7 @@ class CellRunner : public ::testing::Test {
     results_.assign(cells.size(), std::nullopt);
     for (std::size_t i = 0; i < cells.size(); ++i) results_[i] = valid_result(cells[i]);
     run_missing(
-        cells, "build", jobs, stop,
+        cells, {.fingerprint = "build", .version = "1.2.3", .commit = "0123456789ab"}, jobs, stop,
         [&](const Cell& finished, const CellResult&, const StudyProgress& progress) {
           ran.push_back(finished.repeat);
           EXPECT_EQ(progress.done, ran.size());
@@ -85,6 +85,16 @@ TEST_F(CellRunner, MeasuresARun) {
   EXPECT_EQ(result.values[kCoverage], 50.0);
   EXPECT_EQ(result.values[kTrackP95], 12.0);
   EXPECT_EQ(result.program, "build");
+}
+
+TEST_F(CellRunner, KeepsWhereAndWhenARunWasMade) {
+  run({cell(0, "")});
+  const auto kept = read_result(path("runs/0"));
+  ASSERT_TRUE(kept);
+  EXPECT_EQ(kept->origin.version, "1.2.3");
+  EXPECT_EQ(kept->origin.commit, "0123456789ab");
+  EXPECT_THAT(kept->origin.machine, ::testing::ContainsRegex("[1-9][0-9]* cores?$"));
+  EXPECT_THAT(kept->origin.date, ::testing::MatchesRegex("20..-[01].-[0-3]."));
 }
 
 TEST_F(CellRunner, RunsOnlyWhatIsMissing) {

@@ -29,6 +29,7 @@ inline Study two_by_two(int repeats) {
 
 inline CellResult result_with(double ate, double coverage = 100.0) {
   CellResult result;
+  result.origin = {"1.2.3", "0123456789ab", "a machine, 2 cores", "2026-01-30"};
   result.seconds = 2.5;
   result.values[kAte] = ate;
   result.values[kCoverage] = coverage;

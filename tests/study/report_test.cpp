@@ -38,61 +38,70 @@ class Report : public ::testing::Test {
     results_.results = {
         result_with(0.5),  result_with(0.7),  result_with(0.06, 90.0), failed,
         result_with(0.01), result_with(0.02), result_with(0.02),       std::nullopt};
+    results_.results[5]->origin.date = "2026-02-01";
+    results_.command = "stillpoint ablate demo";
   }
   Study study_ = two_by_two(2);
   StudyResults results_{.study = study_, .cells = {}, .results = {}};
 };
 
 TEST_F(Report, AsMarkdown) {
-  EXPECT_EQ(markdown_report(results_, "demo"),
-            "# demo\n"
-            "\n"
-            "Median (smallest–largest) of 2 runs, seeds 7 to 8. Coverage is given after an error "
-            "where it is below 100 %.\n"
-            "\n"
-            "**Not finished:** 1 of 8 runs are missing.\n"
-            "\n"
-            "## Absolute trajectory error, SE(3), RMSE (m)\n"
-            "\n"
-            "| sequence      | plain                  | better                           |\n"
-            "|---------------|------------------------|----------------------------------|\n"
-            "| walking       | 0.6000 (0.5000–0.7000) | 0.0600, coverage 90.0 % [1 of 2] |\n"
-            "| walking_empty | 0.0150 (0.0100–0.0200) | 0.0200 [1 of 2]                  |\n"
-            "\n"
-            "## Improvement of the ATE over plain (%)\n"
-            "\n"
-            "| sequence      | plain | better                |\n"
-            "|---------------|-------|-----------------------|\n"
-            "| walking       | –     | 90.0, coverage 90.0 % |\n"
-            "| walking_empty | –     | -33.3                 |\n"
-            "\n"
-            "## Dynamic penalty: ATE ÷ ATE on the _empty twin\n"
-            "\n"
-            "| sequence | plain | better                |\n"
-            "|----------|-------|-----------------------|\n"
-            "| walking  | 40.00 | 3.00, coverage 90.0 % |\n"
-            "\n"
-            "## Coverage: frames with a pose (%)\n"
-            "\n"
-            "| sequence      | plain               | better         |\n"
-            "|---------------|---------------------|----------------|\n"
-            "| walking       | 100.0 (100.0–100.0) | 90.0 [1 of 2]  |\n"
-            "| walking_empty | 100.0 (100.0–100.0) | 100.0 [1 of 2] |\n"
-            "\n"
-            "## Times tracking was lost\n"
-            "\n"
-            "0 in every run.\n"
-            "\n"
-            "## Variants\n"
-            "\n"
-            "| variant | pipeline     | changes               |\n"
-            "|---------|--------------|-----------------------|\n"
-            "| plain   | orb_baseline |                       |\n"
-            "| better  | orb_baseline | tracker.features=2000 |\n"
-            "\n"
-            "## Runs that failed or cannot be compared\n"
-            "\n"
-            "* walking/better/1: exit code 3: cannot read 'a', \"b\"\n");
+  EXPECT_EQ(
+      markdown_report(results_, "demo"),
+      "# demo\n"
+      "\n"
+      "Median (smallest–largest) of 2 runs, seeds 7 to 8. Coverage is given after an error "
+      "where it is below 100 %.\n"
+      "\n"
+      "**Not finished:** 1 of 8 runs are missing.\n"
+      "\n"
+      "`stillpoint ablate demo`\n"
+      "\n"
+      "* 6 of 7 runs: Stillpoint 1.2.3, commit 0123456789ab; a machine, 2 cores; 2026-01-30 to "
+      "2026-02-01\n"
+      "* 1 of 7 runs: a build that has left no record\n"
+      "\n"
+      "## Absolute trajectory error, SE(3), RMSE (m)\n"
+      "\n"
+      "| sequence      | plain                  | better                           |\n"
+      "|---------------|------------------------|----------------------------------|\n"
+      "| walking       | 0.6000 (0.5000–0.7000) | 0.0600, coverage 90.0 % [1 of 2] |\n"
+      "| walking_empty | 0.0150 (0.0100–0.0200) | 0.0200 [1 of 2]                  |\n"
+      "\n"
+      "## Improvement of the ATE over plain (%)\n"
+      "\n"
+      "| sequence      | plain | better                |\n"
+      "|---------------|-------|-----------------------|\n"
+      "| walking       | –     | 90.0, coverage 90.0 % |\n"
+      "| walking_empty | –     | -33.3                 |\n"
+      "\n"
+      "## Dynamic penalty: ATE ÷ ATE on the _empty twin\n"
+      "\n"
+      "| sequence | plain | better                |\n"
+      "|----------|-------|-----------------------|\n"
+      "| walking  | 40.00 | 3.00, coverage 90.0 % |\n"
+      "\n"
+      "## Coverage: frames with a pose (%)\n"
+      "\n"
+      "| sequence      | plain               | better         |\n"
+      "|---------------|---------------------|----------------|\n"
+      "| walking       | 100.0 (100.0–100.0) | 90.0 [1 of 2]  |\n"
+      "| walking_empty | 100.0 (100.0–100.0) | 100.0 [1 of 2] |\n"
+      "\n"
+      "## Times tracking was lost\n"
+      "\n"
+      "0 in every run.\n"
+      "\n"
+      "## Variants\n"
+      "\n"
+      "| variant | pipeline     | changes               |\n"
+      "|---------|--------------|-----------------------|\n"
+      "| plain   | orb_baseline |                       |\n"
+      "| better  | orb_baseline | tracker.features=2000 |\n"
+      "\n"
+      "## Runs that failed or cannot be compared\n"
+      "\n"
+      "* walking/better/1: exit code 3: cannot read 'a', \"b\"\n");
 }
 
 TEST_F(Report, AsCsv) {
@@ -101,10 +110,12 @@ TEST_F(Report, AsCsv) {
   EXPECT_EQ(csv_report(results_),
             "sequence,variant,repeat,seed,state,exit_code,ate_m,sim3_scale,rpe_translation_m,"
             "rpe_rotation_deg,coverage_percent,times_lost,dropped_frames,track_p50_ms,"
-            "track_p95_ms,cpu_ms_per_frame,peak_memory_mib,seconds,message\n"
-            "walking,plain,0,7,done,0,0.5,,,,100,0,,,,,,2.5,\n"
-            "walking,better,1,8,failed,3,,,,,,,,,,,,0,\"cannot read 'a', \"\"b\"\"\"\n"
-            "walking_empty,better,1,8,missing,,,,,,,,,,,,,,\n");
+            "track_p95_ms,cpu_ms_per_frame,peak_memory_mib,seconds,version,commit,machine,date,"
+            "message\n"
+            "walking,plain,0,7,done,0,0.5,,,,100,0,,,,,,2.5,1.2.3,0123456789ab,"
+            "\"a machine, 2 cores\",2026-01-30,\n"
+            "walking,better,1,8,failed,3,,,,,,,,,,,,0,,,,,\"cannot read 'a', \"\"b\"\"\"\n"
+            "walking_empty,better,1,8,missing,,,,,,,,,,,,,,,,,,\n");
 }
 
 TEST_F(Report, ASequenceWithoutTwinHasNoPenalty) {

@@ -112,18 +112,32 @@ bool read_all(const InterruptibleWait& wait, int pipe, double seconds, std::stri
   }
 }
 
-std::string last_lines(std::FILE* console) {
+bool begins_a_report(const std::string& line) {
+  return line.find("Sanitizer: ") != std::string::npos ||
+         line.find(": runtime error: ") != std::string::npos;
+}
+
+/// The end of what was printed; of a sanitizer's report the beginning, since it ends with a legend.
+std::string telling_lines(std::FILE* console) {
   std::rewind(console);
   std::vector<std::string> lines;
   std::string line;
+  bool is_report = false;
   for (int c = std::fgetc(console); c != EOF; c = std::fgetc(console)) {
     line += static_cast<char>(c);
     if (c != '\n') continue;
+    if (!is_report && begins_a_report(line)) {
+      is_report = true;
+      lines.clear();
+    }
+    if (lines.size() == kConsoleLines) {
+      if (is_report) break;
+      lines.erase(lines.begin());
+    }
     lines.push_back(std::move(line));
     line.clear();
-    if (lines.size() > kConsoleLines) lines.erase(lines.begin());
   }
-  if (!line.empty()) lines.push_back(line + '\n');
+  if (!line.empty() && !is_report) lines.push_back(line + '\n');
   std::string text;
   for (const std::string& one : lines) text += one;
   return text;
@@ -154,7 +168,7 @@ IsolatedEnd run_isolated(const std::function<std::string()>& function, double se
   while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
   }
   if (interrupting_signal != 0) throw Interrupted(interrupting_signal);
-  end.console = last_lines(console.get());
+  end.console = telling_lines(console.get());
   if (!in_time) {
     std::ostringstream text;
     text << "it did not end within " << seconds << " s (--timeout)";

@@ -11,7 +11,7 @@ namespace stillpoint::plugin_check {
 struct IsolatedEnd {
   std::optional<std::string> result;  ///< nothing: the process ended without one
   std::string how;      ///< then: "it was ended by SIGSEGV", "…did not end within 60 s"
-  std::string console;  ///< the last lines of its output
+  std::string console;  ///< the last lines of its output, or the first of a sanitizer's report
 };
 
 /// SIGINT or SIGTERM came while a child was waited for; the child has been ended.

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "commands.hpp"
+#include "commit.hpp"
 #include "console.hpp"
 #include "evaluation/format.hpp"
 #include "evaluation/trajectory.hpp"
@@ -42,7 +43,8 @@ struct AblateArguments {
 class Ablation {
  public:
   explicit Ablation(const AblateArguments& arguments)
-      : file_(load_study(arguments.study, registry_)),
+      : command_("stillpoint ablate " + arguments.study),
+        file_(load_study(arguments.study, registry_)),
         output_(fs::absolute(arguments.output.empty() ? fs::path("out") / file_.file.stem()
                                                       : arguments.output)
                     .lexically_normal()),
@@ -70,7 +72,8 @@ class Ablation {
   const Study& study() const { return file_.study; }
 
   StudyResults run_cells(const std::stop_token& stop) {
-    StudyResults results{.study = study(), .cells = cells_of(study()), .results = {}};
+    StudyResults results{
+        .study = study(), .cells = cells_of(study()), .results = {}, .command = command_};
     results.results.resize(results.cells.size());
     if (!record_scenes(stop)) return results;
     const std::vector<PlannedCell> plan = plan_cells(results.cells);
@@ -153,10 +156,12 @@ class Ablation {
     return folders;
   }
 
-  std::string program() const {
+  Program program() const {
     std::vector<fs::path> files = {this_program()};
     for (const PluginType& type : registry_.types()) files.push_back(type.library);
-    return program_fingerprint(files);
+    return {.fingerprint = program_fingerprint(files),
+            .version = STILLPOINT_VERSION,
+            .commit = built_from_commit()};
   }
 
   void say_what_is_there(const StudyResults& results) {
@@ -164,7 +169,7 @@ class Ablation {
     if (there == 0) return;
     console_.note(std::to_string(there) + " of " + std::to_string(results.cells.size()) +
                   " runs are there already");
-    const std::string current = program();
+    const std::string current = program().fingerprint;
     const auto older = std::ranges::count_if(
         results.results, [&](const auto& result) { return result && result->program != current; });
     if (older > 0)
@@ -210,6 +215,7 @@ class Ablation {
                                    " runs failed; the same command tries them again:" + list);
   }
 
+  const std::string command_;
   Registry registry_;
   const StudyFile file_;
   const fs::path output_;

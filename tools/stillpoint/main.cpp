@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "commands.hpp"
+#include "commit.hpp"
 #include "stillpoint/error.hpp"
 #include "stillpoint/runtime/freed_memory.hpp"
 #include "stillpoint/runtime/stage_guard.hpp"
@@ -74,9 +75,14 @@ void check_options(const CLI::App& app) {
   }
 }
 
+std::string version_text() {
+  const std::string commit = stillpoint::built_from_commit();
+  return "stillpoint " STILLPOINT_VERSION + (commit.empty() ? "" : " (commit " + commit + ")");
+}
+
 int run(int argc, char** argv) {
   CLI::App app{"RGB-D SLAM for scenes in which people and things move", "stillpoint"};
-  app.set_version_flag("-V,--version", "stillpoint " STILLPOINT_VERSION);
+  app.set_version_flag("-V,--version", version_text());
   app.set_help_all_flag("--help-all", "Help of every subcommand");
   app.require_subcommand(1);
   app.fallthrough(false);

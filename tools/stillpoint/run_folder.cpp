@@ -8,7 +8,6 @@
 #include <cerrno>
 #include <cstring>
 #include <fstream>
-#include <regex>
 #include <system_error>
 #include <utility>
 
@@ -23,14 +22,20 @@ constexpr const char* kResults[] = {"pipeline.yaml", "log.txt",     "trajectory.
                                     "keyframes.txt", "timings.csv", "summary.json"};
 constexpr const char* kMaps[] = {"map.ot", "map.bt", "map.ply", "map.pgm", "map.yaml", "cloud.ply"};
 
+/// "000042.jpg"
+bool is_picture(const fs::path& file) {
+  const std::string number = file.stem().string();
+  return number.size() >= 6 && number.find_first_not_of("0123456789") == std::string::npos &&
+         (file.extension() == ".jpg" || file.extension() == ".png");
+}
+
 /// Maps and pictures, by their names: nothing else in these folders is the program's.
 std::vector<fs::path> files_of_a_run(const fs::path& folder) {
-  static const std::regex kPicture(R"(\d{6,}\.(jpg|png))");
   std::vector<fs::path> files;
   for (const char* name : kMaps) files.push_back(folder / "map" / name);
   std::error_code none;
   for (const auto& entry : fs::directory_iterator(folder / "images", none))
-    if (std::regex_match(entry.path().filename().string(), kPicture)) files.push_back(entry.path());
+    if (is_picture(entry.path())) files.push_back(entry.path());
   return files;
 }
 

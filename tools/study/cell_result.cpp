@@ -17,7 +17,10 @@ void write_result(const std::filesystem::path& run, const CellResult& result) {
   Json values = Json::object();
   for (std::size_t i = 0; i < kMetricCount; ++i)
     if (result.values[i]) values[metrics()[i].key] = *result.values[i];
+  const Origin& origin = result.origin;
   const Json json = {{"fingerprint", result.fingerprint}, {"program", result.program},
+                     {"version", origin.version},         {"commit", origin.commit},
+                     {"machine", origin.machine},         {"date", origin.date},
                      {"exit_code", result.exit_code},     {"message", result.message},
                      {"seconds", result.seconds},         {"values", values}};
   // A message may hold what another program has written.
@@ -29,6 +32,10 @@ std::optional<CellResult> read_result(const std::filesystem::path& run) {
     const Json json = Json::parse(read_text(run / kFile));
     CellResult result{.fingerprint = json.at("fingerprint"),
                       .program = json.at("program"),
+                      .origin = {.version = json.value("version", ""),
+                                 .commit = json.value("commit", ""),
+                                 .machine = json.value("machine", ""),
+                                 .date = json.value("date", "")},
                       .exit_code = json.at("exit_code"),
                       .message = json.at("message"),
                       .seconds = json.at("seconds")};

@@ -6,12 +6,14 @@
 #include <string>
 
 #include "study/metrics.hpp"
+#include "study/origin.hpp"
 
 namespace stillpoint::study {
 
 struct CellResult {
   std::string fingerprint;
-  std::string program;    ///< which build of the program and its plugins made it
+  std::string program;  ///< fingerprint of the build that made it
+  Origin origin{};
   int exit_code = 0;      ///< of the run; 128 + signal when one ended it
   std::string message;    ///< why it failed, or why errors are missing
   double seconds = 0.0;   ///< that the run took

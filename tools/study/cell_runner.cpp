@@ -20,7 +20,7 @@ double seconds_since(Clock::time_point start) {
 }
 
 /// Nothing when it was stopped.
-std::optional<CellResult> run_cell(const PlannedCell& cell, const std::string& program,
+std::optional<CellResult> run_cell(const PlannedCell& cell, const Program& program,
                                    const std::stop_token& stop) {
   remove_folder(cell.run);
   make_folder(cell.run);
@@ -28,7 +28,8 @@ std::optional<CellResult> run_cell(const PlannedCell& cell, const std::string& p
   const std::filesystem::path console = cell.run / "console.txt";
   const ProcessEnd end = run_process(cell.command, console, stop);
   CellResult result{.fingerprint = cell.fingerprint,
-                    .program = program,
+                    .program = program.fingerprint,
+                    .origin = origin_of(program),
                     .exit_code = end.exit_code,
                     .seconds = seconds_since(start)};
   if (end.exit_code != 0 && stop.stop_requested()) return std::nullopt;
@@ -85,7 +86,7 @@ std::optional<CellResult> valid_result(const PlannedCell& cell) {
   return result;
 }
 
-void run_missing(const std::vector<PlannedCell>& cells, const std::string& program, int jobs,
+void run_missing(const std::vector<PlannedCell>& cells, const Program& program, int jobs,
                  const std::stop_token& stop, const CellFinished& finished,
                  std::vector<std::optional<CellResult>>& results) {
   std::vector<std::size_t> missing;

@@ -37,8 +37,8 @@ std::optional<CellResult> valid_result(const PlannedCell& cell);
 
 /// Fills the empty `results` (parallel to `cells`), first repeats first, `jobs` processes at most
 /// at a time, and keeps each result beside its run. After a stop they stay empty. A run that fails
-/// is a result. `program` says which build is running.
-void run_missing(const std::vector<PlannedCell>& cells, const std::string& program, int jobs,
+/// is a result. `program` is the one that the commands run.
+void run_missing(const std::vector<PlannedCell>& cells, const Program& program, int jobs,
                  const std::stop_token& stop, const CellFinished& finished,
                  std::vector<std::optional<CellResult>>& results);
 

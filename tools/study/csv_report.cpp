@@ -39,7 +39,11 @@ std::string row(const Study& study, const Cell& cell, const std::optional<CellRe
   for (const std::optional<double>& value : known.values) text += "," + number(value);
   text += ",";
   if (result) text += number(known.seconds);
-  return text + "," + quoted(known.message) + "\n";
+  const Origin& origin = known.origin;
+  for (const std::string& field :
+       {origin.version, origin.commit, origin.machine, origin.date, known.message})
+    text += "," + quoted(field);
+  return text + "\n";
 }
 
 }  // namespace
@@ -47,7 +51,7 @@ std::string row(const Study& study, const Cell& cell, const std::optional<CellRe
 std::string csv_report(const StudyResults& results) {
   std::string text = "sequence,variant,repeat,seed,state,exit_code";
   for (const Metric& metric : metrics()) text += std::string(",") + metric.key;
-  text += ",seconds,message\n";
+  text += ",seconds,version,commit,machine,date,message\n";
   for (std::size_t i = 0; i < results.cells.size(); ++i)
     text += row(results.study, results.cells[i], results.results[i]);
   return text;

@@ -1,6 +1,8 @@
 #include "study/markdown_report.hpp"
 
+#include <algorithm>
 #include <functional>
+#include <vector>
 
 #include "evaluation/format.hpp"
 #include "stillpoint/support/did_you_mean.hpp"
@@ -93,6 +95,49 @@ std::string ratio_section(const StudyResults& results, const std::string& title,
   return table.empty() ? "" : heading(title, unit) + table;
 }
 
+std::string text_of(const Origin& origin) {
+  if (origin.version.empty()) return "a build that has left no record";
+  std::string text = "Stillpoint " + origin.version;
+  if (!origin.commit.empty()) text += ", commit " + origin.commit;
+  return text + "; " + origin.machine;
+}
+
+/// Runs that one build made on one machine.
+struct Batch {
+  std::string made_by;
+  std::string first_date, last_date;
+  std::size_t runs = 0;
+};
+
+std::vector<Batch> batches_of(const StudyResults& results) {
+  std::vector<Batch> batches;
+  for (const std::optional<CellResult>& result : results.results) {
+    if (!result) continue;
+    const std::string made_by = text_of(result->origin), &date = result->origin.date;
+    auto batch = std::ranges::find(batches, made_by, &Batch::made_by);
+    if (batch == batches.end()) batch = batches.insert(batches.end(), {made_by, date, date});
+    batch->first_date = std::min(batch->first_date, date);
+    batch->last_date = std::max(batch->last_date, date);
+    ++batch->runs;
+  }
+  return batches;
+}
+
+/// The command that repeats the runs; which builds made them, where and when.
+std::string origins(const StudyResults& results) {
+  std::string text = results.command.empty() ? "" : "\n`" + results.command + "`\n";
+  const std::vector<Batch> batches = batches_of(results);
+  const std::string total = std::to_string(results.results.size() - results.missing());
+  for (const Batch& batch : batches) {
+    text += "\n";
+    if (batches.size() > 1) text += "* " + std::to_string(batch.runs) + " of " + total + " runs: ";
+    text += batch.made_by;
+    if (!batch.first_date.empty()) text += "; " + batch.first_date;
+    if (batch.last_date != batch.first_date) text += " to " + batch.last_date;
+  }
+  return batches.empty() ? text : text + "\n";
+}
+
 std::string introduction(const StudyResults& results) {
   const Study& study = results.study;
   const int last = study.seed + study.repeats - 1;
@@ -105,7 +150,7 @@ std::string introduction(const StudyResults& results) {
   if (results.missing() > 0)
     text += "\n**Not finished:** " + std::to_string(results.missing()) + " of " +
             std::to_string(results.cells.size()) + " runs are missing.\n";
-  return text;
+  return text + origins(results);
 }
 
 std::string variants_section(const Study& study) {

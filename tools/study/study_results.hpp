@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "study/cell_result.hpp"
@@ -24,6 +25,7 @@ struct StudyResults {
   const Study& study;
   std::vector<Cell> cells;
   std::vector<std::optional<CellResult>> results;  ///< parallel to `cells`; nothing: not run yet
+  std::string command;                             ///< that makes them
 
   std::optional<Spread> spread(std::size_t sequence, std::size_t variant, MetricId metric) const;
   std::size_t failed() const;

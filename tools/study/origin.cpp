@@ -1,0 +1,44 @@
+#include "study/origin.hpp"
+
+#include <chrono>
+#include <cstdio>
+#include <fstream>
+#include <thread>
+
+namespace stillpoint::study {
+namespace {
+
+/// As Linux names it; empty elsewhere.
+std::string processor() {
+  std::ifstream file("/proc/cpuinfo");
+  for (std::string line; std::getline(file, line);)
+    if (line.starts_with("model name"))
+      if (const std::size_t colon = line.find(": "); colon != std::string::npos)
+        return line.substr(colon + 2);
+  return {};
+}
+
+std::string machine() {
+  const unsigned cores = std::thread::hardware_concurrency();
+  const std::string name = processor();
+  return (name.empty() ? "" : name + ", ") + std::to_string(cores) +
+         (cores == 1 ? " core" : " cores");
+}
+
+std::string today() {
+  const std::chrono::year_month_day day(
+      std::chrono::floor<std::chrono::days>(std::chrono::system_clock::now()));
+  char text[16];
+  std::snprintf(text, sizeof(text), "%04d-%02u-%02u", static_cast<int>(day.year()),
+                static_cast<unsigned>(day.month()), static_cast<unsigned>(day.day()));
+  return text;
+}
+
+}  // namespace
+
+Origin origin_of(const Program& program) {
+  return {
+      .version = program.version, .commit = program.commit, .machine = machine(), .date = today()};
+}
+
+}  // namespace stillpoint::study

@@ -1,0 +1,27 @@
+// Where and when a run was made: what a table has to say for others to repeat it.
+#pragma once
+
+#include <string>
+
+namespace stillpoint::study {
+
+/// The program that makes the runs.
+struct Program {
+  std::string fingerprint;  ///< of the files of the program and its plugins
+  std::string version;
+  std::string commit;  ///< empty: not built from a git repository
+};
+
+struct Origin {
+  std::string version;
+  std::string commit;   ///< may be empty
+  std::string machine;  ///< "AMD EPYC 7B13, 2 cores"
+  std::string date;     ///< of the end of the run, UTC: "2026-11-26"
+
+  bool operator==(const Origin&) const = default;
+};
+
+/// Here and now.
+Origin origin_of(const Program& program);
+
+}  // namespace stillpoint::study
