@@ -93,6 +93,50 @@ TEST_F(Ablate, AFailedRunIsListedAndTheOthersGoOn) {
   EXPECT_THAT(text_of(out() / "results.csv"), HasSubstr("\ndamaged,plain,0,1,failed,3,"));
 }
 
+TEST_F(Ablate, AGridIsAVariantForEveryCombination) {
+  folder_.write("study.yaml",
+                "version: 1\n"
+                "sequences: [{name: s, scene: fr3_walking_xyz_empty, frames: 3}]\n"
+                "variants:\n"
+                "  - {name: plain, pipeline: orb_baseline}\n"
+                "  - name: more\n"
+                "    pipeline: orb_baseline\n"
+                "    set: [tracker.features=900]\n"
+                "    grid: {tracker.features: [500, 1000], runtime.mode: [inline, threaded]}\n");
+  const Outcome outcome =
+      call({"ablate", (folder_.path() / "study.yaml").string(), "-o", out().string()});
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  const std::string effective =
+      text_of(out() / "runs/s/more-features-500-mode-threaded/0/pipeline.yaml");
+  EXPECT_THAT(effective, AllOf(HasSubstr("features: 500"), HasSubstr("mode: threaded")));
+  EXPECT_THAT(text_of(out() / "results.csv"),
+              AllOf(HasSubstr("\ns,plain,"), HasSubstr("\ns,more-features-500-mode-inline,"),
+                    HasSubstr("\ns,more-features-1000-mode-inline,"),
+                    HasSubstr("\ns,more-features-1000-mode-threaded,")));
+}
+
+TEST_F(Ablate, AGridThatIsNoneIsRefusedWithItsPlace) {
+  const auto refusal = [&](const std::string& grid) {
+    folder_.write("study.yaml",
+                  "version: 1\n"
+                  "sequences: [{name: s, scene: fr3_walking_xyz_empty}]\n"
+                  "variants: [{name: v, pipeline: orb_baseline, grid: " +
+                      grid + "}]\n");
+    const Outcome outcome =
+        call({"ablate", (folder_.path() / "study.yaml").string(), "-o", out().string()});
+    EXPECT_EQ(outcome.exit_code, 2);
+    return outcome.err;
+  };
+  EXPECT_THAT(refusal("[1, 2]"),
+              HasSubstr("study.yaml:3:52: error: a grid is written {OPTION: [VALUE, VALUE]}"));
+  EXPECT_THAT(refusal("{}"), HasSubstr("a grid is written"));
+  EXPECT_THAT(refusal("{tracker.features: []}"),
+              HasSubstr("'tracker.features' of a grid needs its values"));
+  EXPECT_THAT(refusal("{tracker.features: [[1]]}"),
+              HasSubstr("a value of a grid is a number or a word"));
+  EXPECT_THAT(refusal("{tracker.featurs: [1]}"), HasSubstr("did you mean 'features'?"));
+}
+
 TEST_F(Ablate, CtrlCKeepsWhatIsDone) {
   folder_.write("study.yaml",
                 "version: 1\n"

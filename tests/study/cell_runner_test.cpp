@@ -97,6 +97,16 @@ TEST_F(CellRunner, KeepsWhereAndWhenARunWasMade) {
   EXPECT_THAT(kept->origin.date, ::testing::MatchesRegex("20..-[01].-[0-3]."));
 }
 
+TEST_F(CellRunner, ARunThatTakesTooLongHasFailed) {
+  PlannedCell slow = cell(0, "exec sleep 1000");
+  slow.time_limit = 0.2;
+  run({slow, cell(1, "")});
+  EXPECT_EQ(results_[0]->exit_code, 124);
+  EXPECT_EQ(results_[0]->message, "took longer than the time limit of 0.2 s");
+  EXPECT_LT(results_[0]->seconds, 900.0);
+  EXPECT_FALSE(results_[1]->failed());
+}
+
 TEST_F(CellRunner, RunsOnlyWhatIsMissing) {
   const std::vector<PlannedCell> cells = {cell(0, ""), cell(1, ""), cell(2, "")};
   EXPECT_THAT(run(cells), ElementsAre(0, 1, 2));

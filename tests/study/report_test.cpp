@@ -1,3 +1,4 @@
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "fixtures.hpp"
@@ -68,12 +69,27 @@ TEST_F(Report, AsMarkdown) {
       "| walking       | 0.6000 (0.5000–0.7000) | 0.0600, coverage 90.0 % [1 of 2] |\n"
       "| walking_empty | 0.0150 (0.0100–0.0200) | 0.0200 [1 of 2]                  |\n"
       "\n"
+      "## Compared with plain, recording by recording\n"
+      "\n"
+      "| variant | better | worse | by coverage | ATE ratio | CPU ratio | effect | p      | "
+      "corrected p |\n"
+      "|---------|--------|-------|-------------|-----------|-----------|--------|--------|"
+      "-------------|\n"
+      "| better  | 0      | 2     | 1           | 2.00      | –         | -1.00  | 0.5000 | "
+      "0.5000      |\n"
+      "\n"
+      "Ratios: median (quartiles); below 1 the variant has the smaller error, or takes less "
+      "time. *By coverage*: recordings on which one of the two failed, covered less or lost its "
+      "way, and so is the worse one. Effect: 1, the variant is always better; -1, always worse. "
+      "p: Wilcoxon's signed-rank test of the ATE, two-sided; corrected for the number of "
+      "variants after Holm.\n"
+      "\n"
       "## Improvement of the ATE over plain (%)\n"
       "\n"
       "| sequence      | plain | better                |\n"
       "|---------------|-------|-----------------------|\n"
-      "| walking       | –     | 90.0, coverage 90.0 % |\n"
-      "| walking_empty | –     | -33.3                 |\n"
+      "| walking       | –     | 88.0, coverage 90.0 % |\n"
+      "| walking_empty | –     | -100.0                |\n"
       "\n"
       "## Dynamic penalty: ATE ÷ ATE on the _empty twin\n"
       "\n"
@@ -116,6 +132,19 @@ TEST_F(Report, AsCsv) {
             "\"a machine, 2 cores\",2026-01-30,\n"
             "walking,better,1,8,failed,3,,,,,,,,,,,,0,,,,,\"cannot read 'a', \"\"b\"\"\"\n"
             "walking_empty,better,1,8,missing,,,,,,,,,,,,,,,,,,\n");
+}
+
+TEST_F(Report, AsSummary) {
+  EXPECT_THAT(
+      csv_summary(results_),
+      ::testing::StartsWith(
+          "sequence,variant,metric,runs,failed,missing,median,first_quartile,third_quartile,"
+          "smallest,largest\n"
+          "walking,plain,ate_m,2,0,0,0.6,0.55,0.65,0.5,0.7\n"
+          "walking,plain,coverage_percent,2,0,0,100,100,100,100,100\n"
+          "walking,plain,times_lost,2,0,0,0,0,0,0,0\n"
+          "walking,better,ate_m,1,1,0,0.06,0.06,0.06,0.06,0.06\n"));
+  EXPECT_THAT(csv_summary(results_), ::testing::HasSubstr("walking_empty,better,ate_m,1,0,1,0.02"));
 }
 
 TEST_F(Report, ASequenceWithoutTwinHasNoPenalty) {

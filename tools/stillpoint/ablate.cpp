@@ -131,7 +131,8 @@ class Ablation {
                       .command = command_of(request, run, seed),
                       .run = run,
                       .recording = recording,
-                      .fingerprint = cell_fingerprint(pipeline, recording_print + inputs, seed)});
+                      .fingerprint = cell_fingerprint(pipeline, recording_print + inputs, seed),
+                      .time_limit = study().time_limit});
     }
     return plan;
   }
@@ -196,10 +197,11 @@ class Ablation {
     const std::string tables = markdown_report(results, file_.file.stem().string());
     write_text(output_ / "study.yaml", file_.effective_yaml);
     write_text(output_ / "results.csv", csv_report(results));
+    write_text(output_ / "summary.csv", csv_summary(results));
     write_text(output_ / "results.md", tables);
     if (quiet_) return;
     std::cout << tables << "\nfiles in " << output_.string()
-              << ": results.md results.csv study.yaml runs/\n"
+              << ": results.md results.csv summary.csv study.yaml runs/\n"
               << std::flush;
   }
 

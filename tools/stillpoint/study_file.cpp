@@ -6,6 +6,7 @@
 #include "stillpoint/runtime/yaml_loader.hpp"
 #include "stillpoint/runtime/yaml_option_reader.hpp"
 #include "study_check.hpp"
+#include "study_grid.hpp"
 
 namespace stillpoint {
 namespace {
@@ -42,6 +43,9 @@ StudyFile load_study(const std::string& name_or_file, Registry& registry) {
   remove_nulls(tree);
   tree.key_location = tree.location;
   check_version(tree, faults);
+  FaultList of_grids;
+  expand_grids(tree, of_grids);
+  of_grids.throw_if_any();
 
   YamlOptionReader reader(&tree, "study");
   reader.ignore("version");

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <future>
 #include <mutex>
+#include <sstream>
 
 #include "stillpoint/error.hpp"
 #include "study/child_process.hpp"
@@ -14,6 +15,14 @@ namespace stillpoint::study {
 namespace {
 
 using Clock = std::chrono::steady_clock;
+
+constexpr int kOutOfTime = 124;  // as timeout(1) says it
+
+std::string seconds_text(double seconds) {
+  std::ostringstream text;
+  text << seconds << " s";
+  return text.str();
+}
 
 double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
@@ -26,15 +35,17 @@ std::optional<CellResult> run_cell(const PlannedCell& cell, const Program& progr
   make_folder(cell.run);
   const Clock::time_point start = Clock::now();
   const std::filesystem::path console = cell.run / "console.txt";
-  const ProcessEnd end = run_process(cell.command, console, stop);
+  const ProcessEnd end = run_process(cell.command, console, stop, cell.time_limit);
   CellResult result{.fingerprint = cell.fingerprint,
                     .program = program.fingerprint,
                     .origin = origin_of(program),
-                    .exit_code = end.exit_code,
+                    .exit_code = end.in_time ? end.exit_code : kOutOfTime,
                     .seconds = seconds_since(start)};
   if (end.exit_code != 0 && stop.stop_requested()) return std::nullopt;
   try {
-    if (end.exit_code == 0)
+    if (!end.in_time)
+      result.message = "took longer than the time limit of " + seconds_text(cell.time_limit);
+    else if (end.exit_code == 0)
       result.values = measure_run(cell.run, cell.recording, result.message);
     else
       result.message = failure_text(console, end);

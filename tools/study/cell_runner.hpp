@@ -20,6 +20,7 @@ struct PlannedCell {
   std::filesystem::path run;         ///< folder of its own
   std::filesystem::path recording;   ///< with groundtruth.txt
   std::string fingerprint;           ///< of what the result depends on
+  double time_limit = 0.0;           ///< seconds; 0: none
 };
 
 struct StudyProgress {

@@ -1,12 +1,16 @@
 #include "study/child_process.hpp"
 
 #include <fcntl.h>
+#include <poll.h>
 #include <signal.h>
 #include <sys/prctl.h>
+#include <sys/syscall.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
+#include <chrono>
 #include <cstring>
 
 #include "stillpoint/error.hpp"
@@ -14,7 +18,10 @@
 namespace stillpoint::study {
 namespace {
 
+using Clock = std::chrono::steady_clock;
+
 constexpr int kCannotStart = 127;
+constexpr double kSecondsToSave = 10.0;  // after SIGINT
 
 std::vector<char*> pointers(std::vector<std::string>& texts) {
   std::vector<char*> result;
@@ -73,15 +80,37 @@ pid_t start(std::vector<std::string>& command, const std::filesystem::path& cons
   return process;
 }
 
+/// Whether it ends within the time.
+bool ends_within(pid_t process, double seconds) {
+  // The header of glibc 2.36 declares pidfd_open() for C only.
+  const int file = static_cast<int>(syscall(SYS_pidfd_open, process, 0));
+  if (file < 0) return true;  // no such call before Linux 5.3: it is waited for without a limit
+  const auto end = Clock::now() + std::chrono::duration<double>(seconds);
+  pollfd ended{.fd = file, .events = POLLIN, .revents = 0};
+  int left_ms = 0;
+  do {
+    left_ms = static_cast<int>(std::clamp(
+        std::chrono::duration<double, std::milli>(end - Clock::now()).count(), 0.0, 1e9));
+  } while (poll(&ended, 1, left_ms) < 0 && errno == EINTR);
+  close(file);
+  return (ended.revents & POLLIN) != 0;
+}
+
 }  // namespace
 
 ProcessEnd run_process(std::vector<std::string> command, const std::filesystem::path& console,
-                       const std::stop_token& stop) {
+                       const std::stop_token& stop, double time_limit) {
   const pid_t process = start(command, console);
-  siginfo_t info{};
+  ProcessEnd end;
   {
     const std::stop_callback interrupt(stop, [process] { kill(process, SIGINT); });
+    if (time_limit > 0.0 && !ends_within(process, time_limit)) {
+      end.in_time = false;
+      kill(process, SIGINT);
+      if (!ends_within(process, kSecondsToSave)) kill(process, SIGKILL);
+    }
     // Not reaped yet: until the callback is gone, the number belongs to this process.
+    siginfo_t info{};
     while (waitid(P_PID, static_cast<id_t>(process), &info, WEXITED | WNOWAIT) < 0 &&
            errno == EINTR) {
     }
@@ -89,8 +118,9 @@ ProcessEnd run_process(std::vector<std::string> command, const std::filesystem::
   int status = 0;
   while (waitpid(process, &status, 0) < 0 && errno == EINTR) {
   }
-  if (WIFSIGNALED(status)) return {128 + WTERMSIG(status), WTERMSIG(status)};
-  return {WEXITSTATUS(status), 0};
+  end.signal = WIFSIGNALED(status) ? WTERMSIG(status) : 0;
+  end.exit_code = end.signal != 0 ? 128 + end.signal : WEXITSTATUS(status);
+  return end;
 }
 
 std::filesystem::path this_program() {

@@ -46,6 +46,24 @@ std::string row(const Study& study, const Cell& cell, const std::optional<CellRe
   return text + "\n";
 }
 
+struct WithoutResult {
+  std::size_t failed = 0;
+  std::size_t missing = 0;
+};
+
+WithoutResult without_result(const StudyResults& results, std::size_t sequence,
+                             std::size_t variant) {
+  WithoutResult count;
+  for (std::size_t i = 0; i < results.cells.size(); ++i) {
+    if (results.cells[i].sequence != sequence || results.cells[i].variant != variant) continue;
+    if (!results.results[i])
+      ++count.missing;
+    else if (results.results[i]->failed())
+      ++count.failed;
+  }
+  return count;
+}
+
 }  // namespace
 
 std::string csv_report(const StudyResults& results) {
@@ -54,6 +72,29 @@ std::string csv_report(const StudyResults& results) {
   text += ",seconds,version,commit,machine,date,message\n";
   for (std::size_t i = 0; i < results.cells.size(); ++i)
     text += row(results.study, results.cells[i], results.results[i]);
+  return text;
+}
+
+std::string csv_summary(const StudyResults& results) {
+  const Study& study = results.study;
+  std::string text =
+      "sequence,variant,metric,runs,failed,missing,median,first_quartile,third_quartile,smallest,"
+      "largest\n";
+  for (std::size_t sequence = 0; sequence < study.sequences.size(); ++sequence)
+    for (std::size_t variant = 0; variant < study.variants.size(); ++variant) {
+      const auto [failed, missing] = without_result(results, sequence, variant);
+      for (std::size_t metric = 0; metric < kMetricCount; ++metric) {
+        const auto spread = results.spread(sequence, variant, static_cast<MetricId>(metric));
+        if (!spread) continue;
+        text += study.sequences[sequence].name + "," + study.variants[variant].name + "," +
+                metrics()[metric].key + "," + std::to_string(spread->count) + "," +
+                std::to_string(failed) + "," + std::to_string(missing);
+        for (const double value : {spread->median, spread->first_quartile, spread->third_quartile,
+                                   spread->min, spread->max})
+          text += "," + number(value);
+        text += "\n";
+      }
+    }
   return text;
 }
 

@@ -7,6 +7,7 @@
 #include "evaluation/format.hpp"
 #include "stillpoint/support/did_you_mean.hpp"
 #include "study/markdown_table.hpp"
+#include "study/paired_comparison.hpp"
 
 namespace stillpoint::study {
 namespace {
@@ -50,15 +51,21 @@ std::string coverage_note(const StudyResults& results, std::size_t sequence, std
   return percent == "100.0" ? "" : ", coverage " + percent + " %";
 }
 
-std::string spread_text(const StudyResults& results, std::size_t sequence, std::size_t variant,
+/// "0.0021 (0.0020–0.0022)", "5.0 (-3.0 to 9.0)"
+std::string spread_text(const Spread& spread, int digits) {
+  std::string text = fixed(spread.median, digits);
+  if (spread.count > 1)
+    text += " (" + fixed(spread.min, digits) + (spread.min < 0.0 ? " to " : "–") +
+            fixed(spread.max, digits) + ")";
+  return text;
+}
+
+std::string metric_text(const StudyResults& results, std::size_t sequence, std::size_t variant,
                         MetricId metric) {
   const auto spread = results.spread(sequence, variant, metric);
   const bool error = is_error(metric);
   if (!spread) return kNothing + (error ? coverage_note(results, sequence, variant) : "");
-  const int digits = metrics()[metric].digits;
-  std::string text = fixed(spread->median, digits);
-  if (spread->count > 1)
-    text += " (" + fixed(spread->min, digits) + "–" + fixed(spread->max, digits) + ")";
+  std::string text = spread_text(*spread, metrics()[metric].digits);
   if (error) text += coverage_note(results, sequence, variant);
   const auto repeats = static_cast<std::size_t>(results.study.repeats);
   if (spread->count < repeats)
@@ -80,19 +87,57 @@ std::string metric_section(const StudyResults& results, MetricId metric) {
   if (all->min == 0.0 && all->max == 0.0) return heading(m.title, m.unit) + "0 in every run.\n";
   return heading(m.title, m.unit) +
          matrix(results.study, [&](std::size_t sequence, std::size_t variant) {
-           return spread_text(results, sequence, variant, metric);
+           return metric_text(results, sequence, variant, metric);
          });
 }
 
-using Ratio = std::optional<double> (*)(const StudyResults&, std::size_t, std::size_t);
-
-std::string ratio_section(const StudyResults& results, const std::string& title,
-                          const std::string& unit, int digits, Ratio ratio) {
+std::string penalty_section(const StudyResults& results) {
   const std::string table = matrix(results.study, [&](std::size_t sequence, std::size_t variant) {
-    const auto value = ratio(results, sequence, variant);
-    return value ? fixed(*value, digits) + coverage_note(results, sequence, variant) : kNothing;
+    const auto value = dynamic_penalty(results, sequence, variant);
+    return value ? fixed(*value, 2) + coverage_note(results, sequence, variant) : kNothing;
   });
-  return table.empty() ? "" : heading(title, unit) + table;
+  return table.empty() ? "" : heading("Dynamic penalty: ATE ÷ ATE on the _empty twin", "") + table;
+}
+
+std::string improvement_section(const StudyResults& results) {
+  const std::string table = matrix(results.study, [&](std::size_t sequence, std::size_t variant) {
+    const auto value = improvement_percent(results, sequence, variant);
+    return value ? spread_text(*value, 1) + coverage_note(results, sequence, variant) : kNothing;
+  });
+  if (table.empty()) return {};
+  return heading("Improvement of the ATE over " + results.study.baseline, "%") + table;
+}
+
+std::string ratio_text(const std::optional<Spread>& ratio) {
+  if (!ratio) return kNothing;
+  std::string text = fixed(ratio->median, 2);
+  if (ratio->count > 1)
+    text += " (" + fixed(ratio->first_quartile, 2) + "–" + fixed(ratio->third_quartile, 2) + ")";
+  return text;
+}
+
+std::string p_text(double p) { return p < 0.0001 ? "< 0.0001" : fixed(p, 4); }
+
+std::string comparison_section(const StudyResults& results) {
+  std::vector<std::vector<std::string>> rows;
+  for (const PairedComparison& one : compare_with_baseline(results)) {
+    rows.push_back({results.study.variants[one.variant].name, std::to_string(one.better),
+                    std::to_string(one.worse), std::to_string(one.incomplete),
+                    ratio_text(one.ate_ratio), ratio_text(one.time_ratio), fixed(one.effect, 2),
+                    p_text(one.p), p_text(one.corrected_p)});
+  }
+  if (rows.empty()) return {};
+  return heading("Compared with " + results.study.baseline + ", recording by recording", "") +
+         markdown_table({"variant", "better", "worse", "by coverage", "ATE ratio", "CPU ratio",
+                         "effect", "p", "corrected p"},
+                        rows) +
+         "\nRatios: median (quartiles); below 1 the variant has the smaller error, or takes less "
+         "time. "
+         "*By coverage*: recordings on which one of the two failed, covered less or lost its way, "
+         "and "
+         "so is the worse one. Effect: 1, the variant is always better; -1, always worse. p: "
+         "Wilcoxon's signed-rank test of the ATE, two-sided; corrected for the number of variants "
+         "after Holm.\n";
 }
 
 std::string text_of(const Origin& origin) {
@@ -178,10 +223,7 @@ std::string remarks_section(const StudyResults& results) {
 std::string markdown_report(const StudyResults& results, const std::string& title) {
   std::string text = "# " + title + "\n\n" + introduction(results);
   text += metric_section(results, kAte);
-  text += ratio_section(results, "Improvement of the ATE over " + results.study.baseline, "%", 1,
-                        improvement_percent);
-  text += ratio_section(results, "Dynamic penalty: ATE ÷ ATE on the _empty twin", "", 2,
-                        dynamic_penalty);
+  text += comparison_section(results) + improvement_section(results) + penalty_section(results);
   for (std::size_t metric = kAte + 1; metric < kMetricCount; ++metric)
     text += metric_section(results, static_cast<MetricId>(metric));
   return text + variants_section(results.study) + remarks_section(results);

@@ -50,6 +50,10 @@ void Study::visit(OptionVisitor& v) {
     {.min = 0, .max = 1e9, .help = "runtime.seed of the first repeat; the next has one more"});
   v("new_noise", new_noise,
     {.help = "simulate scenes anew for every repeat, with its seed as source.seed"});
+  v("time_limit", time_limit,
+    {.min = 0,
+     .unit = "s",
+     .help = "a run that takes longer is ended and has failed; 0: no limit"});
   v.choice(
       "mode", mode,
       {{"pipeline", Mode::kPipeline}, {"inline", Mode::kInline}, {"threaded", Mode::kThreaded}},

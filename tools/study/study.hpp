@@ -37,8 +37,9 @@ struct Study {
   std::vector<Sequence> sequences;
   std::vector<Variant> variants;
   int repeats = 1;
-  int seed = 1;            ///< repeat k runs with seed + k
-  bool new_noise = false;  ///< scenes are simulated for each repeat
+  int seed = 1;             ///< repeat k runs with seed + k
+  bool new_noise = false;   ///< scenes are simulated for each repeat
+  double time_limit = 0.0;  ///< seconds, of a run; 0: none
   Mode mode = Mode::kPipeline;
   std::vector<std::string> set;  ///< for all variants
   std::string baseline;          ///< name of a variant; empty: none

@@ -1,6 +1,7 @@
 #include "study/study_results.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace stillpoint::study {
 namespace {
@@ -24,7 +25,15 @@ std::optional<Spread> spread_of(std::vector<double> values) {
   if (values.empty()) return std::nullopt;
   std::ranges::sort(values);
   const std::size_t n = values.size();
-  return Spread{.median = 0.5 * (values[(n - 1) / 2] + values[n / 2]),
+  const auto quantile = [&](double share) {
+    const double at = share * static_cast<double>(n - 1);
+    const auto below = static_cast<std::size_t>(at);
+    const std::size_t above = std::min(below + 1, n - 1);
+    return std::lerp(values[below], values[above], at - static_cast<double>(below));
+  };
+  return Spread{.median = quantile(0.5),
+                .first_quartile = quantile(0.25),
+                .third_quartile = quantile(0.75),
                 .min = values.front(),
                 .max = values.back(),
                 .count = n};
@@ -38,6 +47,14 @@ std::optional<Spread> StudyResults::spread(std::size_t sequence, std::size_t var
         results[i]->values[metric])
       values.push_back(*results[i]->values[metric]);
   return spread_of(std::move(values));
+}
+
+const CellResult* StudyResults::find(const Cell& cell) const {
+  const auto found = std::ranges::find(cells, cell);
+  if (found == cells.end()) return nullptr;
+  const std::optional<CellResult>& result =
+      results[static_cast<std::size_t>(found - cells.begin())];
+  return result ? &*result : nullptr;
 }
 
 std::size_t StudyResults::failed() const {
@@ -58,14 +75,18 @@ std::optional<double> dynamic_penalty(const StudyResults& results, std::size_t s
   return ratio(results.spread(sequence, variant, kAte), results.spread(*twin, variant, kAte));
 }
 
-std::optional<double> improvement_percent(const StudyResults& results, std::size_t sequence,
+std::optional<Spread> improvement_percent(const StudyResults& results, std::size_t sequence,
                                           std::size_t variant) {
   const auto baseline = index_of(results.study.variants, results.study.baseline);
   if (!baseline || *baseline == variant) return std::nullopt;
-  const auto share =
-      ratio(results.spread(sequence, variant, kAte), results.spread(sequence, *baseline, kAte));
-  if (!share) return std::nullopt;
-  return 100.0 * (1.0 - *share);
+  std::vector<double> improvements;
+  for (int repeat = 0; repeat < results.study.repeats; ++repeat) {
+    const CellResult* own = results.find({sequence, variant, repeat});
+    const CellResult* other = results.find({sequence, *baseline, repeat});
+    if (own && other && own->values[kAte] && other->values[kAte].value_or(0.0) > 0.0)
+      improvements.push_back(100.0 * (1.0 - *own->values[kAte] / *other->values[kAte]));
+  }
+  return spread_of(std::move(improvements));
 }
 
 }  // namespace stillpoint::study

@@ -13,7 +13,9 @@ namespace stillpoint::study {
 
 /// Of the repeats of a variant on a sequence.
 struct Spread {
-  double median = 0.0;  ///< of an even number: the mean of the middle two
+  double median = 0.0;          ///< of an even number: the mean of the middle two
+  double first_quartile = 0.0;  ///< between two values: interpolated, as numpy does
+  double third_quartile = 0.0;
   double min = 0.0;
   double max = 0.0;
   std::size_t count = 0;
@@ -28,6 +30,8 @@ struct StudyResults {
   std::string command;                             ///< that makes them
 
   std::optional<Spread> spread(std::size_t sequence, std::size_t variant, MetricId metric) const;
+  /// Null: not run, or not wanted.
+  const CellResult* find(const Cell& cell) const;
   std::size_t failed() const;
   std::size_t missing() const;
 };
@@ -37,9 +41,9 @@ struct StudyResults {
 std::optional<double> dynamic_penalty(const StudyResults& results, std::size_t sequence,
                                       std::size_t variant);
 
-/// 1 - ATE ÷ ATE of the baseline in per cent, as the paper's "improvements"; medians of the
-/// repeats.
-std::optional<double> improvement_percent(const StudyResults& results, std::size_t sequence,
+/// 1 - ATE ÷ ATE of the baseline in per cent, the paper's "improvements" (its equation 7), of each
+/// repeat with the baseline's run of the same seed.
+std::optional<Spread> improvement_percent(const StudyResults& results, std::size_t sequence,
                                           std::size_t variant);
 
 }  // namespace stillpoint::study

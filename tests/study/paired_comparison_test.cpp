@@ -1,0 +1,97 @@
+#include "study/paired_comparison.hpp"
+
+#include <gtest/gtest.h>
+
+#include <functional>
+
+#include "fixtures.hpp"
+
+namespace stillpoint::study {
+namespace {
+
+/// `recordings` sequences, the baseline `plain` with an ATE of 0.1 m, and `better` as asked for.
+class Comparison : public ::testing::Test {
+ protected:
+  PairedComparison compared(std::size_t recordings,
+                            const std::function<CellResult(std::size_t, int)>& better) {
+    study_.sequences.clear();
+    for (std::size_t i = 0; i < recordings; ++i) {
+      Sequence sequence;
+      sequence.name = std::to_string(i);
+      study_.sequences.push_back(sequence);
+    }
+    study_.baseline = "plain";
+    StudyResults results{.study = study_, .cells = cells_of(study_), .results = {}, .command = ""};
+    for (const Cell& cell : results.cells) {
+      CellResult result = cell.variant == 0 ? result_with(0.1) : better(cell.sequence, cell.repeat);
+      result.values[kCpuPerFrame] = cell.variant == 0 ? 20.0 : 30.0;
+      results.results.emplace_back(std::move(result));
+    }
+    const std::vector<PairedComparison> all = compare_with_baseline(results);
+    EXPECT_EQ(all.size(), 1u);
+    return all.at(0);
+  }
+  Study study_ = two_by_two(1);
+};
+
+TEST_F(Comparison, CountsRecordingsAndTheirRatios) {
+  const PairedComparison result =
+      compared(6, [](std::size_t sequence, int) { return result_with(0.05 + 0.005 * sequence); });
+  EXPECT_EQ(result.better, 6u);
+  EXPECT_EQ(result.worse, 0u);
+  EXPECT_NEAR(result.ate_ratio->median, 0.625, 1e-9);
+  EXPECT_NEAR(result.ate_ratio->first_quartile, 0.5625, 1e-9);
+  EXPECT_NEAR(result.time_ratio->median, 1.5, 1e-9);
+  EXPECT_DOUBLE_EQ(result.effect, 1.0);
+  EXPECT_DOUBLE_EQ(result.p, 2.0 / 64);
+}
+
+TEST_F(Comparison, RepeatsOnOneRecordingAreOnePair) {
+  study_.repeats = 3;
+  const auto better = [](std::size_t, int repeat) { return result_with(0.05 + 0.1 * repeat); };
+  EXPECT_EQ(compared(2, better).worse, 2u);
+  study_.new_noise = true;  // every repeat has a recording of its own
+  EXPECT_EQ(compared(2, better).worse, 4u);
+  EXPECT_EQ(compared(2, better).better, 2u);
+}
+
+TEST_F(Comparison, WhoeverCoversLessCannotWin) {
+  const PairedComparison less =
+      compared(5, [](std::size_t, int) { return result_with(0.001, 90.0); });
+  EXPECT_EQ(less.worse, 5u);
+  EXPECT_EQ(less.incomplete, 5u);
+  EXPECT_FALSE(less.ate_ratio);
+  EXPECT_DOUBLE_EQ(less.effect, -1.0);
+  EXPECT_EQ(compared(5, [](std::size_t, int) { return result_with(0.001, 99.5); }).better, 5u);
+}
+
+TEST_F(Comparison, WhoeverLosesItsWayCannotWin) {
+  const PairedComparison lost = compared(5, [](std::size_t, int) {
+    CellResult result = result_with(0.001);
+    result.values[kTimesLost] = 1.0;
+    return result;
+  });
+  EXPECT_EQ(lost.worse, 5u);
+}
+
+TEST_F(Comparison, AFailedRunIsWorseThanAnyOther) {
+  const PairedComparison failed = compared(5, [](std::size_t sequence, int) {
+    CellResult result = result_with(0.099);
+    if (sequence > 0) return result;
+    CellResult failure;
+    failure.exit_code = 1;
+    return failure;
+  });
+  EXPECT_EQ(failed.better, 4u);
+  EXPECT_EQ(failed.worse, 1u);
+  EXPECT_EQ(failed.incomplete, 1u);
+  EXPECT_NEAR(failed.effect, (10.0 - 5.0) / 15.0, 1e-12);
+}
+
+TEST_F(Comparison, NeedsABaseline) {
+  const StudyResults results{.study = study_, .cells = {}, .results = {}, .command = ""};
+  EXPECT_TRUE(compare_with_baseline(results).empty());
+}
+
+}  // namespace
+}  // namespace stillpoint::study

@@ -1,0 +1,121 @@
+#include "study/paired_comparison.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "study/signed_rank.hpp"
+
+namespace stillpoint::study {
+namespace {
+
+constexpr double kSameCoverage = 1.0;  // percentage points
+constexpr double kDecided = std::numeric_limits<double>::infinity();
+
+double coverage_of(const CellResult& result) {
+  return result.failed() || !result.values[kAte] ? 0.0 : result.values[kCoverage].value_or(0.0);
+}
+
+bool was_lost(const CellResult& result) { return result.values[kTimesLost].value_or(0.0) > 0.0; }
+
+/// log(ATE of the baseline ÷ ATE of the variant): positive where the variant is better; infinite
+/// where the runs have not covered the same. Nothing where neither has an error.
+std::optional<double> advantage(const CellResult& variant, const CellResult& baseline) {
+  const double more = coverage_of(variant) - coverage_of(baseline);
+  if (std::abs(more) > kSameCoverage) return more > 0.0 ? kDecided : -kDecided;
+  if (!variant.values[kAte] || !baseline.values[kAte]) return std::nullopt;
+  if (was_lost(variant) != was_lost(baseline)) return was_lost(variant) ? -kDecided : kDecided;
+  return std::log(*baseline.values[kAte] / *variant.values[kAte]);
+}
+
+/// Of one recording.
+struct Pair {
+  double advantage = 0.0;
+  std::optional<double> time_ratio;
+};
+
+/// The middle one, or the lower of the middle two: a mean with an infinite one says nothing.
+double middle(std::vector<double> values) {
+  std::ranges::sort(values);
+  return values[(values.size() - 1) / 2];
+}
+
+class Pairs {
+ public:
+  Pairs(const StudyResults& results, std::size_t variant, std::size_t baseline)
+      : results_(results), variant_(variant), baseline_(baseline) {}
+
+  std::vector<Pair> all() const {
+    std::vector<Pair> pairs;
+    const int repeats = results_.study.repeats;
+    const int at_once = results_.study.new_noise ? 1 : repeats;
+    for (std::size_t sequence = 0; sequence < results_.study.sequences.size(); ++sequence)
+      for (int first = 0; first < repeats; first += at_once)
+        if (const auto pair = of_recording(sequence, first, first + at_once))
+          pairs.push_back(*pair);
+    return pairs;
+  }
+
+ private:
+  std::optional<Pair> of_recording(std::size_t sequence, int first, int end) const {
+    std::vector<double> advantages, times;
+    for (int repeat = first; repeat < end; ++repeat) {
+      const CellResult* own = results_.find({sequence, variant_, repeat});
+      const CellResult* other = results_.find({sequence, baseline_, repeat});
+      if (!own || !other) continue;
+      if (const auto value = advantage(*own, *other)) advantages.push_back(*value);
+      const auto &time = own->values[kCpuPerFrame], &other_time = other->values[kCpuPerFrame];
+      if (time && other_time && *other_time > 0.0) times.push_back(*time / *other_time);
+    }
+    if (advantages.empty()) return std::nullopt;
+    Pair pair{.advantage = middle(std::move(advantages)), .time_ratio = {}};
+    if (const auto spread = spread_of(std::move(times))) pair.time_ratio = spread->median;
+    return pair;
+  }
+
+  const StudyResults& results_;
+  const std::size_t variant_, baseline_;
+};
+
+PairedComparison comparison_of(std::size_t variant, const std::vector<Pair>& pairs) {
+  PairedComparison result{.variant = variant, .ate_ratio = {}, .time_ratio = {}};
+  std::vector<double> advantages, ratios, times;
+  for (const Pair& pair : pairs) {
+    advantages.push_back(pair.advantage);
+    result.better += pair.advantage > 0.0;
+    result.worse += pair.advantage < 0.0;
+    if (std::isinf(pair.advantage))
+      ++result.incomplete;
+    else
+      ratios.push_back(std::exp(-pair.advantage));
+    if (pair.time_ratio) times.push_back(*pair.time_ratio);
+  }
+  result.ate_ratio = spread_of(std::move(ratios));
+  result.time_ratio = spread_of(std::move(times));
+  const SignedRank test = signed_rank(advantages);
+  result.effect = test.effect;
+  result.p = test.p;
+  return result;
+}
+
+}  // namespace
+
+std::vector<PairedComparison> compare_with_baseline(const StudyResults& results) {
+  std::vector<PairedComparison> comparisons;
+  const std::vector<Variant>& variants = results.study.variants;
+  const auto baseline = std::ranges::find(variants, results.study.baseline, &Variant::name);
+  if (baseline == variants.end()) return comparisons;
+  const auto index = static_cast<std::size_t>(baseline - variants.begin());
+  for (std::size_t variant = 0; variant < variants.size(); ++variant) {
+    if (variant == index) continue;
+    const std::vector<Pair> pairs = Pairs(results, variant, index).all();
+    if (!pairs.empty()) comparisons.push_back(comparison_of(variant, pairs));
+  }
+  std::vector<double> p_values;
+  for (const PairedComparison& one : comparisons) p_values.push_back(one.p);
+  const std::vector<double> corrected = corrected_for_number(p_values);
+  for (std::size_t i = 0; i < comparisons.size(); ++i) comparisons[i].corrected_p = corrected[i];
+  return comparisons;
+}
+
+}  // namespace stillpoint::study

@@ -1,0 +1,33 @@
+// Each variant against the baseline of its study, recording by recording.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include "study/study_results.hpp"
+
+namespace stillpoint::study {
+
+/// A pair is a recording. The repeats on one recording are no pairs of their own, unless each has a
+/// recording with noise of its own: their median counts.
+///
+/// Errors are compared only between runs that have covered the same. Of two runs, the one that
+/// failed, or covers less by more than 1 % of the frames, or lost its way where the other did not,
+/// is the worse one, by more than any error.
+struct PairedComparison {
+  std::size_t variant = 0;  ///< index into the study's
+  std::size_t better = 0;   ///< recordings on which the variant is better than the baseline
+  std::size_t worse = 0;
+  std::size_t incomplete = 0;        ///< recordings of these decided by coverage, not by error
+  std::optional<Spread> ate_ratio;   ///< to the baseline's, of the other recordings
+  std::optional<Spread> time_ratio;  ///< of CPU per frame
+  double effect = 0.0;               ///< see SignedRank; positive: better than the baseline
+  double p = 1.0;                    ///< of Wilcoxon's test on logarithms of the ratios
+  double corrected_p = 1.0;          ///< for the number of variants
+};
+
+/// Of every variant but the baseline that shares a recording with it. Empty without a baseline.
+std::vector<PairedComparison> compare_with_baseline(const StudyResults& results);
+
+}  // namespace stillpoint::study
