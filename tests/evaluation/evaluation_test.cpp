@@ -48,6 +48,47 @@ TEST(Evaluation, ScaleIsFittedBySimilarityOnly) {
 
 // A circle disturbed by ±3 cm across its plane in turn: no rotation or shift can lessen that, so
 // every error is 3 cm; the best scale is 1 / (1 + 0.03²).
+AbsoluteError error_of(const Trajectory& reference, const Trajectory& estimate,
+                       AlignmentKind kind) {
+  const std::vector<TimePair> pairs = associate(times_of(reference), times_of(estimate), 0.01, 0.0);
+  return absolute_error(reference, estimate, pairs, kind);
+}
+
+Trajectory moved(Trajectory trajectory, const Pose& by) {
+  for (StampedPose& pose : trajectory.poses) pose.world_from_camera = by * pose.world_from_camera;
+  return trajectory;
+}
+
+TEST(Evaluation, AlignmentsUndoWhatTheyKnow) {
+  const Trajectory path = winding_path(50, 0.1);
+  Pose yaw = Pose::Identity(), tilt = Pose::Identity();
+  yaw.rotate(Eigen::AngleAxisd(2.0, Eigen::Vector3d::UnitZ()))
+      .pretranslate(Eigen::Vector3d(1, 2, 3));
+  tilt.rotate(Eigen::AngleAxisd(0.1, Eigen::Vector3d::UnitX()));
+  for (const AlignmentKind kind :
+       {AlignmentKind::kRigid, AlignmentKind::kYaw, AlignmentKind::kOrigin}) {
+    EXPECT_NEAR(error_of(path, moved(path, yaw), kind).metres.max, 0.0, 1e-9);
+    EXPECT_NEAR(error_of(path, moved(path, yaw), kind).rotation_deg.max, 0.0, 1e-5);
+  }
+  EXPECT_NEAR(error_of(path, moved(path, tilt), AlignmentKind::kOrigin).metres.max, 0.0, 1e-9);
+  EXPECT_GT(error_of(path, moved(path, tilt), AlignmentKind::kYaw).metres.rmse, 0.01);
+  EXPECT_NEAR(error_of(path, moved(path, tilt), AlignmentKind::kYaw).rotation_deg.rmse, 5.73, 0.5);
+  EXPECT_NEAR(error_of(path, path, AlignmentKind::kNone).metres.max, 0.0, 1e-12);
+  Pose step = Pose::Identity();
+  step.translation().x() = 0.25;
+  EXPECT_NEAR(error_of(path, moved(path, step), AlignmentKind::kNone).metres.rmse, 0.25, 1e-9);
+}
+
+TEST(Evaluation, TheRotationErrorIsThatOfTheOrientations) {
+  const Trajectory path = winding_path(50, 0.1);
+  Trajectory turned = path;  // each camera about its own axis: positions stay
+  for (StampedPose& pose : turned.poses)
+    pose.world_from_camera.rotate(Eigen::AngleAxisd(M_PI / 60, Eigen::Vector3d::UnitZ()));
+  const AbsoluteError error = error_of(path, turned, AlignmentKind::kRigid);
+  EXPECT_NEAR(error.metres.max, 0.0, 1e-9);
+  EXPECT_NEAR(error.rotation_deg.rmse, 3.0, 1e-6);
+}
+
 TEST(Evaluation, AbsoluteErrorOfADisturbedCircle) {
   Trajectory reference{"reference", {}, 0}, estimate{"estimate", {}, 0};
   for (int i = 0; i < 8; ++i) {

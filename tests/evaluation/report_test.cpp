@@ -53,7 +53,8 @@ TEST(Report, ShortTrajectoriesHaveNoRelativeErrorInEither) {
 
 TEST(Plot, IsAPictureWithBothPaths) {
   const TemporaryFile file("plot.png", "");
-  write_plot(of_square(), file.path());
+  const Evaluation square = of_square();
+  write_plot(std::vector<PlottedRun>{{"square", square, square.rigid}}, file.path());
   const cv::Mat picture = cv::imread(file.path().string());
   ASSERT_FALSE(picture.empty());
   EXPECT_GT(picture.cols, picture.rows);
@@ -62,12 +63,15 @@ TEST(Plot, IsAPictureWithBothPaths) {
 TEST(Plot, ACameraThatStandsStillCanBeDrawn) {
   Trajectory still = winding_path(20, 0.1);
   for (StampedPose& pose : still.poses) pose.world_from_camera = Pose::Identity();
-  EXPECT_FALSE(draw_plot(evaluate(still, still, {}, {})).empty());
+  const Evaluation e = evaluate(still, still, {}, {});
+  EXPECT_FALSE(draw_plot(std::vector<PlottedRun>{{"still", e, e.rigid}}).empty());
 }
 
 TEST(Plot, FileThatCannotBeWrittenIsAnError) {
-  EXPECT_THROW(write_plot(of_square(), "no/such/folder/plot.png"), Error);
-  EXPECT_THROW(write_plot(of_square(), "plot.unknown"), Error);
+  const Evaluation square = of_square();
+  const std::vector<PlottedRun> runs = {{"square", square, square.rigid}};
+  EXPECT_THROW(write_plot(runs, "no/such/folder/plot.png"), Error);
+  EXPECT_THROW(write_plot(runs, "plot.unknown"), Error);
 }
 
 }  // namespace

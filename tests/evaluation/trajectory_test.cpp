@@ -57,6 +57,42 @@ TEST(Trajectory, EveryFaultNamesFileAndLine) {
   EXPECT_THAT(message_for("# only a comment\n"), HasSubstr("bad.txt: the file holds no data line"));
 }
 
+TEST(Trajectory, NanosecondsOfEurocAreNoSeconds) {
+  // A turn of 90° about z: EuRoC's files begin with w, the trajectories of ORB-SLAM3 end with it.
+  const TemporaryFile euroc(
+      "euroc.csv",
+      "#timestamp, p_RS_R_x [m], …\n"
+      "1403636580838555648,1,2,3,0.70710678,0,0,0.70710678,0,0,0,0,0,0,0,0,0\n"
+      "1403636580843555328,1,2,3,0.70710678,0,0,0.70710678,0,0,0,0,0,0,0,0,0\n");
+  const TemporaryFile vicon("vicon.csv", "1403636580838555648,1,2,3,0.70710678,0,0,0.70710678\n");
+  const TemporaryFile orb("orb.txt", "1403636580838555648.0 1 2 3 0 0 0.70710678 0.70710678\n");
+  for (const TemporaryFile* file : {&euroc, &vicon, &orb}) {
+    const Trajectory t = read_trajectory(file->path());
+    EXPECT_NEAR(t.start(), 1403636580.838555648, 1e-6);
+    EXPECT_EQ(t.poses[0].world_from_camera.translation(), Eigen::Vector3d(1, 2, 3));
+    EXPECT_TRUE((t.poses[0].world_from_camera.linear() * Eigen::Vector3d::UnitX())
+                    .isApprox(Eigen::Vector3d::UnitY(), 1e-7));
+  }
+  EXPECT_NEAR(read_trajectory(euroc.path()).duration(), 0.00499968, 1e-6);
+}
+
+TEST(Trajectory, MatricesOfKittiAreTenPosesASecond) {
+  const TemporaryFile file("kitti.txt",
+                           "1 0 0 0 0 1 0 0 0 0 1 0\n"
+                           "0 -1 0 4 1 0 0 5 0 0 1 6\n");
+  const Trajectory t = read_trajectory(file.path());
+  ASSERT_EQ(t.poses.size(), 2u);
+  EXPECT_EQ(t.start(), 0.0);
+  EXPECT_NEAR(t.end(), 0.1, 1e-12);
+  EXPECT_EQ(t.poses[1].world_from_camera.translation(), Eigen::Vector3d(4, 5, 6));
+  EXPECT_TRUE((t.poses[1].world_from_camera.linear() * Eigen::Vector3d::UnitX())
+                  .isApprox(Eigen::Vector3d::UnitY(), 1e-12));
+  EXPECT_THAT(message_for("1 0 0 0 0 2 0 0 0 0 1 0\n"),
+              HasSubstr("bad.txt:1: these 12 numbers are no pose"));
+  EXPECT_THAT(message_for("1 0 0 0 0 1 0 0 0 0 1 0\n" + std::string(kGood)),
+              HasSubstr("bad.txt:2: expected 12 columns, as in the lines before, found 8"));
+}
+
 TEST(Trajectory, MissingFileAndFolderAreNamed) {
   EXPECT_THROW(read_trajectory("no/such/file.txt"), Error);
   EXPECT_THROW(read_trajectory(STILLPOINT_BINARY_DIR), Error);

@@ -15,10 +15,14 @@ namespace stillpoint::evaluation {
 enum class AlignmentKind {
   kRigid,       ///< SE(3): what the benchmark prints
   kSimilarity,  ///< Sim(3): the scale is fitted, too
+  kYaw,         ///< turn about the reference's z axis and translation: gravity is known
+  kOrigin,      ///< the first poses fall together
+  kNone,
 };
 
 struct AbsoluteError {
   Statistics metres;
+  Statistics rotation_deg;  ///< between orientations; means something where both are of one body
   Alignment reference_from_estimate;
   std::vector<double> per_pair;  ///< metres, in the order of the pairs
 };

@@ -1,17 +1,26 @@
-// A picture of an evaluation: both paths from above and along each axis, and the error over time.
+// A picture of trajectories beside their reference: from above and along each axis, and the error
+// over time.
 #pragma once
 
 #include <filesystem>
 #include <opencv2/core.hpp>
+#include <span>
+#include <string>
 
 #include "evaluation/evaluation.hpp"
 
 namespace stillpoint::evaluation {
 
-/// CV_8UC3. The estimate is shown as the SE(3) alignment places it.
-cv::Mat draw_plot(const Evaluation& evaluation);
+struct PlottedRun {
+  std::string name;
+  const Evaluation& evaluation;
+  const AbsoluteError& error;  ///< with the alignment that places it in the picture
+};
 
-/// Throws Error(kUsage) when the file cannot be written.
-void write_plot(const Evaluation& evaluation, const std::filesystem::path& png);
+/// CV_8UC3, of at least one run; all have the same reference.
+cv::Mat draw_plot(std::span<const PlottedRun> runs);
+
+/// As PNG. Throws Error(kUsage) when the file cannot be written.
+void write_plot(std::span<const PlottedRun> runs, const std::filesystem::path& png);
 
 }  // namespace stillpoint::evaluation

@@ -63,11 +63,6 @@ std::string header_line() {
   return line + "\n" + std::string(line.size(), '-') + "\n";
 }
 
-nlohmann::ordered_json statistics_json(const Statistics& s) {
-  return {{"rmse", s.rmse}, {"mean", s.mean}, {"median", s.median}, {"sd", s.standard_deviation},
-          {"min", s.min},   {"max", s.max}};
-}
-
 nlohmann::ordered_json trajectory_json(const Trajectory& t) {
   return {{"file", t.name},
           {"poses", t.poses.size()},
@@ -90,12 +85,20 @@ nlohmann::ordered_json relative_json(const Evaluation& e) {
 
 }  // namespace
 
+nlohmann::ordered_json statistics_json(const Statistics& s) {
+  return {{"rmse", s.rmse}, {"mean", s.mean}, {"median", s.median}, {"sd", s.standard_deviation},
+          {"min", s.min},   {"max", s.max}};
+}
+
 std::string report_table(const Evaluation& e) {
   std::string text = file_line("Reference", e.reference) + file_line("Estimate", e.estimate);
   text += "Pairs      " + std::to_string(e.pairs.size()) + " of " +
           std::to_string(e.estimate.poses.size()) + " estimated poses have a reference within " +
           fixed(e.options.max_difference, 3) + " s\n" + coverage_line(e) + "\n" + header_line();
   text += statistics_line(padded("ATE, SE(3)", kUnitColumn) + "m", e.rigid.metres) + "\n";
+  text +=
+      statistics_line(padded("ATE, SE(3), rotation", kUnitColumn) + "deg", e.rigid.rotation_deg) +
+      "\n";
   text += statistics_line(padded("ATE, Sim(3)", kUnitColumn) + "m", e.similarity.metres) +
           "   scale " + fixed(e.similarity.reference_from_estimate.scale, 4) + "\n";
   const std::string delta = delta_text(e.options.delta);
@@ -123,6 +126,7 @@ nlohmann::ordered_json report_json(const Evaluation& e) {
                              {"frame_count", e.frames->frames},
                              {"frames_with_pose", e.frames->with_pose}});
   json["ate"]["se3_m"] = statistics_json(e.rigid.metres);
+  json["ate"]["se3_deg"] = statistics_json(e.rigid.rotation_deg);
   json["ate"]["sim3_m"] = statistics_json(e.similarity.metres);
   json["ate"]["sim3_scale"] = e.similarity.reference_from_estimate.scale;
   json["rpe"] = relative_json(e);

@@ -14,4 +14,7 @@ std::string report_table(const Evaluation& evaluation);
 /// The same figures for programs; units are part of the names.
 nlohmann::ordered_json report_json(const Evaluation& evaluation);
 
+/// {"rmse": …, "mean": …, "median": …, "sd": …, "min": …, "max": …}
+nlohmann::ordered_json statistics_json(const Statistics& statistics);
+
 }  // namespace stillpoint::evaluation

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <cstring>
 #include <fstream>
 #include <functional>
 
@@ -17,10 +18,18 @@ constexpr double kFarthest = 1e7;            // metres; farther positions are no
 constexpr std::size_t kLongestLine = 1 << 16;
 constexpr int kMostLines = 10'000'000;  // four days at 30 Hz
 constexpr const char* kPoseFormat = "a line reads 'time tx ty tz qx qy qz qw'";
+constexpr std::size_t kTumColumns = 8;
+constexpr std::size_t kEurocColumns = 17;  // with velocity and biases
+constexpr std::size_t kKittiColumns = 12;
+constexpr double kKittiInterval = 0.1;      // seconds
+constexpr double kFirstNanoseconds = 1e14;  // as seconds, in three million years
+constexpr double kNanosecond = 1e-9;        // seconds
+constexpr double kLeastOrthonormal = 1e-3;  // deviation of a rotation matrix
 
 struct Line {
   std::string where;  // file:line
   std::vector<std::string> fields;
+  bool has_commas = false;
 };
 
 // The benchmark's scripts take commas and tabs for blanks, too.
@@ -47,7 +56,7 @@ void for_each_line(const std::filesystem::path& file, const std::function<void(L
     if (number > kMostLines) throw Error(Fault::kData, "too many lines for a trajectory", where);
     std::vector<std::string> fields = split(text.c_str());
     if (fields.empty() || fields.front().front() == '#') continue;
-    handle({where, std::move(fields)});
+    handle({where, std::move(fields), text.find(',') < std::strlen(text.c_str())});
   }
   if (!stream.eof())
     throw Error(Fault::kData, "a line is too long, or cannot be read", file.string(), kPoseFormat);
@@ -65,18 +74,48 @@ double parse_number(const std::string& field, const std::string& where) {
   return value;
 }
 
-StampedPose parse_pose(const Line& line) {
-  if (line.fields.size() != 8)
-    throw Error(Fault::kData, "expected 8 columns, found " + std::to_string(line.fields.size()),
-                line.where, kPoseFormat);
-  double v[8];
-  for (int i = 0; i < 8; ++i) v[i] = parse_number(line.fields[i], line.where);
-  const Eigen::Quaterniond rotation(v[7], v[4], v[5], v[6]);
+std::vector<double> parse_numbers(const Line& line) {
+  std::vector<double> numbers;
+  numbers.reserve(line.fields.size());
+  for (const std::string& field : line.fields) numbers.push_back(parse_number(field, line.where));
+  return numbers;
+}
+
+StampedPose pose_with_quaternion(const std::vector<double>& v, const Line& line) {
+  const bool nanoseconds = std::abs(v[0]) > kFirstNanoseconds;
+  const bool w_first = nanoseconds && line.has_commas;
+  const Eigen::Quaterniond rotation = w_first ? Eigen::Quaterniond(v[4], v[5], v[6], v[7])
+                                              : Eigen::Quaterniond(v[7], v[4], v[5], v[6]);
   if (rotation.norm() < kMinQuaternionNorm)
     throw Error(Fault::kData, "the quaternion has length 0", line.where, kPoseFormat);
-  StampedPose pose{v[0], Pose::Identity()};
+  StampedPose pose{nanoseconds ? kNanosecond * v[0] : v[0], Pose::Identity()};
   pose.world_from_camera.linear() = rotation.normalized().toRotationMatrix();
   pose.world_from_camera.translation() = Eigen::Vector3d(v[1], v[2], v[3]);
+  return pose;
+}
+
+StampedPose pose_of_matrix(const std::vector<double>& v, int index, const Line& line) {
+  StampedPose pose{kKittiInterval * index, Pose::Identity()};
+  pose.world_from_camera.affine() =
+      Eigen::Map<const Eigen::Matrix<double, 3, 4, Eigen::RowMajor>>(v.data());
+  const Eigen::Matrix3d rotation = pose.world_from_camera.linear();
+  if (!(rotation * rotation.transpose()).isIdentity(kLeastOrthonormal) ||
+      rotation.determinant() < 0)
+    throw Error(Fault::kData, "these 12 numbers are no pose: the left 3 x 3 of them no rotation",
+                line.where, "a line of the KITTI format holds the rows of a 3 x 4 matrix");
+  pose.world_from_camera = orthonormalised(pose.world_from_camera);
+  return pose;
+}
+
+/// `index` of the pose in its file.
+StampedPose parse_pose(const Line& line, int index) {
+  const std::size_t columns = line.fields.size();
+  if (columns != kTumColumns && columns != kKittiColumns && columns != kEurocColumns)
+    throw Error(Fault::kData, "expected 8 columns, found " + std::to_string(columns), line.where,
+                kPoseFormat);
+  const std::vector<double> numbers = parse_numbers(line);
+  StampedPose pose = columns == kKittiColumns ? pose_of_matrix(numbers, index, line)
+                                              : pose_with_quaternion(numbers, line);
   if (pose.world_from_camera.translation().norm() > kFarthest)
     throw Error(Fault::kData, "the position is more than 10,000 km away", line.where,
                 "positions are in metres");
@@ -98,8 +137,16 @@ void check_not_empty(bool empty, const std::filesystem::path& file, const char* 
 Trajectory read_trajectory(const std::filesystem::path& file) {
   Trajectory trajectory{file.string(), {}, 0};
   std::vector<StampedPose>& poses = trajectory.poses;
+  std::size_t columns = 0;
   for_each_line(file, [&](const Line& line) {
-    const StampedPose pose = parse_pose(line);
+    const StampedPose pose = parse_pose(line, static_cast<int>(poses.size()));
+    if (columns == 0) columns = line.fields.size();
+    if (line.fields.size() != columns)
+      throw Error(Fault::kData,
+                  "expected " + std::to_string(columns) +
+                      " columns, as in the lines before, found " +
+                      std::to_string(line.fields.size()),
+                  line.where);
     if (!poses.empty()) check_order(trajectory.end(), pose.time, line.where);
     if (!poses.empty() && trajectory.end() == pose.time) {
       poses.pop_back();

@@ -1,5 +1,10 @@
-// Trajectories in the format of the TUM RGB-D benchmark: one pose per line,
-// `time tx ty tz qx qy qz qw`, in seconds and metres, camera in the world.
+// Trajectories as text: one pose per line, in metres, camera in the world. The columns tell the
+// format:
+//   TUM RGB-D  `time tx ty tz qx qy qz qw`, seconds
+//   EuRoC      `time,tx,ty,tz,qw,qx,qy,qz[,…]`, nanoseconds; with blanks for commas the quaternion
+//   is
+//              that of TUM, as ORB-SLAM3 writes it
+//   KITTI      the three rows of a 3 x 4 matrix, no time; ten poses a second
 #pragma once
 
 #include <filesystem>
@@ -21,9 +26,9 @@ struct Trajectory {
   double duration() const { return end() - start(); }
 };
 
-/// Quaternions are normalised. Of several poses with one time stamp the last one counts, as in the
-/// scripts of the benchmark. Throws Error(kData) with file and line for anything else that is not
-/// as described above.
+/// Quaternions are normalised, times are seconds. Of several poses with one time stamp the last one
+/// counts, as in the scripts of the benchmark. Throws Error(kData) with file and line for anything
+/// else that is not as described above.
 Trajectory read_trajectory(const std::filesystem::path& file);
 
 /// Where the camera was at any time (seconds): between two rows, or at the nearer end.

@@ -14,6 +14,7 @@ namespace stillpoint {
 
 void add_ablate(CLI::App& app);
 void add_check(CLI::App& app);
+void add_compare(CLI::App& app);
 void add_evaluate(CLI::App& app);
 void add_inspect(CLI::App& app);
 void add_map(CLI::App& app);

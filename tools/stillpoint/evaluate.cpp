@@ -1,4 +1,5 @@
 // stillpoint evaluate: how far an estimated trajectory is from the true one.
+#include <filesystem>
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -31,7 +32,10 @@ void print_evaluation(const EvaluateArguments& arguments) {
   const std::vector<double> frames =
       arguments.frames.empty() ? std::vector<double>() : read_stamps(arguments.frames);
   const Evaluation result = evaluate(std::move(reference), std::move(estimate), frames, options);
-  if (!arguments.plot.empty()) write_plot(result, arguments.plot);
+  if (!arguments.plot.empty()) {
+    const std::string name = std::filesystem::path(arguments.estimate).filename().string();
+    write_plot(std::vector<PlottedRun>{{name, result, result.rigid}}, arguments.plot);
+  }
   if (arguments.json)
     std::cout << report_json(result).dump(2) << '\n';
   else

@@ -2,14 +2,12 @@
 
 #include <algorithm>
 
+#include "evaluation/format.hpp"
+
 namespace stillpoint::study {
 namespace {
 
-// Characters, not bytes: continuation bytes of UTF-8 begin with 10.
-std::size_t width_of(const std::string& text) {
-  return static_cast<std::size_t>(
-      std::ranges::count_if(text, [](char c) { return (c & 0xC0) != 0x80; }));
-}
+using evaluation::width_of;
 
 // A bar would end the column.
 std::string escaped(const std::string& text) {

@@ -1,0 +1,74 @@
+#include "evaluation/comparison.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "evaluation/format.hpp"
+#include "evaluation/plot.hpp"
+#include "fixtures.hpp"
+
+namespace stillpoint::evaluation {
+namespace {
+
+using testing::HasSubstr;
+
+/// A winding path of 5 s that wobbles by `metres`, the first `count` of 50 poses.
+Contestant wobbling(const std::string& name, double metres, std::size_t count = 50) {
+  const Trajectory path = winding_path(50, 0.1);
+  Trajectory estimate = path;
+  estimate.poses.resize(count);
+  for (std::size_t i = 0; i < count; ++i)
+    estimate.poses[i].world_from_camera.translation().x() += i % 2 == 0 ? metres : -metres;
+  Contestant result{name, evaluate(path, estimate, {}, {}), {}};
+  result.error = absolute_error(result.evaluation.reference, result.evaluation.estimate,
+                                result.evaluation.pairs, AlignmentKind::kRigid);
+  return result;
+}
+
+Comparison of_three() {
+  Comparison comparison;
+  comparison.contestants.push_back(wobbling("stillpoint", 0.01));
+  comparison.contestants.push_back(wobbling("große Karte", 0.03));
+  comparison.contestants.push_back(wobbling("gave_up", 0.001, 20));
+  return comparison;
+}
+
+TEST(Comparison, TheBestOfThoseThatCoverAsMuchHasAStar) {
+  const std::string table = comparison_table(of_three());
+  EXPECT_THAT(table, testing::ContainsRegex("stillpoint +100.0 +0.0[01][0-9]+[*]"));
+  EXPECT_THAT(table, testing::ContainsRegex("gave_up +38.8 +0.0010 "));
+  std::vector<std::size_t> widths;
+  std::istringstream lines(table);
+  for (std::string line; std::getline(lines, line);) widths.push_back(width_of(line));
+  ASSERT_EQ(widths.size(), 6u);
+  EXPECT_THAT(widths, testing::Each(widths[0]));
+}
+
+TEST(Comparison, AloneNobodyIsBest) {
+  Comparison comparison;
+  comparison.contestants.push_back(wobbling("one", 0.01));
+  EXPECT_THAT(comparison_table(comparison), testing::Not(HasSubstr("*")));
+}
+
+TEST(Comparison, JsonHasAllFiguresOfEach) {
+  const Comparison comparison = of_three();
+  const nlohmann::ordered_json json = comparison_json(comparison);
+  ASSERT_EQ(json.size(), 3u);
+  EXPECT_EQ(json[1]["name"], "große Karte");
+  EXPECT_EQ(json[1]["aligned"]["position_m"]["rmse"], comparison.contestants[1].error.metres.rmse);
+  EXPECT_EQ(json[1]["ate"]["se3_m"]["rmse"], comparison.contestants[1].error.metres.rmse);
+}
+
+TEST(Comparison, CanBeDrawn) {
+  const Comparison comparison = of_three();
+  std::vector<PlottedRun> runs;
+  for (const Contestant& one : comparison.contestants)
+    runs.push_back({one.name, one.evaluation, one.error});
+  EXPECT_FALSE(draw_plot(runs).empty());
+}
+
+}  // namespace
+}  // namespace stillpoint::evaluation
