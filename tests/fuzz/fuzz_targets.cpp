@@ -181,7 +181,11 @@ FuzzTarget stamp_list() {
 
 FuzzTarget trajectory() {
   return {.seeds = {bytes_of_text("# time tx ty tz qx qy qz qw\n1.5 0 1 2 0 0 0 1\n"
-                                  "1.6 0.25 -1e-3 2.5 0.1 0.2 0.3 0.9\n")},
+                                  "1.6 0.25 -1e-3 2.5 0.1 0.2 0.3 0.9\n"),
+                    bytes_of_text("#timestamp, p_RS_R_x [m]\n"
+                                  "1403636580838555648,1,2,3,1,0,0,0,0,0,0,0,0,0,0,0,0\n"
+                                  "1403636580843555328,1,2,3,1,0,0,0,0,0,0,0,0,0,0,0,0\n"),
+                    bytes_of_text("1 0 0 0 0 1 0 0 0 0 1 0\n0 -1 0 4 1 0 0 5 0 0 1 6\n")},
           .parse =
               [](const fs::path& file) {
                 const auto trajectory = evaluation::read_trajectory(file);

@@ -1,0 +1,88 @@
+// `stillpoint compare`: several trajectories, in the formats of several systems, against one
+// reference.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstdio>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "support/program.hpp"
+
+namespace stillpoint::testing {
+namespace {
+
+using ::testing::HasSubstr;
+
+/// A camera that goes along x for 3 s, 1 m/s, looking along z; the estimates are `aside` off in y
+/// at every second pose.
+class Compare : public ::testing::Test {
+ protected:
+  std::string write(const std::string& name, const char* format, double aside) {
+    std::string text;
+    for (int i = 0; i < 31; ++i) {
+      char line[200];
+      const double y = i % 2 == 0 ? aside : 0.0;
+      if (std::string(format) == "tum")
+        std::snprintf(line, sizeof(line), "%.6f %.3f %.6f %.3f 0 0 0 1\n", 1.5e9 + 0.1 * i, 0.1 * i,
+                      y, 0.002 * i * i);
+      else if (std::string(format) == "euroc")
+        std::snprintf(line, sizeof(line), "%lld,%.3f,%.6f,%.3f,1,0,0,0\n",
+                      1'500'000'000'000'000'000LL + 100'000'000LL * i, 0.1 * i, y, 0.002 * i * i);
+      else
+        std::snprintf(line, sizeof(line), "1 0 0 %.3f 0 1 0 %.6f 0 0 1 %.3f\n", 0.1 * i, y,
+                      0.002 * i * i);
+      text += line;
+    }
+    folder_.write(name, text);
+    return (folder_.path() / name).string();
+  }
+  TemporaryFolder folder_;
+};
+
+TEST_F(Compare, ReadsTheFormatsOfOthersBesideEachOther) {
+  write("recording/groundtruth.txt", "tum", 0.0);
+  write("ours/trajectory.txt", "tum", 0.004);
+  const std::string theirs = write("theirs.csv", "euroc", 0.02);
+  const std::string plot = (folder_.path() / "plot.png").string();
+  const std::string reference = (folder_.path() / "recording").string();
+  const std::string ours = (folder_.path() / "ours").string() + "/";
+  Outcome outcome = call({"compare", "--reference", reference, ours, theirs, "--plot", plot});
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, ::testing::ContainsRegex("ours +100.0 +0.0020[*]"));
+  EXPECT_THAT(outcome.out, ::testing::ContainsRegex("theirs +100.0 +0.0100 "));
+  EXPECT_GT(std::filesystem::file_size(plot), 10'000u);
+
+  outcome = call({"compare", "--reference", reference, "a=" + ours, "b=" + theirs, "--align",
+                  "none", "--json"});
+  const nlohmann::json json = nlohmann::json::parse(outcome.out);
+  EXPECT_EQ(json[1]["name"], "b");
+  EXPECT_NEAR(json[1]["aligned"]["position_m"]["max"], 0.02, 1e-9);
+}
+
+TEST_F(Compare, KittiIsComparedWithKitti) {
+  const std::string truth = write("truth.txt", "kitti", 0.0), run = write("run.txt", "kitti", 0.02);
+  const Outcome outcome =
+      call({"compare", "--reference", truth, run, "--align", "origin", "--json"});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_NEAR(nlohmann::json::parse(outcome.out)[0]["aligned"]["position_m"]["max"], 0.02, 1e-9);
+}
+
+TEST_F(Compare, WhatCannotBeComparedIsNamed) {
+  const std::string truth = write("truth.txt", "tum", 0.0),
+                    kitti = write("kitti.txt", "kitti", 0.0);
+  const std::string again = write("again/truth.txt", "tum", 0.0);
+  Outcome outcome = call({"compare", "--reference", truth, truth, again});
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_THAT(outcome.err, HasSubstr("two runs are named 'truth'; give them names: NAME="));
+  outcome = call({"compare", "--reference", truth, kitti});
+  EXPECT_EQ(outcome.exit_code, 3);
+  EXPECT_THAT(outcome.err, HasSubstr("do not overlap in time"));
+  outcome = call({"compare", "--reference", truth, (folder_.path() / "nothing").string()});
+  EXPECT_EQ(outcome.exit_code, 3);
+  EXPECT_THAT(outcome.err, HasSubstr("nothing: no such file"));
+  EXPECT_EQ(call({"compare", "--reference", truth, truth, "--align", "best"}).exit_code, 2);
+}
+
+}  // namespace
+}  // namespace stillpoint::testing
