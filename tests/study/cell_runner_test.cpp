@@ -23,7 +23,8 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
 constexpr const char* kSummary =
-    R"({"coverage": 0.5, "times_lost": 1, "dropped_frames": 0, "cpu_ms_per_frame": 20,)"
+    R"({"coverage": 0.5, "times_lost": 1, "dropped_frames": 0, "processed_frames": 60, )"
+    R"("wall_seconds": 1.5, "cpu_ms_per_frame": 20,)"
     R"( "peak_memory_mib": 80, "stages": {"track_thread": {"cpu_ms": {"p50": 9, "p95": 12}}}})";
 
 class CellRunner : public ::testing::Test {
@@ -84,6 +85,7 @@ TEST_F(CellRunner, MeasuresARun) {
   EXPECT_NEAR(*result.values[kRpeTranslation], 0.0, 1e-9);
   EXPECT_EQ(result.values[kCoverage], 50.0);
   EXPECT_EQ(result.values[kTrackP95], 12.0);
+  EXPECT_EQ(result.values[kSpeed], 40.0);
   EXPECT_EQ(result.program, "build");
 }
 

@@ -123,15 +123,16 @@ TEST_F(Report, AsMarkdown) {
 TEST_F(Report, AsCsv) {
   results_.cells = {results_.cells[0], results_.cells[3], results_.cells[7]};
   results_.results = {results_.results[0], results_.results[3], results_.results[7]};
-  EXPECT_EQ(csv_report(results_),
-            "sequence,variant,repeat,seed,state,exit_code,ate_m,sim3_scale,rpe_translation_m,"
-            "rpe_rotation_deg,coverage_percent,times_lost,dropped_frames,track_p50_ms,"
-            "track_p95_ms,cpu_ms_per_frame,peak_memory_mib,seconds,version,commit,machine,date,"
-            "message\n"
-            "walking,plain,0,7,done,0,0.5,,,,100,0,,,,,,2.5,1.2.3,0123456789ab,"
-            "\"a machine, 2 cores\",2026-01-30,\n"
-            "walking,better,1,8,failed,3,,,,,,,,,,,,0,,,,,\"cannot read 'a', \"\"b\"\"\"\n"
-            "walking_empty,better,1,8,missing,,,,,,,,,,,,,,,,,,\n");
+  EXPECT_EQ(
+      csv_report(results_),
+      "sequence,variant,repeat,seed,state,exit_code,ate_m,sim3_scale,rpe_translation_m,"
+      "rpe_rotation_deg,coverage_percent,times_lost,dropped_frames,frames_per_second,track_p50_ms,"
+      "track_p95_ms,cpu_ms_per_frame,peak_memory_mib,seconds,version,commit,machine,date,"
+      "message\n"
+      "walking,plain,0,7,done,0,0.5,,,,100,0,,,,,,,2.5,1.2.3,0123456789ab,"
+      "\"a machine, 2 cores\",2026-01-30,\n"
+      "walking,better,1,8,failed,3,,,,,,,,,,,,,0,,,,,\"cannot read 'a', \"\"b\"\"\"\n"
+      "walking_empty,better,1,8,missing,,,,,,,,,,,,,,,,,,,\n");
 }
 
 TEST_F(Report, AsSummary) {

@@ -19,6 +19,7 @@ constexpr std::array<Metric, kMetricCount> kMetrics = {{
     {"coverage_percent", "Coverage: frames with a pose", "%", 1},
     {"times_lost", "Times tracking was lost", "", 0},
     {"dropped_frames", "Frames dropped to keep the pace", "", 0},
+    {"frames_per_second", "Speed", "frames/s", 1},
     {"track_p50_ms", "Tracking thread, CPU per frame, median", "ms", 1},
     {"track_p95_ms", "Tracking thread, CPU per frame, 95th percentile", "ms", 1},
     {"cpu_ms_per_frame", "Whole process, CPU per frame", "ms", 1},
@@ -32,6 +33,8 @@ void read_summary(const std::filesystem::path& file, MetricValues& values) {
     values[kCoverage] = 100.0 * summary.at("coverage").get<double>();
     values[kTimesLost] = summary.at("times_lost").get<double>();
     values[kDroppedFrames] = summary.at("dropped_frames").get<double>();
+    if (const double seconds = summary.at("wall_seconds").get<double>(); seconds > 0.0)
+      values[kSpeed] = summary.at("processed_frames").get<double>() / seconds;
     values[kCpuPerFrame] = summary.at("cpu_ms_per_frame").get<double>();
     values[kPeakMemory] = summary.at("peak_memory_mib").get<double>();
     const Json& stages = summary.at("stages");

@@ -18,6 +18,7 @@ enum MetricId : std::size_t {
   kCoverage,
   kTimesLost,
   kDroppedFrames,
+  kSpeed,
   kTrackP50,
   kTrackP95,
   kCpuPerFrame,
