@@ -135,6 +135,19 @@ TEST_F(Report, AsCsv) {
       "walking_empty,better,1,8,missing,,,,,,,,,,,,,,,,,,,\n");
 }
 
+TEST_F(Report, AVariantOfAStudyWithOneSequenceIsARow) {
+  study_.sequences.pop_back();
+  results_.cells.resize(4);
+  results_.results.resize(4);
+  EXPECT_THAT(markdown_report(results_, "demo"),
+              ::testing::HasSubstr(
+                  "\n## Overview\n\n"
+                  "| variant | ATE (m)                          | coverage (%)        |\n"
+                  "|---------|----------------------------------|---------------------|\n"
+                  "| plain   | 0.6000 (0.5000–0.7000)           | 100.0 (100.0–100.0) |\n"
+                  "| better  | 0.0600, coverage 90.0 % [1 of 2] | 90.0 [1 of 2]       |\n"));
+}
+
 TEST_F(Report, AsSummary) {
   EXPECT_THAT(
       csv_summary(results_),

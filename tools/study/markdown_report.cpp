@@ -91,6 +91,28 @@ std::string metric_section(const StudyResults& results, MetricId metric) {
          });
 }
 
+/// Of a study with one sequence: all figures of a variant in a row.
+std::string overview_section(const StudyResults& results) {
+  if (results.study.sequences.size() != 1) return {};
+  std::vector<std::string> header = {"variant"};
+  std::vector<MetricId> shown;
+  for (std::size_t i = 0; i < kMetricCount; ++i) {
+    const auto metric = static_cast<MetricId>(i);
+    const std::optional<Spread> all = spread_of(values_of(results, metric));
+    if (!all || (all->min == 0.0 && all->max == 0.0)) continue;
+    const Metric& m = metrics()[metric];
+    shown.push_back(metric);
+    header.push_back(std::string(m.brief) + (*m.unit ? " (" + std::string(m.unit) + ")" : ""));
+  }
+  std::vector<std::vector<std::string>> rows;
+  for (std::size_t variant = 0; variant < results.study.variants.size(); ++variant) {
+    rows.push_back({results.study.variants[variant].name});
+    for (const MetricId metric : shown)
+      rows.back().push_back(metric_text(results, 0, variant, metric));
+  }
+  return shown.empty() ? "" : heading("Overview", "") + markdown_table(header, rows);
+}
+
 std::string penalty_section(const StudyResults& results) {
   const std::string table = matrix(results.study, [&](std::size_t sequence, std::size_t variant) {
     const auto value = dynamic_penalty(results, sequence, variant);
@@ -222,7 +244,7 @@ std::string remarks_section(const StudyResults& results) {
 
 std::string markdown_report(const StudyResults& results, const std::string& title) {
   std::string text = "# " + title + "\n\n" + introduction(results);
-  text += metric_section(results, kAte);
+  text += overview_section(results) + metric_section(results, kAte);
   text += comparison_section(results) + improvement_section(results) + penalty_section(results);
   for (std::size_t metric = kAte + 1; metric < kMetricCount; ++metric)
     text += metric_section(results, static_cast<MetricId>(metric));

@@ -12,18 +12,18 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr std::array<Metric, kMetricCount> kMetrics = {{
-    {"ate_m", "Absolute trajectory error, SE(3), RMSE", "m", 4},
-    {"sim3_scale", "Scale that Sim(3) alignment finds", "", 4},
-    {"rpe_translation_m", "Relative pose error over 1 s, position, RMSE", "m", 4},
-    {"rpe_rotation_deg", "Relative pose error over 1 s, rotation, RMSE", "deg", 3},
-    {"coverage_percent", "Coverage: frames with a pose", "%", 1},
-    {"times_lost", "Times tracking was lost", "", 0},
-    {"dropped_frames", "Frames dropped to keep the pace", "", 0},
-    {"frames_per_second", "Speed", "frames/s", 1},
-    {"track_p50_ms", "Tracking thread, CPU per frame, median", "ms", 1},
-    {"track_p95_ms", "Tracking thread, CPU per frame, 95th percentile", "ms", 1},
-    {"cpu_ms_per_frame", "Whole process, CPU per frame", "ms", 1},
-    {"peak_memory_mib", "Peak memory", "MiB", 0},
+    {"ate_m", "Absolute trajectory error, SE(3), RMSE", "ATE", "m", 4},
+    {"sim3_scale", "Scale that Sim(3) alignment finds", "scale", "", 4},
+    {"rpe_translation_m", "Relative pose error over 1 s, position, RMSE", "RPE", "m", 4},
+    {"rpe_rotation_deg", "Relative pose error over 1 s, rotation, RMSE", "RPE", "deg", 3},
+    {"coverage_percent", "Coverage: frames with a pose", "coverage", "%", 1},
+    {"times_lost", "Times tracking was lost", "lost", "", 0},
+    {"dropped_frames", "Frames dropped to keep the pace", "dropped", "", 0},
+    {"frames_per_second", "Speed", "speed", "frames/s", 1},
+    {"track_p50_ms", "Tracking thread, CPU per frame, median", "tracking, p50", "ms", 1},
+    {"track_p95_ms", "Tracking thread, CPU per frame, 95th percentile", "tracking, p95", "ms", 1},
+    {"cpu_ms_per_frame", "Whole process, CPU per frame", "process", "ms", 1},
+    {"peak_memory_mib", "Peak memory", "memory", "MiB", 0},
 }};
 
 void read_summary(const std::filesystem::path& file, MetricValues& values) {

@@ -29,6 +29,7 @@ enum MetricId : std::size_t {
 struct Metric {
   const char* key;    ///< in results.csv and result.json
   const char* title;  ///< of the table
+  const char* brief;  ///< of a column
   const char* unit;   ///< may be empty
   int digits;         ///< behind the decimal point, in tables
 };
