@@ -4,7 +4,7 @@ FROM debian:bookworm-slim AS build
 COPY . /stillpoint
 WORKDIR /stillpoint
 RUN tools/setup \
- && cmake --preset release -DSTILLPOINT_BUILD_TESTS=OFF -DSTILLPOINT_BUILD_BENCHMARKS=OFF \
+ && cmake --preset release -DSTILLPOINT_BUILD_TESTS=OFF \
  && cmake --build --preset release \
  && cpack --config build/release/CPackConfig.cmake
 
