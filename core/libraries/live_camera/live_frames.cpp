@@ -1,0 +1,123 @@
+#include "live_camera/live_frames.hpp"
+
+#include <chrono>
+#include <cmath>
+#include <sstream>
+#include <utility>
+
+#include "stillpoint/support/size_text.hpp"
+
+namespace stillpoint::live_camera {
+namespace {
+
+template <class... Parts>
+std::string text_of(const Parts&... parts) {
+  std::ostringstream text;
+  (text << ... << parts);
+  return text.str();
+}
+
+}  // namespace
+
+void LiveOptions::visit(OptionVisitor& v) {
+  v("max_difference", max_difference,
+    {.min = 0.001, .max = 1, .unit = "s", .help = "largest time difference of a pair of images"});
+  v("timeout", timeout,
+    {.min = 0.1,
+     .max = 3600,
+     .unit = "s",
+     .help = "time without images after which the camera counts as gone"});
+  v("limit", limit, {.min = 0, .unit = "frames", .help = "frames to read; 0 for no limit"});
+}
+
+CameraModel live_model(const StageContext& context, const std::string& device, int width,
+                       int height, double field_of_view) {
+  CameraModel model;
+  if (context.camera) {
+    model = *context.camera;
+  } else {
+    if (field_of_view <= 0)
+      throw Error(Fault::kUsage,
+                  "no camera is given, and the device does not tell its field of view", device,
+                  "name a camera file with --camera");
+    model.name = device;
+    model.width = width;
+    model.height = height;
+    model.fx = model.fy = width / 2.0 / std::tan(field_of_view / 2);
+    model.cx = (width - 1) / 2.0;
+    model.cy = (height - 1) / 2.0;
+    context.log(
+        LogLevel::kWarning,
+        text_of(device, ": no calibration is given: taking an ideal camera with a focal length of ",
+                std::lround(model.fx), " px; lengths may be wrong by some percent (name a ",
+                "camera file with --camera)"));
+  }
+  if (model.width != width || model.height != height)
+    throw Error(
+        Fault::kUsage,
+        text_of("the camera sends ", size_text({width, height}), " pixels, but '", model.name,
+                "' is a calibration for ", size_text({model.width, model.height})),
+        device, "name another camera file with --camera");
+  model.depth_factor = 1000.0;
+  return model;
+}
+
+LiveFrames::LiveFrames(const LiveOptions& options, const CameraModel& model, std::string device,
+                       double ticks_per_second, int counter_bits)
+    : options_(options),
+      rectifier_(model),
+      device_(std::move(device)),
+      clock_(ticks_per_second, counter_bits),
+      pairs_(options.max_difference) {}
+
+void LiveFrames::put_color(std::uint64_t ticks, cv::Mat bgr) {
+  pairs_.put_color(clock_.seconds(ticks, host_seconds()), std::move(bgr));
+}
+
+void LiveFrames::put_depth(std::uint64_t ticks, cv::Mat depth) {
+  pairs_.put_depth(clock_.seconds(ticks, host_seconds()), std::move(depth));
+}
+
+std::optional<Frame> LiveFrames::next() {
+  if (options_.limit > 0 && given_ == static_cast<std::uint32_t>(options_.limit))
+    return std::nullopt;
+  const std::chrono::milliseconds patience(std::lround(options_.timeout * 1000));
+  while (auto pair = pairs_.take(patience)) {
+    if (given_ > 0 && pair->seconds <= last_seconds_) {  // the device's clock was compared anew
+      ++late_;
+      continue;
+    }
+    Frame frame = rectifier_.frame(pair->seconds, pair->bgr, pair->depth);
+    frame.index = given_++;
+    last_seconds_ = pair->seconds;
+    return frame;
+  }
+  const std::string why = pairs_.why_ended();
+  throw Error(Fault::kData,
+              !why.empty() ? why
+                           : text_of("no pair of images for ", options_.timeout, " s, after ",
+                                     given_, " frames"),
+              device_, "check that it is plugged in, powered and used by no other program");
+}
+
+SourceReport LiveFrames::report() const {
+  SourceReport report;
+  const int clock_jumps = clock_.jumps();
+  const std::size_t dropped = pairs_.dropped();
+  const std::size_t unpaired = pairs_.unpaired();
+  report.skipped = dropped + unpaired + late_;
+  if (dropped > 0)
+    report.warnings.push_back(
+        text_of(device_, ": ", dropped,
+                " pairs of images came while two were waiting for tracking, and were dropped"));
+  if (unpaired > 0)
+    report.warnings.push_back(text_of(device_, ": ", unpaired, " images had no partner within ",
+                                      1000 * options_.max_difference,
+                                      " ms (source.max_difference)"));
+  if (clock_jumps > 0)
+    report.warnings.push_back(
+        text_of(device_, ": the device's clock jumped ", clock_jumps, " times"));
+  return report;
+}
+
+}  // namespace stillpoint::live_camera

@@ -1,0 +1,124 @@
+#include "live_camera/live_frames.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <numbers>
+#include <string>
+#include <vector>
+
+namespace stillpoint::live_camera {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+const CameraModel kTiny{.name = "tiny", .width = 16, .height = 16, .depth_factor = 1000};
+
+constexpr double kTicksPerSecond = 1e3;  // a counter of milliseconds
+
+cv::Mat color_image() { return {16, 16, CV_8UC3, cv::Scalar(1, 2, 3)}; }
+cv::Mat depth_image(int millimetres) { return {16, 16, CV_16UC1, cv::Scalar(millimetres)}; }
+
+void put(LiveFrames& frames, std::uint64_t milliseconds, int depth = 1500) {
+  frames.put_color(milliseconds, color_image());
+  frames.put_depth(milliseconds + 5, depth_image(depth));
+}
+
+std::string message_of(LiveFrames& frames) {
+  try {
+    frames.next();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.fault(), Fault::kData);
+    return error.what();
+  }
+  return "nothing was thrown";
+}
+
+TEST(LiveFrames, GivesRectifiedFramesInOrder) {
+  LiveFrames frames({}, kTiny, "camera", kTicksPerSecond, 64);
+  put(frames, 500);
+  put(frames, 600, 2500);
+  const auto first = frames.next();
+  const auto second = frames.next();
+  ASSERT_TRUE(first && second);
+  EXPECT_EQ(first->index, 0u);
+  EXPECT_EQ(second->index, 1u);
+  EXPECT_NEAR(second->time - first->time, 0.1, 1e-6);
+  EXPECT_FLOAT_EQ(second->depth.at<float>(3, 3), 2.5f);
+  EXPECT_EQ(second->bgr.at<cv::Vec3b>(3, 3), cv::Vec3b(1, 2, 3));
+  EXPECT_THAT(frames.report().warnings, IsEmpty());
+}
+
+TEST(LiveFrames, EndsAfterTheLimit) {
+  LiveFrames frames({.limit = 1}, kTiny, "camera", kTicksPerSecond, 64);
+  put(frames, 500);
+  EXPECT_TRUE(frames.next());
+  EXPECT_FALSE(frames.next());
+  EXPECT_FALSE(frames.next());
+}
+
+TEST(LiveFrames, SaysWhenTheCameraStalls) {
+  LiveFrames frames({.timeout = 0.1}, kTiny, "Kinect 7", kTicksPerSecond, 64);
+  put(frames, 500);
+  frames.next();
+  EXPECT_THAT(message_of(frames),
+              HasSubstr("Kinect 7: no pair of images for 0.1 s, after 1 frames"));
+}
+
+TEST(LiveFrames, SaysWhyTheDriverEnded) {
+  LiveFrames frames({}, kTiny, "camera", kTicksPerSecond, 64);
+  frames.end("the camera was unplugged");
+  EXPECT_THAT(message_of(frames), HasSubstr("camera: the camera was unplugged"));
+}
+
+TEST(LiveFrames, TimesOnlyGrow) {
+  LiveFrames frames({.timeout = 0.1}, kTiny, "camera", kTicksPerSecond, 64);
+  put(frames, 500);
+  const double first = frames.next()->time;
+  put(frames, 400);
+  put(frames, 600);
+  EXPECT_NEAR(frames.next()->time - first, 0.1, 1e-6);
+  EXPECT_EQ(frames.report().skipped, 1u);
+}
+
+TEST(LiveFrames, ReportsWhatWasLeftOut) {
+  LiveFrames frames({}, kTiny, "camera", kTicksPerSecond, 64);
+  for (int i = 0; i < 5; ++i) put(frames, 100 * i);
+  frames.put_color(600, color_image());
+  frames.put_color(700, color_image());
+  frames.put_depth(700, depth_image(1000));
+  frames.put_depth(900'000, depth_image(1000));  // a quarter of an hour ahead
+  const SourceReport report = frames.report();
+  EXPECT_EQ(report.skipped, 5u);
+  EXPECT_THAT(report.warnings,
+              ElementsAre(HasSubstr("4 pairs of images came while two were waiting"),
+                          HasSubstr("1 images had no partner within 20 ms"),
+                          HasSubstr("the device's clock jumped 1 times")));
+}
+
+TEST(LiveModel, IsTheCalibrationWithDepthInMillimetres) {
+  StageContext context;
+  context.camera = CameraModel{.name = "mine", .width = 640, .height = 480, .fx = 517};
+  const CameraModel model = live_model(context, "camera", 640, 480, 1.0);
+  EXPECT_EQ(model.fx, 517);
+  EXPECT_EQ(model.depth_factor, 1000);
+  EXPECT_THROW(live_model(context, "camera", 320, 240, 1.0), Error);
+}
+
+TEST(LiveModel, IsAnIdealCameraWithoutCalibrationAndSaysSo) {
+  StageContext context;
+  std::vector<std::string> warnings;
+  context.log = [&](LogLevel level, std::string_view text) {
+    if (level == LogLevel::kWarning) warnings.emplace_back(text);
+  };
+  const CameraModel model = live_model(context, "camera", 640, 480, std::numbers::pi / 2);
+  EXPECT_NEAR(model.fx, 320, 1e-9);
+  EXPECT_EQ(model.cx, 319.5);
+  EXPECT_THAT(warnings, ElementsAre(HasSubstr("no calibration is given")));
+  EXPECT_THROW(live_model(context, "camera", 640, 480, 0.0), Error);
+}
+
+}  // namespace
+}  // namespace stillpoint::live_camera

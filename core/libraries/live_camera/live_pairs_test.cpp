@@ -1,0 +1,83 @@
+#include "live_camera/live_pairs.hpp"
+
+#include <gtest/gtest.h>
+
+#include <thread>
+
+namespace stillpoint::live_camera {
+namespace {
+
+using namespace std::chrono_literals;
+
+cv::Mat image(int value) { return {1, 1, CV_16UC1, cv::Scalar(value)}; }
+int value_of(const cv::Mat& image) { return image.at<std::uint16_t>(0, 0); }
+
+TEST(LivePairs, PairsWhatIsCloseInTimeInEitherOrder) {
+  LivePairs pairs(0.02);
+  pairs.put_color(1.000, image(1));
+  pairs.put_depth(1.010, image(11));
+  pairs.put_depth(1.040, image(12));
+  pairs.put_color(1.033, image(2));
+  for (const int i : {1, 2}) {
+    const auto pair = pairs.take(0ms);
+    ASSERT_TRUE(pair);
+    EXPECT_EQ(value_of(pair->bgr), i);
+    EXPECT_EQ(value_of(pair->depth), 10 + i);
+    EXPECT_DOUBLE_EQ(pair->seconds, i == 1 ? 1.000 : 1.033);
+  }
+  EXPECT_FALSE(pairs.take(0ms));
+  EXPECT_EQ(pairs.unpaired(), 0u);
+}
+
+TEST(LivePairs, TakesTheClosestAndCountsWhatIsLeftOver) {
+  LivePairs pairs(0.02);
+  pairs.put_depth(0.990, image(11));
+  pairs.put_depth(1.001, image(12));
+  pairs.put_color(1.000, image(1));
+  EXPECT_EQ(value_of(pairs.take(0ms)->depth), 12);
+  EXPECT_EQ(pairs.unpaired(), 1u);
+}
+
+TEST(LivePairs, PairsNothingThatIsFarApart) {
+  LivePairs pairs(0.02);
+  for (int i = 0; i < 10; ++i) {
+    pairs.put_color(i, image(i));
+    pairs.put_depth(i + 0.5, image(i));
+  }
+  EXPECT_FALSE(pairs.take(0ms));
+  EXPECT_EQ(pairs.unpaired(), 12u);  // four of each kind still wait
+}
+
+TEST(LivePairs, DropsTheOldestWhenNobodyTakesThem) {
+  LivePairs pairs(0.02);
+  for (int i = 0; i < 5; ++i) {
+    pairs.put_color(i, image(i));
+    pairs.put_depth(i, image(i));
+  }
+  EXPECT_EQ(pairs.dropped(), 3u);
+  EXPECT_EQ(value_of(pairs.take(0ms)->bgr), 3);
+  EXPECT_EQ(value_of(pairs.take(0ms)->bgr), 4);
+}
+
+TEST(LivePairs, WaitsForThePair) {
+  LivePairs pairs(0.02);
+  std::jthread driver([&] {
+    pairs.put_depth(1, image(1));
+    pairs.put_color(1, image(1));
+  });
+  EXPECT_TRUE(pairs.take(60s));
+}
+
+TEST(LivePairs, GivesWhatWaitsBeforeTheEnd) {
+  LivePairs pairs(0.02);
+  pairs.put_depth(1, image(1));
+  pairs.put_color(1, image(1));
+  pairs.end("unplugged");
+  pairs.end("closed");
+  EXPECT_TRUE(pairs.take(60s));
+  EXPECT_FALSE(pairs.take(60s));
+  EXPECT_EQ(pairs.why_ended(), "unplugged");
+}
+
+}  // namespace
+}  // namespace stillpoint::live_camera

@@ -1,0 +1,128 @@
+// Live cameras without hardware: libfreenect's own stand-in for a Kinect, `fakenect`, plays images
+// from a folder.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
+#include <string>
+#include <vector>
+
+#include "evaluation/trajectory.hpp"
+#include "support/absolute_error.hpp"
+#include "support/simulated_recording.hpp"
+
+namespace stillpoint::testing {
+namespace {
+
+namespace fs = std::filesystem;
+using ::testing::HasSubstr;
+
+constexpr int kFrames = 30;
+constexpr double kPeriod = 0.1;           // s, slower than a Kinect: a busy machine drops nothing
+constexpr double kTicksPerSecond = 60e6;  // of a Kinect's counter
+const fs::path kFakenect = fs::path("/usr/lib") / STILLPOINT_LIBRARY_ARCHITECTURE / "fakenect";
+
+// As fakenect-record leaves it: raw pixels behind a header of one line, named by time of arrival
+// and the device's counter, which starts over in the middle.
+class Dump {
+ public:
+  explicit Dump(const RecordingCopy& recording) {
+    for (int frame = 0; frame < kFrames; ++frame) {
+      cv::Mat color = cv::imread(recording.color(frame).string(), cv::IMREAD_COLOR);
+      cv::cvtColor(color, color, cv::COLOR_BGR2RGB);
+      cv::Mat depth = cv::imread(recording.depth(frame).string(), cv::IMREAD_UNCHANGED);
+      depth.convertTo(depth, CV_16U, 0.2);  // 5000 per metre to millimetres
+      const double seconds = frame * kPeriod;
+      add('r', seconds, "P6 640 480 255\n", color, ".ppm");
+      add('d', seconds + 0.008, "P5 640 480 65535\n", depth, ".pgm");
+    }
+    folder_.write("INDEX.txt", index_);
+  }
+  std::string path() const { return folder_.path().string(); }
+
+ private:
+  void add(char kind, double seconds, const std::string& header, const cv::Mat& image,
+           const char* ending) {
+    const auto ticks = static_cast<std::uint32_t>(
+        static_cast<std::uint64_t>(0xffffffffu - 90'000'000u + seconds * kTicksPerSecond));
+    const std::string name = std::string(1, kind) + "-" + stamp_text(1000 + seconds) + "-" +
+                             std::to_string(ticks) + ending;
+    std::string text = header;
+    text.append(reinterpret_cast<const char*>(image.data), image.total() * image.elemSize());
+    folder_.write(name, text);
+    index_ += name + "\n";
+  }
+
+  TemporaryFolder folder_;
+  std::string index_;
+};
+
+Surroundings with_fakenect(const std::string& dump) {
+  return {.environment = {{"LD_LIBRARY_PATH", kFakenect.string()}, {"FAKENECT_PATH", dump}}};
+}
+
+// Gives the poses the times of the recording: the camera's begin when it is started.
+void write_with_times_of(const fs::path& recording, const fs::path& estimate, const fs::path& out) {
+  const auto truth = evaluation::read_trajectory(recording / "groundtruth.txt");
+  const auto poses = evaluation::read_trajectory(estimate);
+  std::ofstream file(out);
+  std::ifstream lines(estimate);
+  std::size_t i = 0;
+  for (std::string line; std::getline(lines, line);) {
+    if (line.starts_with("#")) continue;
+    const double frame = std::round((poses.poses[i++].time - poses.start()) / kPeriod);
+    file << stamp_text(truth.start() + frame / 30.0) << line.substr(line.find(' ')) << "\n";
+  }
+}
+
+TEST(Kinect, IsTrackedLive) {
+  if (!fs::exists(kFakenect)) GTEST_SKIP() << kFakenect << " is not there (libfreenect-bin)";
+  const RecordingCopy recording(kFrames);
+  const Dump dump(recording);
+  const TemporaryFolder folder;
+  const fs::path out = folder.path() / "out";
+  const Outcome outcome = call({"run", "orb_baseline", "--set", "source.type=freenect", "--set",
+                                "source.limit=" + std::to_string(kFrames), "--camera",
+                                (recording.path() / "camera.yaml").string(), "-o", out.string()},
+                               with_fakenect(dump.path()));
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  const auto summary = json_file(out / "summary.json");
+  EXPECT_EQ(summary["tracked_frames"], kFrames) << summary;
+  EXPECT_EQ(summary["times_lost"], 0);
+  const fs::path estimate = folder.path() / "estimate.txt";
+  write_with_times_of(recording.path(), out / "trajectory.txt", estimate);
+  EXPECT_LT(absolute_error(recording.path(), estimate), 0.005);  // metres
+}
+
+TEST(Kinect, EndsOnCtrlC) {
+  if (!fs::exists(kFakenect)) GTEST_SKIP() << kFakenect << " is not there (libfreenect-bin)";
+  const RecordingCopy recording(kFrames);
+  const Dump dump(recording);
+  const TemporaryFolder folder;
+  const fs::path out = folder.path() / "out";
+  Program program({"run", "orb_baseline", "--set", "source.type=freenect", "--camera",
+                   (recording.path() / "camera.yaml").string(), "-o", out.string()},
+                  with_fakenect(dump.path()));
+  ASSERT_TRUE(program.wait_for(" key frames  tracking")) << "no line of progress";
+  program.send(SIGINT);
+  const Outcome outcome = program.finish();
+  EXPECT_EQ(outcome.signal, SIGINT) << outcome.err;
+  EXPECT_GT(count_poses(out / "trajectory.txt"), 0u);
+}
+
+TEST(Kinect, MayBeMissing) {
+  for (const char* type : {"freenect", "openni2"}) {
+    const Outcome outcome =
+        call({"run", "orb_baseline", "--set", std::string("source.type=") + type});
+    EXPECT_EQ(outcome.exit_code, 3) << outcome.err;
+    EXPECT_THAT(outcome.err, HasSubstr("no camera is connected"));
+  }
+}
+
+}  // namespace
+}  // namespace stillpoint::testing
