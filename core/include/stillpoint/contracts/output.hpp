@@ -2,11 +2,14 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "stillpoint/contracts/frame.hpp"
+#include "stillpoint/contracts/labelled_point.hpp"
 #include "stillpoint/contracts/map_evidence.hpp"
 #include "stillpoint/contracts/moving_points.hpp"
 #include "stillpoint/contracts/segmentation.hpp"
@@ -69,13 +72,18 @@ struct RunSummary {
   std::string segmentation_failure;  ///< the message of the first of them
   bool complete = true;              ///< false when the run was stopped or failed
   std::string failure;               ///< the message of the stage that failed, if any
+  std::filesystem::path map_directory;  ///< the dense map's files; empty: there are none
+  /// What the dense map holds, in the world, as MapBackend::occupied(); empty without one.
+  std::function<std::vector<LabelledPoint>()> dense_map = [] {
+    return std::vector<LabelledPoint>();
+  };
 };
 
 /// A copy of a report may be kept; its images are shared.
 class STILLPOINT_EXPORT Output {
  public:
   static constexpr const char* kKind = "output";
-  static constexpr std::uint32_t kApi = 1;  ///< see kPluginApi
+  static constexpr std::uint32_t kApi = 2;  ///< see kPluginApi
   virtual ~Output();
 
   /// In order of the frames. Threaded, tracking is up to eight frames ahead and then waits; with
