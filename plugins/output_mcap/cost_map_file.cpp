@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <opencv2/core.hpp>
 #include <opencv2/imgcodecs.hpp>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -32,7 +33,7 @@ cv::Mat cells_of(const cv::Mat& image) {
 Pose pose_of(const std::array<double, 7>& numbers) {
   const auto [x, y, z, qx, qy, qz, qw] = numbers;
   Pose pose(Eigen::Quaterniond(qw, qx, qy, qz).normalized());
-  pose.translation() = {x, y, z};
+  pose.translation() = Eigen::Vector3d(x, y, z);
   return pose;
 }
 
@@ -43,8 +44,9 @@ OccupancyGrid read(const std::filesystem::path& description) {
   const auto corner = yaml["origin"].as<std::array<double, 3>>();
   grid.header_from_origin = pose_of(yaml["world_from_map"].as<std::array<double, 7>>()) *
                             Eigen::Translation3d(corner[0], corner[1], 0);
-  const std::string image = description.parent_path() / yaml["image"].as<std::string>();
-  grid.cells = cells_of(cv::imread(image, cv::IMREAD_GRAYSCALE));
+  const auto image = description.parent_path() / yaml["image"].as<std::string>();
+  if (!std::filesystem::exists(image)) throw std::runtime_error("there is no " + image.string());
+  grid.cells = cells_of(cv::imread(image.string(), cv::IMREAD_GRAYSCALE));
   return grid;
 }
 

@@ -8,8 +8,8 @@
 
 namespace stillpoint::output_mcap {
 
-/// In Stillpoint's world, without a header. Nothing when the folder is empty or holds no cost map, which is so where no
-/// floor was found. Throws Error(kData) for files that are none.
+/// In Stillpoint's world, without a header. Nothing when the folder is empty or holds no cost map,
+/// which is so where no floor was found. Throws Error(kData) for files that are none.
 std::optional<mcap_writer::OccupancyGrid> read_cost_map(const std::filesystem::path& folder);
 
 }  // namespace stillpoint::output_mcap

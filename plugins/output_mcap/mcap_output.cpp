@@ -54,13 +54,13 @@ McapOutput::McapOutput(const Options& options, const StageContext& context)
               .landmarks = writer_.add_channel<mcap_writer::PointCloud>("/landmarks"),
               .dense_map = writer_.add_channel<mcap_writer::PointCloud>("/dense_map"),
               .cost_map = writer_.add_channel<mcap_writer::OccupancyGrid>("/cost_map")},
-      image_topics_(options.images
-                        ? std::optional(ImageTopics{
-                              writer_.add_channel<mcap_writer::CompressedImage>(
-                                  "/camera/color/image_raw/compressed"),
-                              writer_.add_channel<mcap_writer::CameraInfo>(
-                                  "/camera/color/camera_info")})
-                        : std::nullopt) {}
+      image_topics_(
+          options.images
+              ? std::optional(ImageTopics{
+                    writer_.add_channel<mcap_writer::CompressedImage>(
+                        "/camera/color/image_raw/compressed"),
+                    writer_.add_channel<mcap_writer::CameraInfo>("/camera/color/camera_info")})
+              : std::nullopt) {}
 
 void McapOutput::frame(const FrameReport& report) {
   const double time = report.frame->time;
@@ -83,8 +83,7 @@ void McapOutput::write_pose(double time, const TrackResult& result) {
   if (previous_) odometry.twist = twist_between(*previous_, now);
   writer_.write(topics_.odometry, time, odometry);
   if (result.keyframe)
-    writer_.write(topics_.keyframe, time,
-                  mcap_writer::PoseMessage{header, now.world_from_camera});
+    writer_.write(topics_.keyframe, time, mcap_writer::PoseMessage{header, now.world_from_camera});
   previous_ = now;
 }
 
@@ -93,8 +92,7 @@ void McapOutput::write_image(const Frame& frame) {
   mcap_writer::CompressedImage image{header, "jpeg"};
   cv::imencode(".jpg", frame.bgr, image.file, {cv::IMWRITE_JPEG_QUALITY, kJpegQuality});
   writer_.write(image_topics_->image, frame.time, image);
-  writer_.write(image_topics_->camera, frame.time,
-                mcap_writer::CameraInfo{header, *frame.camera});
+  writer_.write(image_topics_->camera, frame.time, mcap_writer::CameraInfo{header, *frame.camera});
 }
 
 void McapOutput::finish(const RunSummary& summary) {

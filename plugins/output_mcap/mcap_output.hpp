@@ -15,8 +15,9 @@ using mcap_writer::Compression;
 using mcap_writer::Header;
 using mcap_writer::McapWriter;
 
-/// Written as the run goes: tf, odometry and state of every frame, a pose for each key frame, images on request. At the
-/// end, with the time of the last frame: path, key frames, landmarks, dense map and cost map as they have become.
+/// Written as the run goes: tf, odometry and state of every frame, a pose for each key frame,
+/// images on request. At the end, with the time of the last frame: path, key frames, landmarks,
+/// dense map and cost map as they have become.
 class McapOutput final : public Output {
  public:
   struct Options {
@@ -27,9 +28,10 @@ class McapOutput final : public Output {
     void visit(OptionVisitor& v) {
       v("file", file, {.help = "name of the file in the run folder"});
       v("images", images, {.help = "the colour images as well, as JPEG"});
-      v.choice("compression", compression,
-               {{"zstd", Compression::kZstd}, {"lz4", Compression::kLz4}, {"none", Compression::kNone}},
-               {.help = "of the file"});
+      v.choice(
+          "compression", compression,
+          {{"zstd", Compression::kZstd}, {"lz4", Compression::kLz4}, {"none", Compression::kNone}},
+          {.help = "of the file"});
     }
   };
 

@@ -19,8 +19,8 @@ namespace {
 
 namespace fs = std::filesystem;
 using mcap_writer::OccupancyGrid;
-using testing::TemporaryFolder;
 using ::testing::HasSubstr;
+using testing::TemporaryFolder;
 
 class McapOutputTest : public ::testing::Test {
  protected:
@@ -64,7 +64,8 @@ TEST_F(McapOutputTest, LostFramesHaveAStateAndNoPose) {
   output.frame(report_at(3, TrackState::kLost));
   output.finish(summary());
   EXPECT_EQ(count(text(), "waiting"), 1u);
-  EXPECT_EQ(count(text(), "tracking"), 1u + 2 * 1);  // "/tracking_state" in the chunk and the summary
+  EXPECT_EQ(count(text(), "tracking"),
+            1u + 2 * 1);  // "/tracking_state" in the chunk and the summary
   EXPECT_EQ(count(text(), "LOST"), 1u);
   EXPECT_EQ(count(text(), "camera_color_optical_frame"), 2u);  // tf and odometry
 }
@@ -95,7 +96,7 @@ TEST_F(McapOutputTest, ACostMapIsReadWithItsPlaceInTheWorld) {
   cv::imwrite((folder_.path() / "map.pgm").string(), image);
   folder_.write("map.yaml",
                 "image: \"map.pgm\"\nmode: trinary\nresolution: 0.05\norigin: [-1, 2, 0]\n"
-                "world_from_map: [0, 1.5, 0, -0.5, 0.5, -0.5, 0.5]\n");
+                "world_from_map: [0, 1.5, 0, 0.5, -0.5, 0.5, 0.5]\n");
   const auto grid = read_cost_map(folder_.path());
   ASSERT_TRUE(grid);
   EXPECT_EQ(grid->resolution, 0.05);

@@ -23,8 +23,8 @@ std::string with_bar(double share, const std::string& text, int columns) {
 
 }  // namespace
 
-Progress::Progress(Console& console, std::optional<std::size_t> frames)
-    : console_(console), frames_(frames && *frames > 0 ? frames : std::nullopt) {}
+Progress::Progress(Console& console, std::optional<std::size_t> frames, Of what)
+    : console_(console), frames_(frames && *frames > 0 ? frames : std::nullopt), what_(what) {}
 
 void Progress::frame(const FrameReport& report) {
   done_ = report.frame->index + 1;
@@ -60,6 +60,7 @@ std::string Progress::describe(double seconds, const TrackResult& result) const 
                   minutes(seconds / share() * (1.0 - share())).c_str());
   else
     std::snprintf(text.data(), text.size(), "%zu  %.1f frames/s  ", done_, rate);
+  if (what_ == Of::kRecording) return text.data();
   return std::string(text.data()) + std::to_string(keyframes_) + " key frames  " +
          name_of(result.state);
 }

@@ -1,4 +1,5 @@
-// The serialisation of ROS 2's messages: CDR, first version, lowest byte first (OMG DDSI-RTPS 2.2, 10).
+// The serialisation of ROS 2's messages: CDR, first version, lowest byte first (OMG DDSI-RTPS 2.2,
+// 10).
 #pragma once
 
 #include <cstddef>

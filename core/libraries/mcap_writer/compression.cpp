@@ -18,8 +18,8 @@ Bytes with_lz4(const Bytes& data) {
   LZ4F_preferences_t preferences = LZ4F_INIT_PREFERENCES;
   preferences.frameInfo.contentSize = data.size();
   Bytes result(LZ4F_compressFrameBound(data.size(), &preferences));
-  const std::size_t size = LZ4F_compressFrame(result.data(), result.size(), data.data(),
-                                              data.size(), &preferences);
+  const std::size_t size =
+      LZ4F_compressFrame(result.data(), result.size(), data.data(), data.size(), &preferences);
   if (LZ4F_isError(size)) fail(LZ4F_getErrorName(size));
   result.resize(size);
   return result;

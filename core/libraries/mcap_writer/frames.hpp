@@ -1,4 +1,5 @@
-// The coordinate frames of recordings and runs, by REP 105, and the way from Stillpoint's world to them.
+// The coordinate frames of recordings and runs, by REP 105, and the way from Stillpoint's world to
+// them.
 #pragma once
 
 #include "stillpoint/pose_math.hpp"
@@ -10,7 +11,8 @@ inline constexpr const char* kMapFrame = "map";
 /// x right, y down, z forward.
 inline constexpr const char* kCameraFrame = "camera_color_optical_frame";
 
-/// Stillpoint's world is the first camera's optical frame; the map has x where that camera looks, y to its left, z up.
+/// Stillpoint's world is the first camera's optical frame; the map has x where that camera looks, y
+/// to its left, z up.
 inline Pose map_from_world() {
   Pose pose = Pose::Identity();
   pose.linear() << 0, 0, 1,  //

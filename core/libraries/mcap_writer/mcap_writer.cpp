@@ -83,7 +83,7 @@ Bytes channel(ChannelId id, std::uint16_t schema_id, const std::string& topic) {
   return record(kChannel, content);
 }
 
-/// Whether it is CRC-32 of data that follows data with `crc`.
+/// CRC-32 of bytes that follow others, whose own is `crc`.
 std::uint32_t crc_of(std::span<const std::uint8_t> bytes, std::uint32_t crc = 0) {
   return libdeflate_crc32(crc, bytes.data(), bytes.size());
 }
@@ -192,7 +192,8 @@ void McapWriter::end_chunk() {
   chunk_times_ = {};
 }
 
-/// Behind the chunk, which begins at `at` of the file. `offsets`: where each is in the file, by channel.
+/// Behind the chunk, which begins at `at` of the file. `offsets`: where each is in the file, by
+/// channel.
 void McapWriter::append_message_indices(Bytes& out, Bytes& offsets, std::uint64_t at) {
   for (std::size_t id = 0; id < channels_.size(); ++id) {
     auto& index = channels_[id].index;

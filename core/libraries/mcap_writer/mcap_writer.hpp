@@ -19,11 +19,12 @@ namespace stillpoint::mcap_writer {
 
 using ChannelId = std::uint16_t;
 
-/// Messages of ROS 2 in chunks of about a megabyte or a second. Each chunk is handed to the system when it is full:
-/// whenever the process ends, readers find all messages up to the last chunk. One thread at a time.
+/// Messages of ROS 2 in chunks of about a megabyte or a second. Each chunk is handed to the system
+/// when it is full: whenever the process ends, readers find all messages up to the last chunk. One
+/// thread at a time.
 ///
-/// Throws Error(kUsage) when the file cannot be written, once: what comes after that is ignored, and the file ends with
-/// the last whole record.
+/// Throws Error(kUsage) when the file cannot be written, once: what comes after that is ignored,
+/// and the file ends with the last whole record.
 class McapWriter {
  public:
   /// Replaces a file of that name, once there is something to write.

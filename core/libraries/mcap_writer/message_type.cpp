@@ -22,8 +22,7 @@ constexpr std::array kDefinitions{
     Definition{"std_msgs/String", "string data\n"},
     Definition{"geometry_msgs/Point", "float64 x\nfloat64 y\nfloat64 z\n"},
     Definition{"geometry_msgs/Vector3", "float64 x\nfloat64 y\nfloat64 z\n"},
-    Definition{"geometry_msgs/Quaternion",
-               "float64 x 0\nfloat64 y 0\nfloat64 z 0\nfloat64 w 1\n"},
+    Definition{"geometry_msgs/Quaternion", "float64 x 0\nfloat64 y 0\nfloat64 z 0\nfloat64 w 1\n"},
     Definition{"geometry_msgs/Pose",
                "geometry_msgs/Point position\ngeometry_msgs/Quaternion orientation\n"},
     Definition{"geometry_msgs/PoseStamped", "std_msgs/Header header\ngeometry_msgs/Pose pose\n"},
@@ -35,8 +34,9 @@ constexpr std::array kDefinitions{
                "geometry_msgs/Twist twist\nfloat64[36] covariance\n"},
     Definition{"geometry_msgs/Transform",
                "geometry_msgs/Vector3 translation\ngeometry_msgs/Quaternion rotation\n"},
-    Definition{"geometry_msgs/TransformStamped",
-               "std_msgs/Header header\nstring child_frame_id\ngeometry_msgs/Transform transform\n"},
+    Definition{
+        "geometry_msgs/TransformStamped",
+        "std_msgs/Header header\nstring child_frame_id\ngeometry_msgs/Transform transform\n"},
     Definition{"tf2_msgs/TFMessage", "geometry_msgs/TransformStamped[] transforms\n"},
     Definition{"nav_msgs/Odometry",
                "std_msgs/Header header\nstring child_frame_id\n"

@@ -1,5 +1,6 @@
-// Messages of ROS 2, and how they become bytes. Poses, points and frames as in REP 103 and 105: metres, radians, the
-// map's z axis up; a camera's own frame is the optical one, x right, y down, z forward.
+// Messages of ROS 2, and how they become bytes. Poses, points and frames as in REP 103 and 105:
+// metres, radians, the map's z axis up; a camera's own frame is the optical one, x right, y down, z
+// forward.
 #pragma once
 
 #include <Eigen/Core>
@@ -14,7 +15,8 @@
 
 namespace stillpoint::mcap_writer {
 
-/// Nanoseconds since 1970. ROS 2 has 32 bits for the seconds: times outside become the nearest one inside.
+/// Nanoseconds since 1970. ROS 2 has 32 bits for the seconds: times outside become the nearest one
+/// inside.
 std::uint64_t nanoseconds(double seconds);
 
 struct Header {
@@ -72,7 +74,8 @@ struct Odometry {
   Header header;
   std::string child;
   Pose header_from_child = Pose::Identity();
-  Matrix6d covariance = Matrix6d::Zero();  ///< of the pose, x, y, z, then rotation, in the header's frame; 0: not known
+  Matrix6d covariance = Matrix6d::Zero();  ///< of the pose, x, y, z, then rotation, in the header's
+                                           ///< frame; 0: not known
   Vector6d twist = Vector6d::Zero();       ///< m/s, then rad/s, in the child's frame
 };
 
@@ -87,8 +90,9 @@ struct OccupancyGrid {
   static constexpr std::int8_t kFree = 0, kOccupied = 100, kUnknown = -1;
   Header header;
   double resolution = 0;  ///< metres
-  Pose header_from_origin = Pose::Identity();  ///< of the lower left corner of the first cell; x along rows, z up
-  cv::Mat cells;                               ///< CV_8SC1; first row: smallest y
+  Pose header_from_origin =
+      Pose::Identity();  ///< of the lower left corner of the first cell; x along rows, z up
+  cv::Mat cells;         ///< CV_8SC1; first row: smallest y
 };
 
 Bytes cdr_of(const Text& message);

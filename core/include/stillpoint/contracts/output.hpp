@@ -66,12 +66,12 @@ struct RunSummary {
   double cpu_seconds = 0.0;  ///< of the whole process during the run
   double recorded_seconds = 0.0;
   long long seed = 0;
-  std::string mode;                  ///< "inline" or "threaded"
-  int unlabelled_frames = 0;         ///< without labels although there is a segmenter
-  int segmentation_failures = 0;     ///< images that it failed on, with `on_failure: continue`
-  std::string segmentation_failure;  ///< the message of the first of them
-  bool complete = true;              ///< false when the run was stopped or failed
-  std::string failure;               ///< the message of the stage that failed, if any
+  std::string mode;                     ///< "inline" or "threaded"
+  int unlabelled_frames = 0;            ///< without labels although there is a segmenter
+  int segmentation_failures = 0;        ///< images that it failed on, with `on_failure: continue`
+  std::string segmentation_failure;     ///< the message of the first of them
+  bool complete = true;                 ///< false when the run was stopped or failed
+  std::string failure;                  ///< the message of the stage that failed, if any
   std::filesystem::path map_directory;  ///< the dense map's files; empty: there are none
   /// What the dense map holds, in the world, as MapBackend::occupied(); empty without one.
   std::function<std::vector<LabelledPoint>()> dense_map = [] {

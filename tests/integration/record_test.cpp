@@ -1,0 +1,183 @@
+// stillpoint record: what it writes is the recording that the source gives.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <csignal>
+#include <filesystem>
+#include <opencv2/imgcodecs.hpp>
+#include <regex>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "support/simulated_recording.hpp"
+
+namespace stillpoint::testing {
+namespace {
+
+namespace fs = std::filesystem;
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+constexpr int kFrames = 12;
+
+class Record : public ::testing::Test {
+ protected:
+  fs::path out() const { return folder_.path() / "out"; }
+
+  Outcome record(std::vector<std::string> arguments) const {
+    arguments.insert(arguments.begin(), "record");
+    arguments.insert(arguments.end(), {"-o", out().string()});
+    return call(std::move(arguments));
+  }
+  /// A pipeline whose source renders a small scene.
+  std::string simulated_pipeline(int frames) const {
+    return folder_
+        .write("simulated.yaml",
+               "version: 1\nextends: orb_baseline\n"
+               "source: {type: simulation, people: [], balls: [], frames: " +
+                   std::to_string(frames) +
+                   "}\ncamera: {width: 320, height: 240, fx: 267.7, fy: 269.6, "
+                   "cx: 159.8, cy: 123.6}\n")
+        .string();
+  }
+  /// The trajectory that `stillpoint run` finds, inline.
+  std::string trajectory(std::vector<std::string> arguments) const {
+    const fs::path results = folder_.path() / "run";
+    arguments.insert(arguments.begin(), "run");
+    arguments.insert(arguments.end(), {"-o", results.string(), "--set", "runtime.mode=inline"});
+    const Outcome outcome = call(std::move(arguments));
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    return text_of(results / "trajectory.txt");
+  }
+  std::string trajectory_of_recording() const {
+    return trajectory({"orb_baseline", "--dataset", out().string(), "--camera",
+                       (out() / "camera.yaml").string()});
+  }
+  /// Files in a list of images.
+  std::vector<fs::path> images(const fs::path& recording, const std::string& list) const {
+    std::istringstream stream(text_of(recording / list));
+    std::vector<fs::path> files;
+    for (std::string line; std::getline(stream, line);)
+      if (!line.starts_with("#")) files.push_back(recording / line.substr(line.find(' ') + 1));
+    return files;
+  }
+  /// Every image that is listed can be read.
+  std::size_t count_whole_frames() const {
+    std::size_t count = 0;
+    for (const char* list : {"rgb.txt", "depth.txt"}) {
+      count = 0;
+      for (const fs::path& file : images(out(), list)) {
+        EXPECT_FALSE(cv::imread(file.string(), cv::IMREAD_UNCHANGED).empty()) << file;
+        ++count;
+      }
+    }
+    return count;
+  }
+
+  TemporaryFolder folder_;
+};
+
+TEST_F(Record, ARecordingOfARecordingIsTheSame) {
+  const RecordingCopy original(kFrames);
+  const std::string camera = (original.path() / "camera.yaml").string();
+  const Outcome outcome =
+      record({"orb_baseline", "--dataset", original.path().string(), "--camera", camera});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, AllOf(HasSubstr("12 frames of 0.4 s, 0 dropped"),
+                                 HasSubstr("--camera " + out().string() + "/camera.yaml")));
+  for (const char* file : {"rgb.txt", "depth.txt", "groundtruth.txt"})
+    EXPECT_EQ(text_of(out() / file), original.read(file)) << file;
+  for (const char* list : {"rgb.txt", "depth.txt"})
+    for (const fs::path& file : images(original.path(), list)) {
+      const fs::path copy = out() / fs::relative(file, original.path());
+      EXPECT_EQ(cv::norm(cv::imread(file.string(), cv::IMREAD_UNCHANGED),
+                         cv::imread(copy.string(), cv::IMREAD_UNCHANGED), cv::NORM_INF),
+                0)
+          << file;
+    }
+  EXPECT_FALSE(fs::exists(out() / "labels"));
+  EXPECT_EQ(trajectory_of_recording(), trajectory({"orb_baseline", "--dataset",
+                                                   original.path().string(), "--camera", camera}));
+}
+
+TEST_F(Record, ARecordingOfTheSimulatorGivesItsTrajectory) {
+  const std::string pipeline = simulated_pipeline(kFrames);
+  const Outcome outcome = record({pipeline});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_EQ(count_whole_frames(), static_cast<std::size_t>(kFrames));
+  EXPECT_FALSE(fs::exists(out() / "groundtruth.txt"));  // rendered in memory: there is no file
+  const std::string direct = trajectory({pipeline});
+  EXPECT_EQ(std::count(direct.begin(), direct.end(), '\n'), kFrames + 1);
+  EXPECT_EQ(trajectory_of_recording(), direct);
+}
+
+TEST_F(Record, AtTheSensorsPaceEveryFrameIsWrittenOrCounted) {
+  const Outcome outcome = record({simulated_pipeline(kFrames), "--set", "runtime.pace=sensor"});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  std::smatch found;
+  ASSERT_TRUE(
+      std::regex_search(outcome.out, found, std::regex(R"((\d+) frames of .*, (\d+) dropped)")))
+      << outcome.out;
+  EXPECT_EQ(std::stoi(found[1]) + std::stoi(found[2]), kFrames);
+  EXPECT_EQ(count_whole_frames(), std::stoul(found[1]));
+}
+
+TEST_F(Record, WritesOverNothing) {
+  folder_.write("out/mine.txt", "precious");
+  const std::string pipeline = simulated_pipeline(kFrames);
+  const Outcome folder = record({pipeline});
+  EXPECT_EQ(folder.exit_code, 2);
+  EXPECT_EQ(folder.err,
+            "error: " + out().string() +
+                ": there is something already; name another target or remove this one\n");
+  EXPECT_EQ(text_of(out() / "mine.txt"), "precious");
+  EXPECT_FALSE(fs::exists(out() / "rgb"));
+  const fs::path mcap = folder_.write("old.mcap", "precious");
+  const Outcome file = call({"record", pipeline, "-o", mcap.string()});
+  EXPECT_EQ(file.exit_code, 2);
+  EXPECT_THAT(file.err, HasSubstr("there is something already"));
+  EXPECT_EQ(text_of(mcap), "precious");
+}
+
+TEST_F(Record, CtrlCLeavesAWholeRecording) {
+  Program program({"record", simulated_pipeline(400), "-o", out().string()});
+  ASSERT_TRUE(program.wait_for("frames/s"));
+  program.send(SIGINT);
+  const Outcome outcome = program.finish();
+  EXPECT_EQ(outcome.signal, SIGINT);
+  EXPECT_THAT(outcome.err, HasSubstr("what was recorded until then is complete"));
+  std::smatch found;
+  ASSERT_TRUE(std::regex_search(outcome.out, found, std::regex(R"((\d+) frames)"))) << outcome.out;
+  EXPECT_EQ(count_whole_frames(), std::stoul(found[1]));
+  EXPECT_TRUE(fs::exists(out() / "camera.yaml"));
+}
+
+TEST_F(Record, AKilledOneLeavesWhatItsListsName) {
+  Program program({"record", simulated_pipeline(400), "-o", out().string()});
+  ASSERT_TRUE(program.wait_for("frames/s"));
+  program.send(SIGKILL);
+  EXPECT_EQ(program.finish().signal, SIGKILL);
+  EXPECT_GT(count_whole_frames(), 0u);
+}
+
+TEST_F(Record, AFolderThatCannotBeMadeIsNamed) {
+  folder_.write("file", "");
+  for (const char* target : {"file/recording", "file/recording.mcap"}) {
+    const Outcome outcome =
+        call({"record", simulated_pipeline(kFrames), "-o", (folder_.path() / target).string()});
+    EXPECT_EQ(outcome.exit_code, 2);
+    EXPECT_THAT(outcome.err,
+                AllOf(HasSubstr("cannot make the folder"), HasSubstr("Not a directory")));
+  }
+}
+
+TEST_F(Record, QuietlyItSaysNothing) {
+  const Outcome outcome = record({simulated_pipeline(2), "--quiet"});
+  EXPECT_EQ(outcome.exit_code, 0);
+  EXPECT_THAT(outcome.out + outcome.err, IsEmpty());
+}
+
+}  // namespace
+}  // namespace stillpoint::testing
