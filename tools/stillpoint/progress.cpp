@@ -55,13 +55,13 @@ std::string Progress::describe(double seconds, const TrackResult& result) const 
   const double rate = static_cast<double>(processed_) / std::max(seconds, 1e-9);
   std::array<char, 160> text{};
   if (frames_)
-    std::snprintf(text.data(), text.size(), "%zu/%zu  %3.0f %%  %.1f frames/s  %s left  ", done_,
+    std::snprintf(text.data(), text.size(), "%zu/%zu  %3.0f %%  %.1f frames/s  %s left", done_,
                   *frames_, 100.0 * share(), rate,
                   minutes(seconds / share() * (1.0 - share())).c_str());
   else
-    std::snprintf(text.data(), text.size(), "%zu  %.1f frames/s  ", done_, rate);
+    std::snprintf(text.data(), text.size(), "%zu  %.1f frames/s", done_, rate);
   if (what_ == Of::kRecording) return text.data();
-  return std::string(text.data()) + std::to_string(keyframes_) + " key frames  " +
+  return std::string(text.data()) + "  " + std::to_string(keyframes_) + " key frames  " +
          name_of(result.state);
 }
 
