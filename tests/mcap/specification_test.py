@@ -28,12 +28,18 @@ outputs:
   - {type: mcap, file: none.mcap, compression: none}
 runtime: {mode: inline}
 """
+FULL = """tracker: {type: orb}
+local_mapper: {type: orb}
+outputs:
+  - {type: mcap, file: full.mcap}
+  - {type: trajectory}
+"""
 
 
-def stillpoint(*arguments):
+def stillpoint(*arguments, exit_code=0):
     done = subprocess.run([PROGRAM, *map(str, arguments)], capture_output=True, text=True)
-    if done.returncode != 0:
-        raise RuntimeError(f"stillpoint {arguments[0]}: {done.stderr}")
+    if done.returncode != exit_code:
+        raise RuntimeError(f"stillpoint {arguments[0]} ended with {done.returncode}: {done.stderr}")
     return done
 
 
@@ -204,6 +210,20 @@ class Run(unittest.TestCase):
             self.assertEqual(len(torn.chunks), whole)
             self.assertTrue(all(torn.messages[topic] == self.messages[topic][:len(torn.messages[topic])]
                                 for topic in torn.messages))
+
+
+class FullDisk(unittest.TestCase):
+    def test_is_told_once_and_the_other_outputs_are_kept(self):
+        out = FOLDER / "full"
+        shutil.rmtree(out, ignore_errors=True)
+        out.mkdir()
+        (out / "full.mcap").symlink_to("/dev/full")
+        (FOLDER / "full.yaml").write_text(SCENE + FULL)
+        done = stillpoint("run", FOLDER / "full.yaml", "-o", out, exit_code=1)
+        self.assertEqual(done.stderr.count("No space left on device"), 1, done.stderr)
+        self.assertIn("error: output (mcap) failed", done.stderr)
+        self.assertIn("full.mcap: cannot write", done.stderr)
+        self.assertGreater(len((out / "trajectory.txt").read_text().splitlines()), 1)
 
 
 class Recording(unittest.TestCase):
