@@ -2,12 +2,14 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <csignal>
 #include <filesystem>
 #include <opencv2/imgcodecs.hpp>
 #include <regex>
 #include <sstream>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "support/simulated_recording.hpp"
@@ -26,10 +28,17 @@ class Record : public ::testing::Test {
  protected:
   fs::path out() const { return folder_.path() / "out"; }
 
-  Outcome record(std::vector<std::string> arguments) const {
+  static Outcome record_to(const fs::path& target, std::vector<std::string> arguments) {
     arguments.insert(arguments.begin(), "record");
-    arguments.insert(arguments.end(), {"-o", out().string()});
+    arguments.insert(arguments.end(), {"-o", target.string()});
     return call(std::move(arguments));
+  }
+  Outcome record(std::vector<std::string> arguments) const {
+    return record_to(out(), std::move(arguments));
+  }
+  static std::vector<std::string> pipeline_for(const RecordingCopy& recording) {
+    return {"orb_baseline", "--dataset", recording.path().string(), "--camera",
+            (recording.path() / "camera.yaml").string()};
   }
   /// A pipeline whose source renders a small scene.
   std::string simulated_pipeline(int frames) const {
@@ -81,9 +90,7 @@ class Record : public ::testing::Test {
 
 TEST_F(Record, ARecordingOfARecordingIsTheSame) {
   const RecordingCopy original(kFrames);
-  const std::string camera = (original.path() / "camera.yaml").string();
-  const Outcome outcome =
-      record({"orb_baseline", "--dataset", original.path().string(), "--camera", camera});
+  const Outcome outcome = record(pipeline_for(original));
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_THAT(outcome.out, AllOf(HasSubstr("12 frames of 0.4 s, 0 dropped"),
                                  HasSubstr("--camera " + out().string() + "/camera.yaml")));
@@ -98,8 +105,7 @@ TEST_F(Record, ARecordingOfARecordingIsTheSame) {
           << file;
     }
   EXPECT_FALSE(fs::exists(out() / "labels"));
-  EXPECT_EQ(trajectory_of_recording(), trajectory({"orb_baseline", "--dataset",
-                                                   original.path().string(), "--camera", camera}));
+  EXPECT_EQ(trajectory_of_recording(), trajectory(pipeline_for(original)));
 }
 
 TEST_F(Record, ARecordingOfTheSimulatorGivesItsTrajectory) {
@@ -114,7 +120,10 @@ TEST_F(Record, ARecordingOfTheSimulatorGivesItsTrajectory) {
 }
 
 TEST_F(Record, AtTheSensorsPaceEveryFrameIsWrittenOrCounted) {
-  const Outcome outcome = record({simulated_pipeline(kFrames), "--set", "runtime.pace=sensor"});
+  const RecordingCopy original(kFrames);
+  std::vector<std::string> arguments = pipeline_for(original);
+  arguments.insert(arguments.end(), {"--set", "runtime.pace=sensor"});
+  const Outcome outcome = record(std::move(arguments));
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   std::smatch found;
   ASSERT_TRUE(
@@ -126,8 +135,8 @@ TEST_F(Record, AtTheSensorsPaceEveryFrameIsWrittenOrCounted) {
 
 TEST_F(Record, WritesOverNothing) {
   folder_.write("out/mine.txt", "precious");
-  const std::string pipeline = simulated_pipeline(kFrames);
-  const Outcome folder = record({pipeline});
+  const RecordingCopy original(1);
+  const Outcome folder = record(pipeline_for(original));
   EXPECT_EQ(folder.exit_code, 2);
   EXPECT_EQ(folder.err,
             "error: " + out().string() +
@@ -135,7 +144,7 @@ TEST_F(Record, WritesOverNothing) {
   EXPECT_EQ(text_of(out() / "mine.txt"), "precious");
   EXPECT_FALSE(fs::exists(out() / "rgb"));
   const fs::path mcap = folder_.write("old.mcap", "precious");
-  const Outcome file = call({"record", pipeline, "-o", mcap.string()});
+  const Outcome file = record_to(mcap, pipeline_for(original));
   EXPECT_EQ(file.exit_code, 2);
   EXPECT_THAT(file.err, HasSubstr("there is something already"));
   EXPECT_EQ(text_of(mcap), "precious");
@@ -164,9 +173,9 @@ TEST_F(Record, AKilledOneLeavesWhatItsListsName) {
 
 TEST_F(Record, AFolderThatCannotBeMadeIsNamed) {
   folder_.write("file", "");
+  const RecordingCopy original(1);
   for (const char* target : {"file/recording", "file/recording.mcap"}) {
-    const Outcome outcome =
-        call({"record", simulated_pipeline(kFrames), "-o", (folder_.path() / target).string()});
+    const Outcome outcome = record_to(folder_.path() / target, pipeline_for(original));
     EXPECT_EQ(outcome.exit_code, 2);
     EXPECT_THAT(outcome.err,
                 AllOf(HasSubstr("cannot make the folder"), HasSubstr("Not a directory")));
@@ -174,7 +183,10 @@ TEST_F(Record, AFolderThatCannotBeMadeIsNamed) {
 }
 
 TEST_F(Record, QuietlyItSaysNothing) {
-  const Outcome outcome = record({simulated_pipeline(2), "--quiet"});
+  const RecordingCopy original(1);
+  std::vector<std::string> arguments = pipeline_for(original);
+  arguments.emplace_back("--quiet");
+  const Outcome outcome = record(std::move(arguments));
   EXPECT_EQ(outcome.exit_code, 0);
   EXPECT_THAT(outcome.out + outcome.err, IsEmpty());
 }

@@ -151,7 +151,7 @@ void add_record(CLI::App& app) {
   command
       ->add_option("-o,--output", arguments->output,
                    "New folder for the recording, or new file that ends in .mcap")
-      ->type_name("DIR|FILE.mcap")
+      ->type_name("DIR")
       ->required();
   command->add_flag("-q,--quiet", arguments->quiet, "Print only warnings and errors");
   command->callback([arguments] { record(*arguments); });
