@@ -113,6 +113,7 @@ void record_frames(Stages stages, const RuntimeOptions& runtime, const RecordArg
 }
 
 void record(const RecordArguments& arguments) {
+  require_new(arguments.output);
   Console console(arguments.quiet);
   std::optional<LateCalls> loading(watch_loading());
   Registry registry;

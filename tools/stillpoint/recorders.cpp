@@ -14,23 +14,7 @@ namespace {
 
 namespace mcap = mcap_writer;
 
-void refuse_existing(const std::filesystem::path& target) {
-  std::error_code error;  // of a folder that is none, which is told later
-  const auto status = std::filesystem::status(target, error);
-  if (!std::filesystem::exists(status)) return;
-  if (std::filesystem::is_directory(status) && std::filesystem::is_empty(target, error)) return;
-  throw Error(Fault::kUsage, "there is something already", target.string(),
-              "name another target or remove this one");
-}
-
-/// Not there yet, or an empty folder.
-std::filesystem::path new_folder(std::filesystem::path folder) {
-  refuse_existing(folder);
-  return folder;
-}
-
-std::filesystem::path new_file(const std::filesystem::path& file) {
-  refuse_existing(file);
+std::filesystem::path in_made_folder(const std::filesystem::path& file) {
   std::error_code error;
   if (file.has_parent_path()) std::filesystem::create_directories(file.parent_path(), error);
   if (error)
@@ -49,8 +33,17 @@ cv::Mat raw_depth(const cv::Mat& metres, double factor) {
 
 }  // namespace
 
+void require_new(const std::filesystem::path& target) {
+  std::error_code error;  // of a folder that is none, which is told later
+  const auto status = std::filesystem::status(target, error);
+  if (!std::filesystem::exists(status)) return;
+  if (std::filesystem::is_directory(status) && std::filesystem::is_empty(target, error)) return;
+  throw Error(Fault::kUsage, "there is something already", target.string(),
+              "name another target or remove this one");
+}
+
 FolderRecorder::FolderRecorder(std::filesystem::path folder, CameraModel sensor)
-    : folder_(new_folder(std::move(folder))), sensor_(std::move(sensor)), writer_(folder_, false) {}
+    : folder_(std::move(folder)), sensor_(std::move(sensor)), writer_(folder_, false) {}
 
 void FolderRecorder::frame(const FrameReport& report) {
   const Frame& frame = *report.frame;
@@ -82,7 +75,7 @@ void FolderRecorder::write_camera(const Camera& camera) const {
 
 // Topics as of a RealSense's ROS node.
 McapRecorder::McapRecorder(const std::filesystem::path& file)
-    : writer_(new_file(file)),
+    : writer_(in_made_folder(file)),
       color_(writer_.add_channel<mcap::Image>("/camera/color/image_raw")),
       color_camera_(writer_.add_channel<mcap::CameraInfo>("/camera/color/camera_info")),
       depth_(writer_.add_channel<mcap::Image>("/camera/aligned_depth_to_color/image_raw")),

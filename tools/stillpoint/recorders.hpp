@@ -12,12 +12,14 @@
 
 namespace stillpoint {
 
+/// Throws Error(kUsage) unless the target is an empty folder or not there.
+void require_new(const std::filesystem::path& target);
+
 /// A folder of the TUM RGB-D benchmark with camera.yaml. At any moment its lists name the images
 /// that are there.
 class FolderRecorder final : public Output {
  public:
-  /// Depth is written in units and within the range of `sensor`. Throws Error(kUsage) for a folder
-  /// that is not empty.
+  /// Depth is written in units of `sensor`. Throws Error(kUsage) when the folder cannot be made.
   FolderRecorder(std::filesystem::path folder, CameraModel sensor);
   void frame(const FrameReport& report) override;
 
@@ -34,7 +36,7 @@ class FolderRecorder final : public Output {
 /// camera.
 class McapRecorder final : public Output {
  public:
-  /// Throws Error(kUsage) for a file that is there.
+  /// Throws Error(kUsage) when the folder of the file cannot be made.
   explicit McapRecorder(const std::filesystem::path& file);
   void frame(const FrameReport& report) override;
   void finish(const RunSummary& summary) override;
