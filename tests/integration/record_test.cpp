@@ -22,7 +22,7 @@ using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
-constexpr int kFrames = 12;
+constexpr int kRecordedFrames = 12;
 
 class Record : public ::testing::Test {
  protected:
@@ -89,7 +89,7 @@ class Record : public ::testing::Test {
 };
 
 TEST_F(Record, ARecordingOfARecordingIsTheSame) {
-  const RecordingCopy original(kFrames);
+  const RecordingCopy original(kRecordedFrames);
   const Outcome outcome = record(pipeline_for(original));
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_THAT(outcome.out, AllOf(HasSubstr("12 frames of 0.4 s, 0 dropped"),
@@ -109,18 +109,18 @@ TEST_F(Record, ARecordingOfARecordingIsTheSame) {
 }
 
 TEST_F(Record, ARecordingOfTheSimulatorGivesItsTrajectory) {
-  const std::string pipeline = simulated_pipeline(kFrames);
+  const std::string pipeline = simulated_pipeline(kRecordedFrames);
   const Outcome outcome = record({pipeline});
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
-  EXPECT_EQ(count_whole_frames(), static_cast<std::size_t>(kFrames));
+  EXPECT_EQ(count_whole_frames(), static_cast<std::size_t>(kRecordedFrames));
   EXPECT_FALSE(fs::exists(out() / "groundtruth.txt"));  // rendered in memory: there is no file
   const std::string direct = trajectory({pipeline});
-  EXPECT_EQ(std::count(direct.begin(), direct.end(), '\n'), kFrames + 1);
+  EXPECT_EQ(std::count(direct.begin(), direct.end(), '\n'), kRecordedFrames + 1);
   EXPECT_EQ(trajectory_of_recording(), direct);
 }
 
 TEST_F(Record, AtTheSensorsPaceEveryFrameIsWrittenOrCounted) {
-  const RecordingCopy original(kFrames);
+  const RecordingCopy original(kRecordedFrames);
   std::vector<std::string> arguments = pipeline_for(original);
   arguments.insert(arguments.end(), {"--set", "runtime.pace=sensor"});
   const Outcome outcome = record(std::move(arguments));
@@ -129,7 +129,7 @@ TEST_F(Record, AtTheSensorsPaceEveryFrameIsWrittenOrCounted) {
   ASSERT_TRUE(
       std::regex_search(outcome.out, found, std::regex(R"((\d+) frames of .*, (\d+) dropped)")))
       << outcome.out;
-  EXPECT_EQ(std::stoi(found[1]) + std::stoi(found[2]), kFrames);
+  EXPECT_EQ(std::stoi(found[1]) + std::stoi(found[2]), kRecordedFrames);
   EXPECT_EQ(count_whole_frames(), std::stoul(found[1]));
 }
 
