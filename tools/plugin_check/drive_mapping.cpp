@@ -199,7 +199,8 @@ class OutputDrive final : public FrameDrive<Output> {
                              .seed = 1,
                              .mode = "inline",
                              .complete = false,
-                             .failure = "tracking (orb) failed on frame 3: out of memory"};
+                             .failure = "tracking (orb) failed on frame 3: out of memory",
+                             .dense_map = [] { return std::vector<LabelledPoint>(3); }};
     observer_.call("finish", {}, [&] { stage_.finish(summary); });
   }
 

@@ -23,8 +23,8 @@ std::string with_bar(double share, const std::string& text, int columns) {
 
 }  // namespace
 
-Progress::Progress(Console& console, std::optional<std::size_t> frames)
-    : console_(console), frames_(frames && *frames > 0 ? frames : std::nullopt) {}
+Progress::Progress(Console& console, std::optional<std::size_t> frames, Of what)
+    : console_(console), frames_(frames && *frames > 0 ? frames : std::nullopt), what_(what) {}
 
 void Progress::frame(const FrameReport& report) {
   done_ = report.frame->index + 1;
@@ -55,12 +55,13 @@ std::string Progress::describe(double seconds, const TrackResult& result) const 
   const double rate = static_cast<double>(processed_) / std::max(seconds, 1e-9);
   std::array<char, 160> text{};
   if (frames_)
-    std::snprintf(text.data(), text.size(), "%zu/%zu  %3.0f %%  %.1f frames/s  %s left  ", done_,
+    std::snprintf(text.data(), text.size(), "%zu/%zu  %3.0f %%  %.1f frames/s  %s left", done_,
                   *frames_, 100.0 * share(), rate,
                   minutes(seconds / share() * (1.0 - share())).c_str());
   else
-    std::snprintf(text.data(), text.size(), "%zu  %.1f frames/s  ", done_, rate);
-  return std::string(text.data()) + std::to_string(keyframes_) + " key frames  " +
+    std::snprintf(text.data(), text.size(), "%zu  %.1f frames/s", done_, rate);
+  if (what_ == Of::kRecording) return text.data();
+  return std::string(text.data()) + "  " + std::to_string(keyframes_) + " key frames  " +
          name_of(result.state);
 }
 

@@ -15,8 +15,10 @@ namespace stillpoint {
 /// seconds or ten per cent.
 class Progress final : public Output {
  public:
+  /// Whether there is more than frames to count.
+  enum class Of { kTracking, kRecording };
   /// `frames` to expect, when known.
-  Progress(Console& console, std::optional<std::size_t> frames);
+  Progress(Console& console, std::optional<std::size_t> frames, Of what = Of::kTracking);
   void frame(const FrameReport& report) override;
   void finish(const RunSummary&) override { console_.status(""); }
 
@@ -29,6 +31,7 @@ class Progress final : public Output {
 
   Console& console_;
   const std::optional<std::size_t> frames_;
+  const Of what_;
   const Clock::time_point start_ = Clock::now();
   Clock::time_point last_shown_ = start_;
   double last_share_ = 0.0;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 #include <string>
+#include <vector>
 
 #include "simulation/png_file.hpp"
 #include "stillpoint/error.hpp"
@@ -17,11 +18,13 @@ std::string seconds(double time) {
   return text.data();
 }
 
-void make_folders(const std::filesystem::path& folder) {
+void make_folders(const std::filesystem::path& folder, bool labels) {
   if (std::filesystem::exists(folder / "rgb.txt"))
     throw Error(Fault::kUsage, "there is a recording already", folder.string(),
                 "name another folder or remove this one");
-  for (const char* name : {"rgb", "depth", "labels", "instances"}) {
+  std::vector<const char*> names = {"rgb", "depth"};
+  if (labels) names.insert(names.end(), {"labels", "instances"});
+  for (const char* name : names) {
     std::error_code error;
     std::filesystem::create_directories(folder / name, error);
     if (error)
@@ -32,8 +35,9 @@ void make_folders(const std::filesystem::path& folder) {
 
 }  // namespace
 
-RecordingWriter::RecordingWriter(const std::filesystem::path& folder) : folder_(folder) {
-  make_folders(folder_);
+RecordingWriter::RecordingWriter(const std::filesystem::path& folder, bool labels)
+    : folder_(folder), labels_(labels) {
+  make_folders(folder_, labels_);
   colors_ = open("rgb.txt", "# color images\n# timestamp filename\n");
   depths_ = open("depth.txt", "# depth maps\n# timestamp filename\n");
   associations_ = open("associations.txt", "");
@@ -53,8 +57,10 @@ RecordingWriter::Names RecordingWriter::write_images(const SimulatedFrame& frame
   const std::string depth_name = seconds(frame.depth_time) + ".png";
   write_png(folder_ / "rgb" / color_name, frame.bgr);
   write_png(folder_ / "depth" / depth_name, frame.depth);
-  write_png(folder_ / "labels" / color_name, frame.labels);
-  write_png(folder_ / "instances" / color_name, frame.instances);
+  if (labels_) {
+    write_png(folder_ / "labels" / color_name, frame.labels);
+    write_png(folder_ / "instances" / color_name, frame.instances);
+  }
   return {seconds(frame.time) + " rgb/" + color_name,
           seconds(frame.depth_time) + " depth/" + depth_name};
 }

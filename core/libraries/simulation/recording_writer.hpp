@@ -1,4 +1,4 @@
-// Writes a simulated recording as a folder of the TUM RGB-D benchmark, with labels and truth.
+// Writes a recording as a folder of the TUM RGB-D benchmark; a simulated one with labels and truth.
 #pragma once
 
 #include <filesystem>
@@ -11,12 +11,13 @@
 
 namespace stillpoint::simulation {
 
-/// rgb/, depth/, labels/, instances/, rgb.txt, depth.txt, associations.txt, groundtruth.txt.
-/// Names are time stamps in seconds; labels and instances have those of their colour image.
+/// rgb/, depth/, with `labels` labels/ and instances/; rgb.txt, depth.txt, associations.txt,
+/// groundtruth.txt. Names are time stamps in seconds; labels and instances have those of their
+/// colour image.
 class RecordingWriter {
  public:
   /// Makes the folder. Throws Error(kUsage) when it holds a recording or cannot be written to.
-  explicit RecordingWriter(const std::filesystem::path& folder);
+  explicit RecordingWriter(const std::filesystem::path& folder, bool labels = true);
 
   /// May be called by several threads, which share out the frames from the first on. The lists of
   /// images name a frame when all before it are there.
@@ -35,6 +36,7 @@ class RecordingWriter {
   void list(int index, const Names& names);
 
   std::filesystem::path folder_;
+  bool labels_;
   std::mutex mutex_;              // of what follows
   std::map<int, Names> waiting_;  // for frames before
   int listed_ = 0;                // frames

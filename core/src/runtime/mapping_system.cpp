@@ -117,8 +117,8 @@ std::vector<LabelledPoint> MappingSystem::dense_points() {
   return map_backend_.call_unmeasured({}, &MapBackend::occupied);
 }
 
-void MappingSystem::save(const std::filesystem::path& directory) {
-  if (!map_backend_.present()) return;
+bool MappingSystem::save(const std::filesystem::path& directory) {
+  if (!map_backend_.present()) return false;
   const std::lock_guard lock(dense_mutex_);
   map_backend_.call_unmeasured({}, [&](MapBackend& backend) {
     std::error_code error;
@@ -128,6 +128,7 @@ void MappingSystem::save(const std::filesystem::path& directory) {
                   "choose another folder for the run");
     backend.save(directory);
   });
+  return true;
 }
 
 void MappingSystem::map(NewKeyFrame item) {

@@ -215,12 +215,12 @@ void Pipeline::finish_outputs() {
   const MapStore::Snapshot map = mapping_.snapshot();
   const SourceReport source = feed_ ? feed_->report() : SourceReport();
   const std::vector<StageTime> times = times_.take();
-  if (!map_directory_.empty()) keep_failure_of([this] { mapping_.save(map_directory_); });
+  if (!map_directory_.empty()) keep_failure_of([&] { map_is_saved_ = mapping_.save(map_directory_); });
   for (OutputStage& output : outputs_) output.finish([&] { return summary(*map, source, times); });
 }
 
 RunSummary Pipeline::summary(const SparseMap& map, const SourceReport& source,
-                             const std::vector<StageTime>& times) const {
+                             const std::vector<StageTime>& times) {
   return {.map = map,
           .poses = poses_,
           .source = source,
@@ -237,7 +237,9 @@ RunSummary Pipeline::summary(const SparseMap& map, const SourceReport& source,
           .segmentation_failures = segmentation_.failures(),
           .segmentation_failure = segmentation_.first_failure(),
           .complete = !stop_.requested(),
-          .failure = message_of(stop_.failure())};
+          .failure = message_of(stop_.failure()),
+          .map_directory = map_is_saved_ ? map_directory_ : std::filesystem::path(),
+          .dense_map = [this] { return mapping_.dense_points(); }};
 }
 
 int Pipeline::dropped_reports() const {

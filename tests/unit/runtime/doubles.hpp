@@ -259,6 +259,9 @@ class FakeBackend final : public MapBackend {
       if (poses.contains(m.keyframe)) poses[m.keyframe] = m.world_from_camera;
   }
   void save(const std::filesystem::path&) override { journal_.write("save", 0); }
+  std::vector<LabelledPoint> occupied() const override {
+    return std::vector<LabelledPoint>(poses.size());
+  }
 
   std::map<KeyFrameId, Pose> poses;
 
@@ -282,6 +285,8 @@ class FakeOutput final : public Output {
     dropped_reports = summary.dropped_reports;
     complete = summary.complete;
     failure = summary.failure;
+    map_directory = summary.map_directory;
+    dense_points = summary.dense_map().size();
     ++finished;
     journal_.write("finish", 0);
   }
@@ -294,6 +299,8 @@ class FakeOutput final : public Output {
   int dropped_reports = -1;
   bool complete = false;
   std::string failure;
+  std::filesystem::path map_directory;
+  std::size_t dense_points = 0;
   int finished = 0;
 
  private:

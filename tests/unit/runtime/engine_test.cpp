@@ -50,6 +50,18 @@ TEST_P(EngineInBothModes, EveryFrameGoesThroughEveryBox) {
   EXPECT_EQ(f.output->failure, "");
   EXPECT_EQ(f.output->poses.size(), 40u);
   EXPECT_EQ(f.output->source.skipped, 2u);
+  EXPECT_EQ(f.output->dense_points, 20u);
+  EXPECT_EQ(f.output->map_directory, f.stages().map_directory);
+}
+
+TEST_P(EngineInBothModes, WithoutADenseMapOutputsSeeNone) {
+  EngineFixture f(5);
+  Stages stages = f.stages();
+  stages.map_backend = {};
+  Engine(std::move(stages), runtime(GetParam()), {}).run();
+  EXPECT_EQ(f.output->finished, 1);
+  EXPECT_EQ(f.output->dense_points, 0u);
+  EXPECT_EQ(f.output->map_directory, "");
 }
 
 TEST(Engine, ThreadedTheMovingCheckRunsBesideTheExtractionOfFeatures) {

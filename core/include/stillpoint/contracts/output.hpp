@@ -2,11 +2,14 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "stillpoint/contracts/frame.hpp"
+#include "stillpoint/contracts/labelled_point.hpp"
 #include "stillpoint/contracts/map_evidence.hpp"
 #include "stillpoint/contracts/moving_points.hpp"
 #include "stillpoint/contracts/segmentation.hpp"
@@ -63,19 +66,24 @@ struct RunSummary {
   double cpu_seconds = 0.0;  ///< of the whole process during the run
   double recorded_seconds = 0.0;
   long long seed = 0;
-  std::string mode;                  ///< "inline" or "threaded"
-  int unlabelled_frames = 0;         ///< without labels although there is a segmenter
-  int segmentation_failures = 0;     ///< images that it failed on, with `on_failure: continue`
-  std::string segmentation_failure;  ///< the message of the first of them
-  bool complete = true;              ///< false when the run was stopped or failed
-  std::string failure;               ///< the message of the stage that failed, if any
+  std::string mode;                     ///< "inline" or "threaded"
+  int unlabelled_frames = 0;            ///< without labels although there is a segmenter
+  int segmentation_failures = 0;        ///< images that it failed on, with `on_failure: continue`
+  std::string segmentation_failure;     ///< the message of the first of them
+  bool complete = true;                 ///< false when the run was stopped or failed
+  std::string failure;                  ///< the message of the stage that failed, if any
+  std::filesystem::path map_directory;  ///< the dense map's files; empty: there are none
+  /// What the dense map holds, in the world, as MapBackend::occupied(); empty without one.
+  std::function<std::vector<LabelledPoint>()> dense_map = [] {
+    return std::vector<LabelledPoint>();
+  };
 };
 
 /// A copy of a report may be kept; its images are shared.
 class STILLPOINT_EXPORT Output {
  public:
   static constexpr const char* kKind = "output";
-  static constexpr std::uint32_t kApi = 1;  ///< see kPluginApi
+  static constexpr std::uint32_t kApi = 2;  ///< see kPluginApi
   virtual ~Output();
 
   /// In order of the frames. Threaded, tracking is up to eight frames ahead and then waits; with

@@ -45,8 +45,8 @@ class MappingSystem {
   int loops() const { return loops_; }
   /// What the dense map holds now. From any thread.
   std::vector<LabelledPoint> dense_points();
-  /// Writes the dense map into `directory`, if there is one. Only after end().
-  void save(const std::filesystem::path& directory);
+  /// Writes the dense map into `directory`; false: there is none. Only after end().
+  bool save(const std::filesystem::path& directory);
 
  private:
   // In all of these, `frame` is the key frame's that asked first, for messages and times.

@@ -46,7 +46,7 @@ class Pipeline {
   void end_threads();
   void finish_outputs();
   RunSummary summary(const SparseMap& map, const SourceReport& source,
-                     const std::vector<StageTime>& times) const;
+                     const std::vector<StageTime>& times);
   int dropped_reports() const;
   void keep_failure_of(const std::function<void()>& step);
   void throw_failure() const;
@@ -68,6 +68,7 @@ class Pipeline {
   FramePtr pushed_;  // the last one
   std::vector<TrackedPose> poses_;
   bool finished_ = false;
+  bool map_is_saved_ = false;
   double wall_seconds_ = 0.0;
   double cpu_seconds_ = 0.0;
 

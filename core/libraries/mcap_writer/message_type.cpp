@@ -1,0 +1,108 @@
+#include "mcap_writer/message_type.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <sstream>
+#include <stdexcept>
+#include <vector>
+
+namespace stillpoint::mcap_writer {
+namespace {
+
+struct Definition {
+  std::string_view type;
+  std::string_view fields;
+};
+
+// The interfaces of ROS 2, alike from Foxy to Jazzy. Types of their own package are named in full.
+constexpr std::array kDefinitions{
+    Definition{"builtin_interfaces/Time", "int32 sec\nuint32 nanosec\n"},
+    Definition{"std_msgs/Header", "builtin_interfaces/Time stamp\nstring frame_id\n"},
+    Definition{"std_msgs/String", "string data\n"},
+    Definition{"geometry_msgs/Point", "float64 x\nfloat64 y\nfloat64 z\n"},
+    Definition{"geometry_msgs/Vector3", "float64 x\nfloat64 y\nfloat64 z\n"},
+    Definition{"geometry_msgs/Quaternion", "float64 x 0\nfloat64 y 0\nfloat64 z 0\nfloat64 w 1\n"},
+    Definition{"geometry_msgs/Pose",
+               "geometry_msgs/Point position\ngeometry_msgs/Quaternion orientation\n"},
+    Definition{"geometry_msgs/PoseStamped", "std_msgs/Header header\ngeometry_msgs/Pose pose\n"},
+    Definition{"geometry_msgs/PoseWithCovariance",
+               "geometry_msgs/Pose pose\nfloat64[36] covariance\n"},
+    Definition{"geometry_msgs/Twist",
+               "geometry_msgs/Vector3 linear\ngeometry_msgs/Vector3 angular\n"},
+    Definition{"geometry_msgs/TwistWithCovariance",
+               "geometry_msgs/Twist twist\nfloat64[36] covariance\n"},
+    Definition{"geometry_msgs/Transform",
+               "geometry_msgs/Vector3 translation\ngeometry_msgs/Quaternion rotation\n"},
+    Definition{
+        "geometry_msgs/TransformStamped",
+        "std_msgs/Header header\nstring child_frame_id\ngeometry_msgs/Transform transform\n"},
+    Definition{"tf2_msgs/TFMessage", "geometry_msgs/TransformStamped[] transforms\n"},
+    Definition{"nav_msgs/Odometry",
+               "std_msgs/Header header\nstring child_frame_id\n"
+               "geometry_msgs/PoseWithCovariance pose\ngeometry_msgs/TwistWithCovariance twist\n"},
+    Definition{"nav_msgs/Path", "std_msgs/Header header\ngeometry_msgs/PoseStamped[] poses\n"},
+    Definition{"nav_msgs/MapMetaData",
+               "builtin_interfaces/Time map_load_time\nfloat32 resolution\nuint32 width\n"
+               "uint32 height\ngeometry_msgs/Pose origin\n"},
+    Definition{"nav_msgs/OccupancyGrid",
+               "std_msgs/Header header\nnav_msgs/MapMetaData info\nint8[] data\n"},
+    Definition{"sensor_msgs/Image",
+               "std_msgs/Header header\nuint32 height\nuint32 width\nstring encoding\n"
+               "uint8 is_bigendian\nuint32 step\nuint8[] data\n"},
+    Definition{"sensor_msgs/CompressedImage",
+               "std_msgs/Header header\nstring format\nuint8[] data\n"},
+    Definition{"sensor_msgs/RegionOfInterest",
+               "uint32 x_offset\nuint32 y_offset\nuint32 height\nuint32 width\nbool do_rectify\n"},
+    Definition{"sensor_msgs/CameraInfo",
+               "std_msgs/Header header\nuint32 height\nuint32 width\nstring distortion_model\n"
+               "float64[] d\nfloat64[9] k\nfloat64[9] r\nfloat64[12] p\nuint32 binning_x\n"
+               "uint32 binning_y\nsensor_msgs/RegionOfInterest roi\n"},
+    Definition{"sensor_msgs/PointField",
+               "uint8 INT8=1\nuint8 UINT8=2\nuint8 INT16=3\nuint8 UINT16=4\nuint8 INT32=5\n"
+               "uint8 UINT32=6\nuint8 FLOAT32=7\nuint8 FLOAT64=8\nstring name\nuint32 offset\n"
+               "uint8 datatype\nuint32 count\n"},
+    Definition{"sensor_msgs/PointCloud2",
+               "std_msgs/Header header\nuint32 height\nuint32 width\n"
+               "sensor_msgs/PointField[] fields\nbool is_bigendian\nuint32 point_step\n"
+               "uint32 row_step\nuint8[] data\nbool is_dense\n"}};
+
+const Definition* find(std::string_view type) {
+  const auto* found = std::find_if(kDefinitions.begin(), kDefinitions.end(),
+                                   [&](const Definition& each) { return each.type == type; });
+  return found == kDefinitions.end() ? nullptr : found;
+}
+
+/// The type and all in it, each once, in the order in which they are met.
+void collect(const Definition& definition, std::vector<const Definition*>& all) {
+  if (std::find(all.begin(), all.end(), &definition) != all.end()) return;
+  all.push_back(&definition);
+  std::istringstream lines{std::string(definition.fields)};
+  for (std::string line; std::getline(lines, line);)
+    if (const Definition* part = find(line.substr(0, line.find_first_of(" ["))))
+      collect(*part, all);
+}
+
+}  // namespace
+
+std::string schema_name(std::string_view type) {
+  const std::size_t slash = type.find('/');
+  return std::string(type.substr(0, slash)) + "/msg" + std::string(type.substr(slash));
+}
+
+std::string schema_text(std::string_view type) {
+  const Definition* definition = find(type);
+  if (!definition) throw std::logic_error("no message type " + std::string(type));
+  std::vector<const Definition*> all;
+  collect(*definition, all);
+  std::string text(definition->fields);
+  for (std::size_t i = 1; i < all.size(); ++i) {
+    text += std::string(80, '=') + "\nMSG: ";
+    text += all[i]->type;
+    text += '\n';
+    text += all[i]->fields;
+  }
+  return text;
+}
+
+}  // namespace stillpoint::mcap_writer
