@@ -1,0 +1,35 @@
+// Recordings whose images stay as they are: two lists of files.
+#pragma once
+
+#include <vector>
+
+#include "importing/foreign_recording.hpp"
+#include "tum_recording/stamp_list.hpp"
+
+namespace stillpoint::importing {
+
+class ListedRecording final : public ForeignRecording {
+ public:
+  struct Lists {
+    std::vector<tum_recording::StampedImage> color, depth;
+    std::vector<StampedPose> truth;
+    std::vector<std::string> notes;
+  };
+
+  /// Throws Error(kData) when a list is empty or the first images do not fit the camera.
+  ListedRecording(Lists lists, const CameraModel& camera, std::size_t most_frames);
+
+  std::size_t size() const override;
+  ForeignFrame read(std::size_t index) override;
+
+ private:
+  std::vector<tum_recording::StampedImage> color_, depth_;
+};
+
+/// Poses by strictly rising time, however they came; of several of one time the first.
+std::vector<StampedPose> sorted_by_time(std::vector<StampedPose> poses);
+
+/// A line of `time tx ty tz qx qy qz qw`. Throws Error(kData) with file and line.
+StampedPose tum_pose_of(const tum_recording::ListLine& line, const std::filesystem::path& file);
+
+}  // namespace stillpoint::importing
