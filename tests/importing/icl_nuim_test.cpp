@@ -1,3 +1,5 @@
+#include "importing/icl_nuim.hpp"
+
 #include "importing/fixtures.hpp"
 
 namespace stillpoint::importing {
@@ -73,6 +75,65 @@ TEST_F(IclNuimTest, WhatIsWrongIsNamed) {
   EXPECT_THAT(refused(), HasSubstr("depth/0.png: is 320 x 240 pixels"));
   folder.write("associations.txt", "0 depth/0.png\n");
   EXPECT_THAT(refused(), HasSubstr("associations.txt:1: found 2 columns"));
+}
+
+class IclNuimRawTest : public ::testing::Test {
+ protected:
+  /// A wall 2 m in front of the camera, which looks along some direction.
+  void write(const std::string& stem, double units_per_metre) {
+    write_image(folder.path() / (stem + ".png"), flat_color());
+    std::string distances;
+    for (int y = 0; y < 480; ++y)
+      for (int x = 0; x < 640; ++x) {
+        const Eigen::Vector3d ray((x - 319.5) / 481.2, (y - 239.5) / 480, 1);
+        distances += std::to_string(2 * units_per_metre * ray.norm()) + ' ';
+      }
+    folder.write(stem + ".depth", distances);
+    const Pose pose = some_pose(2);
+    folder.write(stem + ".txt", line("cam_pos", units_per_metre * pose.translation()) +
+                                    line("cam_dir", pose.linear().col(2)) +
+                                    line("cam_up", pose.linear().col(1)) +
+                                    line("cam_lookat", {0, 0, 1}));
+  }
+  static std::string line(const std::string& key, const Eigen::Vector3d& v) {
+    char text[128];
+    std::snprintf(text, sizeof(text), "%-12s = [%.9f, %.9f, %.9f]';\n", key.c_str(), v.x(), v.y(),
+                  v.z());
+    return text;
+  }
+  void expect_wall(double time) const {
+    const Imported imported(folder.path());
+    for (const cv::Point pixel : {cv::Point(0, 0), cv::Point(320, 240), cv::Point(639, 100)})
+      EXPECT_EQ(imported.metres(0, pixel.x, pixel.y), 2.0);
+    EXPECT_NEAR(imported.read.pairs.at(0).color.time, time, 1e-6);
+    // As the same pose in the other form of the data set.
+    expect_pose(imported.truth().at(0).world_from_camera, mirrored_in_y(some_pose(2)));
+  }
+  TemporaryFolder folder;
+};
+
+TEST_F(IclNuimRawTest, DistancesBecomeDepth) {
+  write("scene_00_0003", 1);
+  expect_wall(0.1);
+}
+
+TEST_F(IclNuimRawTest, TheOfficeIsInCentimetres) {
+  write("scene_006", 100);
+  expect_wall(0.2);
+}
+
+TEST_F(IclNuimRawTest, WhatIsWrongIsNamed) {
+  write("scene_00_0000", 1);
+  const auto refused = [this] { return refusal([this] { Imported{folder.path()}; }); };
+  folder.write("scene_00_0000.depth", "1 2 3\n");
+  EXPECT_THAT(refused(), HasSubstr("scene_00_0000.depth: holds 3 numbers, the camera 'icl_nuim' "
+                                   "has 640 x 480 pixels"));
+  folder.write("scene_00_0000.depth", "1 2 three\n");
+  EXPECT_THAT(refused(), HasSubstr("scene_00_0000.depth: is no text of numbers"));
+  folder.write("scene_00_0000.txt", "cam_dir = [0, 0, 1]';\n");
+  EXPECT_THAT(refused(), HasSubstr("scene_00_0000.txt: has no vector cam_up"));
+  fs::remove(folder.path() / "scene_00_0000.txt");
+  EXPECT_THAT(refused(), HasSubstr("scene_00_0000.txt: no such file"));
 }
 
 }  // namespace

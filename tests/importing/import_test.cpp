@@ -99,6 +99,16 @@ TEST_F(Import, SaysWhatItLookedFor) {
   EXPECT_FALSE(fs::exists(out()));
 }
 
+TEST_F(Import, NamesARecordingInTheFolder) {
+  importing::write_image(folder_.path() / "chess/seq-02/frame-000000.color.png",
+                         importing::flat_color());
+  const Outcome outcome = import(folder_.path() / "chess");
+  EXPECT_EQ(outcome.exit_code, 3);
+  EXPECT_THAT(outcome.err,
+              AllOf(HasSubstr("chess: holds recordings, but is none; give one of them, such as"),
+                    HasSubstr("chess/seq-02")));
+}
+
 TEST_F(Import, ATumRecordingNeedsNone) {
   const RecordingCopy recording(2);
   const Outcome outcome = import(recording.path());

@@ -84,6 +84,8 @@ TEST_F(SevenScenesTest, WhatDoesNotFitIsNamed) {
   write(0, flat_depth(1000, {320, 240}));
   EXPECT_THAT(refused(), HasSubstr("frame-000000.depth.png: is 320 x 240 pixels, the camera "
                                    "'seven_scenes' has 640 x 480"));
+  write(0, flat_depth(1000), {320, 240});
+  EXPECT_THAT(refused(), HasSubstr("frame-000000.color.png: is 320 x 240 pixels"));
   write(0, flat_depth(1000));
   write_pose(0, "1 0 0 zero");
   EXPECT_THAT(refused(), HasSubstr("frame-000000.pose.txt: is no 4 x 4 matrix of numbers"));

@@ -23,7 +23,6 @@ std::unique_ptr<ForeignRecording> open_bonn(const std::filesystem::path& recordi
   if (std::filesystem::exists(truth)) {
     for (const tum_recording::ListLine& line : tum_recording::read_list_lines(truth))
       lists.truth.push_back(tum_pose_of(line, truth));
-    lists.truth = sorted_by_time(std::move(lists.truth));
     lists.notes.emplace_back(
         "the ground truth is that of the markers on the camera, 2 cm from its centre, as "
         "published");

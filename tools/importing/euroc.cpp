@@ -46,13 +46,6 @@ double nanoseconds_of(const ListLine& line, const std::filesystem::path& file) {
   return kNanosecond * static_cast<double>(*stamp);
 }
 
-void sort_images(std::vector<StampedImage>& images, const std::filesystem::path& folder) {
-  if (images.empty()) throw Error(Fault::kData, "has no images", folder.string());
-  std::ranges::stable_sort(images, {}, &StampedImage::time);
-  const auto same = [](const StampedImage& a, const StampedImage& b) { return a.time == b.time; };
-  images.erase(std::unique(images.begin(), images.end(), same), images.end());
-}
-
 /// By data.csv, or by the names of the images where there is none.
 std::vector<StampedImage> images_in(const std::filesystem::path& folder) {
   std::vector<StampedImage> images;
@@ -67,7 +60,7 @@ std::vector<StampedImage> images_in(const std::filesystem::path& folder) {
       if (const auto stamp = number_of(name))
         images.push_back({kNanosecond * static_cast<double>(*stamp), folder / "data" / name});
   }
-  sort_images(images, folder);
+  if (images.empty()) throw Error(Fault::kData, "has no images", folder.string());
   return images;
 }
 
@@ -153,7 +146,7 @@ std::vector<StampedPose> euroc_truth(const std::filesystem::path& mav0,
     pose.world_from_camera = pose.world_from_camera * truth_from_camera;
     poses.push_back(pose);
   }
-  return sorted_by_time(std::move(poses));
+  return poses;
 }
 
 }  // namespace

@@ -11,23 +11,11 @@
 namespace stillpoint::importing {
 namespace {
 
-constexpr double kIclNuimRate = 30;  // Hz; the data set has numbers instead of times
-
 using tum_recording::ListLine;
 using tum_recording::StampedImage;
 
 double icl_time(const ListLine& line, std::size_t column, const std::filesystem::path& file) {
   return tum_recording::stamp_of(line, column, file) / kIclNuimRate;
-}
-
-/// In a world with y down; see the header. The images agree: with the poses as published, the depth
-/// of one image does not fit that of another.
-Pose mirrored(const Pose& pose) {
-  const Eigen::DiagonalMatrix<double, 3> flip(1, -1, 1);
-  Pose result = Pose::Identity();
-  result.linear() = flip * pose.linear() * flip;
-  result.translation() = flip * pose.translation();
-  return result;
 }
 
 std::filesystem::path truth_of(const std::filesystem::path& folder) {
@@ -40,13 +28,20 @@ void read_icl_truth(const std::filesystem::path& file, ListedRecording::Lists& l
   for (const ListLine& line : tum_recording::read_list_lines(file)) {
     StampedPose pose = tum_pose_of(line, file);
     pose.time /= kIclNuimRate;
-    pose.world_from_camera = mirrored(pose.world_from_camera);
+    pose.world_from_camera = mirrored_in_y(pose.world_from_camera);
     lists.truth.push_back(pose);
   }
-  lists.truth = sorted_by_time(std::move(lists.truth));
 }
 
 }  // namespace
+
+Pose mirrored_in_y(const Pose& pose) {
+  const Eigen::DiagonalMatrix<double, 3> flip(1, -1, 1);
+  Pose result = Pose::Identity();
+  result.linear() = flip * pose.linear() * flip;
+  result.translation() = flip * pose.translation();
+  return result;
+}
 
 bool is_icl_nuim(const std::filesystem::path& recording) {
   const std::filesystem::path associations = recording / "associations.txt";

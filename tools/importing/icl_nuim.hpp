@@ -8,6 +8,12 @@
 
 namespace stillpoint::importing {
 
+constexpr double kIclNuimRate = 30;  ///< Hz; the data set has numbers instead of times
+
+/// A pose of a camera and a world whose y points up, as one of a camera and a world whose y points
+/// down.
+Pose mirrored_in_y(const Pose& pose);
+
 bool is_icl_nuim(const std::filesystem::path& recording);
 
 /// Images stay as they are. The data set states fy = -480 for a world with y up; with fy = 480 its

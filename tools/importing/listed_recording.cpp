@@ -1,6 +1,5 @@
 #include "importing/listed_recording.hpp"
 
-#include <algorithm>
 #include <array>
 #include <utility>
 
@@ -10,9 +9,10 @@
 namespace stillpoint::importing {
 
 ListedRecording::ListedRecording(Lists lists, const CameraModel& camera, std::size_t most_frames)
-    : color_(std::move(lists.color)), depth_(std::move(lists.depth)) {
+    : color_(sorted_by_time(std::move(lists.color))),
+      depth_(sorted_by_time(std::move(lists.depth))) {
   camera_ = camera;
-  truth_ = std::move(lists.truth);
+  truth_ = sorted_by_time(std::move(lists.truth));
   notes_ = std::move(lists.notes);
   if (color_.size() > most_frames) color_.resize(most_frames);
   if (depth_.size() > most_frames) depth_.resize(most_frames);
@@ -26,13 +26,6 @@ ForeignFrame ListedRecording::read(std::size_t index) {
   if (index < color_.size()) frame.color = kept_image(color_[index].time, color_[index].file);
   if (index < depth_.size()) frame.depth = kept_image(depth_[index].time, depth_[index].file);
   return frame;
-}
-
-std::vector<StampedPose> sorted_by_time(std::vector<StampedPose> poses) {
-  std::ranges::stable_sort(poses, {}, &StampedPose::time);
-  const auto same = [](const StampedPose& a, const StampedPose& b) { return a.time == b.time; };
-  poses.erase(std::unique(poses.begin(), poses.end(), same), poses.end());
-  return poses;
 }
 
 StampedPose tum_pose_of(const tum_recording::ListLine& line, const std::filesystem::path& file) {

@@ -1,6 +1,8 @@
 // Recordings whose images stay as they are: two lists of files.
 #pragma once
 
+#include <algorithm>
+#include <filesystem>
 #include <vector>
 
 #include "importing/foreign_recording.hpp"
@@ -26,8 +28,14 @@ class ListedRecording final : public ForeignRecording {
   std::vector<tum_recording::StampedImage> color_, depth_;
 };
 
-/// Poses by strictly rising time, however they came; of several of one time the first.
-std::vector<StampedPose> sorted_by_time(std::vector<StampedPose> poses);
+/// Images or poses by strictly rising time, however they came; of several of one time the first.
+template <class Stamped>
+std::vector<Stamped> sorted_by_time(std::vector<Stamped> all) {
+  std::ranges::stable_sort(all, {}, &Stamped::time);
+  const auto same = [](const Stamped& a, const Stamped& b) { return a.time == b.time; };
+  all.erase(std::unique(all.begin(), all.end(), same), all.end());
+  return all;
+}
 
 /// A line of `time tx ty tz qx qy qz qw`. Throws Error(kData) with file and line.
 StampedPose tum_pose_of(const tum_recording::ListLine& line, const std::filesystem::path& file);

@@ -47,6 +47,8 @@ class SevenScenes final : public ForeignRecording {
           "2.5 cm between them are not published and stay uncorrected; if your depth images are "
           "registered, name their camera with --camera");
     }
+    const std::filesystem::path first = folder / colors_.front();
+    check_size(reader_.color(first).size(), camera_, first.string());
     read_poses();
   }
 
@@ -56,13 +58,8 @@ class SevenScenes final : public ForeignRecording {
     const std::filesystem::path depth_file = beside(index, ".depth.png");
     cv::Mat depth = reader_.depth(depth_file);
     depth.setTo(0, depth == kNoDepth);
-    if (registration_) {
-      const Camera depth_camera = seven_scenes_depth_camera();
-      if (depth.cols != depth_camera.width || depth.rows != depth_camera.height)
-        check_size(depth.size(), camera_, depth_file.string());
-      depth = registration_->register_image(depth, camera_.depth_factor);
-    }
     check_size(depth.size(), camera_, depth_file.string());
+    if (registration_) depth = registration_->register_image(depth, camera_.depth_factor);
     return {kept_image(time(index), folder_ / colors_[index]), new_depth(time(index), depth)};
   }
 
