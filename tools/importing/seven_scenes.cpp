@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "importing/depth_registration.hpp"
 #include "importing/images.hpp"
@@ -14,7 +15,7 @@
 namespace stillpoint::importing {
 namespace {
 
-constexpr const char* kFramePrefix = "frame-";
+constexpr std::string_view kFramePrefix = "frame-";
 constexpr double kSevenScenesRate = 30;    // Hz; the data set has numbers instead of times
 constexpr std::uint16_t kNoDepth = 65535;  // in its depth images
 
@@ -65,7 +66,7 @@ class SevenScenes final : public ForeignRecording {
 
  private:
   double time(std::size_t index) const {
-    const auto number = number_of(frame_of_color(colors_[index])->substr(6));
+    const auto number = number_of(frame_of_color(colors_[index])->substr(kFramePrefix.size()));
     if (!number)
       throw Error(Fault::kData, "has no number in its name", (folder_ / colors_[index]).string());
     return static_cast<double>(*number) / kSevenScenesRate;

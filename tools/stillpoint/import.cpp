@@ -103,9 +103,9 @@ std::string all_layouts() {
 
 void add_import(CLI::App& app) {
   auto arguments = std::make_shared<ImportArguments>();
-  CLI::App* command = app.add_subcommand(
-      "import", "Make a recording of another data set one of the TUM benchmark's format");
-  command->add_option("recording", arguments->recording, "Folder, or the .sens file of ScanNet")
+  CLI::App* command =
+      app.add_subcommand("import", "Turn a recording of another data set into a TUM-format one");
+  command->add_option("recording", arguments->recording, "Its folder, or the .sens file of ScanNet")
       ->type_name("PATH")
       ->required();
   command->add_option("-o,--output", arguments->output, "New folder for the recording")
