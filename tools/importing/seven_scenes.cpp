@@ -44,9 +44,8 @@ class SevenScenes final : public ForeignRecording {
       registration_.emplace(seven_scenes_depth_camera(), camera_.undistorted(), Pose::Identity());
       notes_.emplace_back(
           "depth was moved from the depth camera (focal length 585) to the colour camera (525); "
-          "the "
-          "2.5 cm between them are not published and stay uncorrected; if your depth images are "
-          "registered, name their camera with --camera");
+          "the 2.5 cm between them are not published and stay uncorrected; if your depth images "
+          "are registered, name their camera with --camera");
     }
     const std::filesystem::path first = folder / colors_.front();
     check_size(reader_.color(first).size(), camera_, first.string());
