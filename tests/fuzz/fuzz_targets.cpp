@@ -11,6 +11,9 @@
 #include <string_view>
 
 #include "evaluation/trajectory.hpp"
+#include "importing/matrix_pose.hpp"
+#include "importing/sens_file.hpp"
+#include "importing/sens_writer.hpp"
 #include "segmenter_segnet/caffe_weights.hpp"
 #include "segmenter_segnet/network_definition.hpp"
 #include "segmenter_segnet/test_network.hpp"
@@ -195,6 +198,32 @@ FuzzTarget trajectory() {
           .words = {"nan", "inf", "1e308", "1e-400", "-", "\n", "\r\n", "#", ",", "0 0 0 0"}};
 }
 
+FuzzTarget sens() {
+  const auto file = [](std::int32_t color_kind, std::int32_t depth_kind) {
+    SensWriter writer;
+    writer.color_size = writer.depth_size = {9, 6};
+    writer.color_kind = color_kind;
+    writer.depth_kind = depth_kind;
+    const cv::Mat color(6, 9, CV_8UC3, cv::Scalar(1, 2, 3)), depth(6, 9, CV_16UC1, cv::Scalar(900));
+    writer.images = {{.color = color, .depth = depth, .time = 1},
+                     {.color = color, .depth = depth, .time = 2, .world_from_camera = {}}};
+    return writer.bytes();
+  };
+  return {.seeds = {file(1, 0), file(2, 1)}, .parse = [](const fs::path& path) {
+            importing::SensFile recording(path, 4);
+            for (std::size_t i = 0; i < recording.frames().size(); ++i) {
+              recording.color(i);
+              recording.depth(i);
+            }
+          }};
+}
+
+FuzzTarget matrix_pose() {
+  return {.seeds = {bytes_of_text("1 0 0 0.5\n0 1 0 -2e-3\n0 0 1 3\n0 0 0 1\n")},
+          .parse = [](const fs::path& file) { importing::read_matrix_pose(file); },
+          .words = {"nan", "-inf", "-1.#IND", "1e400", "1e308", "\n", "\t", "+", "-"}};
+}
+
 FuzzTarget configuration() {
   return {
       .seeds = {bytes_of_text("version: 1\nextends: " STILLPOINT_SOURCE_DIR
@@ -243,6 +272,8 @@ std::vector<NamedFuzzTarget> fuzz_targets() {
           {"PluginStamp", plugin_stamp},
           {"StampList", stamp_list},
           {"Trajectory", trajectory},
+          {"Sens", sens},
+          {"MatrixPose", matrix_pose},
           {"Configuration", configuration},
           {"SavedMap", saved_map}};
 }

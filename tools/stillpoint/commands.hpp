@@ -16,6 +16,7 @@ void add_ablate(CLI::App& app);
 void add_check(CLI::App& app);
 void add_compare(CLI::App& app);
 void add_evaluate(CLI::App& app);
+void add_import(CLI::App& app);
 void add_inspect(CLI::App& app);
 void add_map(CLI::App& app);
 void add_plugins(CLI::App& app);
