@@ -73,7 +73,7 @@ std::vector<Candidate> values(const std::string& name_in_help) {
   for (const auto& [name, category] : kConfigs)
     if (type == name)
       for (const std::string& config : config_names(category)) all.push_back({config, ""});
-  if (!all.empty() || type == "FILE") all.push_back({"<files>", ""});
+  if (!all.empty() || type == "FILE" || type == "PATH") all.push_back({"<files>", ""});
   if (type == "DIR") all.push_back({"<folders>", ""});
   if (type == "KIND")
     for (const KindApi& contract : Contracts::kKinds)

@@ -49,4 +49,15 @@ CameraModel camera_model(const CameraInfoMessage& info, bool rectified, const st
   return model;
 }
 
+CameraModel camera_in_bag(BagReader& bag, const TopicChoice& choice) {
+  for (const MessagePlace& place : bag.messages()) {
+    if (place.topic != choice.info) continue;
+    const Topic& topic = bag.topics()[place.topic];
+    const CameraInfoMessage info = read_camera_info(bag.read(place), topic.serialisation);
+    return camera_model(info, choice.rectified(), topic.name);
+  }
+  throw Error(Fault::kUsage, "the bag has no CameraInfo of " + choice.color.name, "",
+              "name its topic with --set source.info_topic=NAME, or a camera with --camera");
+}
+
 }  // namespace stillpoint::bag

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "bag/messages.hpp"
+#include "bag/topic_choice.hpp"
 #include "stillpoint/contracts/camera.hpp"
 
 namespace stillpoint::bag {
@@ -11,5 +12,8 @@ namespace stillpoint::bag {
 /// Throws Error(kData) when the camera is not calibrated, or its distortion is none that
 /// CameraModel has.
 CameraModel camera_model(const CameraInfoMessage& info, bool rectified, const std::string& name);
+
+/// That of the first message which says it. Throws Error(kUsage) when the bag has none.
+CameraModel camera_in_bag(BagReader& bag, const TopicChoice& choice);
 
 }  // namespace stillpoint::bag
