@@ -41,16 +41,6 @@ std::vector<double> times_of(const std::vector<bag::ImageStamp>& stamps) {
   return times;
 }
 
-void note_faults(const bag::ImageStamps& stamps, const std::string& topic,
-                 std::vector<std::string>& notes) {
-  if (stamps.unreadable > 0)
-    notes.push_back(topic + ": " + std::to_string(stamps.unreadable) +
-                    " messages are damaged and left out");
-  if (stamps.repeated > 0)
-    notes.push_back(topic + ": " + std::to_string(stamps.repeated) +
-                    " messages repeat a time stamp and are left out");
-}
-
 }  // namespace
 
 void BagSource::Options::visit(OptionVisitor& v) {
@@ -90,8 +80,9 @@ std::vector<BagSource::Pair> BagSource::make_pairs(const Options& options) {
   std::vector<bag::ImageStamps> stamps = bag::image_stamps(*bag_, {choice_.color, choice_.depth});
   std::vector<bag::ImageStamp>& color = stamps[0].images;
   std::vector<bag::ImageStamp>& depth = stamps[1].images;
-  note_faults(stamps[0], choice_.color.name, notes_);
-  note_faults(stamps[1], choice_.depth.name, notes_);
+  notes_ = stamps[0].warnings(choice_.color.name);
+  for (std::string& note : stamps[1].warnings(choice_.depth.name))
+    notes_.push_back(std::move(note));
   for (bag::ImageStamp& stamp : depth) stamp.time += options.time_offset;
   std::vector<Pair> pairs;
   for (const tum_recording::IndexPair& pair :

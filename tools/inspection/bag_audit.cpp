@@ -49,15 +49,6 @@ void audit_pairs(const std::vector<double>& color, const std::vector<double>& de
   audit.pairs = audit_stream(times);
 }
 
-void warn_of_stamps(const bag::ImageStamps& stamps, const std::string& topic, BagAudit& audit) {
-  if (stamps.unreadable > 0)
-    audit.warnings.push_back(topic + ": " + std::to_string(stamps.unreadable) +
-                             " messages are damaged and left out");
-  if (stamps.repeated > 0)
-    audit.warnings.push_back(topic + ": " + std::to_string(stamps.repeated) +
-                             " messages repeat a time stamp and are left out");
-}
-
 void warn_of_pairs(double max_difference, BagAudit& audit) {
   const std::size_t unpaired = audit.color.images - audit.pairs.images;
   if (unpaired * 20 > audit.color.images)
@@ -84,8 +75,9 @@ void audit_images(bag::BagReader& bag, const BagAuditOptions& options, BagAudit&
   audit.color = audit_stream(color);
   audit.depth = audit_stream(depth);
   audit_pairs(color, depth, options.max_difference, audit);
-  warn_of_stamps(stamps[0], choice.color.name, audit);
-  warn_of_stamps(stamps[1], choice.depth.name, audit);
+  for (const auto& lines :
+       {stamps[0].warnings(choice.color.name), stamps[1].warnings(choice.depth.name)})
+    audit.warnings.insert(audit.warnings.end(), lines.begin(), lines.end());
   warn_of_pairs(options.max_difference, audit);
 }
 

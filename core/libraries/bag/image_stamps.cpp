@@ -17,7 +17,20 @@ void put_in_order(ImageStamps& stamps) {
   stamps.images.erase(end, stamps.images.end());
 }
 
+std::string messages_text(std::size_t count) {
+  return std::to_string(count) + (count == 1 ? " message is" : " messages are");
+}
+
 }  // namespace
+
+std::vector<std::string> ImageStamps::warnings(const std::string& topic) const {
+  std::vector<std::string> lines;
+  if (unreadable > 0)
+    lines.push_back(topic + ": " + messages_text(unreadable) + " left out for damage");
+  if (repeated > 0)
+    lines.push_back(topic + ": " + messages_text(repeated) + " left out for a repeated time stamp");
+  return lines;
+}
 
 std::vector<ImageStamps> image_stamps(BagReader& bag, const std::vector<ImageTopic>& topics) {
   std::vector<ImageStamps> result(topics.size());

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <string>
 #include <vector>
 
 #include "bag/bag_reader.hpp"
@@ -18,6 +19,9 @@ struct ImageStamps {
   std::vector<ImageStamp> images;  ///< strictly in order of time
   std::size_t unreadable = 0;      ///< messages that are damaged
   std::size_t repeated = 0;        ///< left out for a stamp that another one has
+
+  /// What was left out, a line each; `topic` begins it.
+  std::vector<std::string> warnings(const std::string& topic) const;
 };
 
 /// Reads the beginning of every message of the topics, each of which is decompressed for that:
