@@ -1,6 +1,5 @@
 #include "source_tum/tum_source.hpp"
 
-#include <algorithm>
 #include <opencv2/core.hpp>
 #include "stillpoint/support/size_text.hpp"
 
@@ -10,9 +9,6 @@ namespace {
 using tum_recording::open_recording;
 using tum_recording::PairsFrom;
 
-constexpr std::size_t kMaxUnusableAtStart = 10;  // unusable pairs before the first usable one
-constexpr std::size_t kMaxReportedImages = 20;
-
 CameraModel required_camera(const StageContext& context) {
   if (context.camera) return *context.camera;
   throw Error(Fault::kUsage, "no camera is given", "",
@@ -20,29 +16,12 @@ CameraModel required_camera(const StageContext& context) {
               "'camera:' section to the pipeline file");
 }
 
-/// Keeps the pairs that `options` selects.
-void select(std::vector<ImagePair>& pairs, const TumSource::Options& options) {
-  const std::size_t count = pairs.size();
-  const std::size_t end = options.end > 0 ? std::min<std::size_t>(options.end, count) : count;
-  std::vector<ImagePair> selected;
-  for (std::size_t i = options.start; i < end; i += options.stride) {
-    if (options.limit > 0 && selected.size() == static_cast<std::size_t>(options.limit)) break;
-    selected.push_back(std::move(pairs[i]));
-  }
-  if (selected.empty())
-    throw Error(
-        Fault::kUsage,
-        "no frames are selected of the " + std::to_string(count) + " pairs of the recording",
-        options.path, "change start, end, stride or limit");
-  pairs = std::move(selected);
-}
-
 Recording selected_recording(const TumSource::Options& options) {
   if (options.path.empty())
     throw Error(Fault::kUsage, "no recording is given", "",
                 "name its folder with --dataset or as 'path'");
   Recording recording = open_recording(options.path, options.pairing);
-  select(recording.pairs, options);
+  options.selection.apply(recording.pairs, options.path);
   return recording;
 }
 
@@ -68,19 +47,15 @@ void TumSource::Options::visit(OptionVisitor& v) {
   v.choice("prefer", pairing.prefer,
            {{"lists", PairsFrom::kLists}, {"associations", PairsFrom::kAssociations}},
            {.help = "what to use where both exist: rgb.txt and depth.txt, or associations.txt"});
-  v("start", start, {.min = 0, .unit = "pairs", .help = "first pair to use"});
-  v("end", end, {.min = 0, .unit = "pairs", .help = "one past the last pair; 0 for all"});
-  v("stride", stride, {.min = 1, .unit = "pairs", .help = "use every n-th pair"});
-  v("limit", limit, {.min = 0, .unit = "frames", .help = "most frames to read; 0 for no limit"});
+  selection.visit(v);
 }
 
 TumSource::TumSource(Options options, const StageContext& context)
     : recording_(selected_recording(options)),
       model_(required_camera(context)),
       rectifier_(model_),
-      log_(context.log) {
-  report_.warnings = recording_.warnings;
-  for (const std::string& warning : report_.warnings) log_(LogLevel::kWarning, warning);
+      skipped_(recording_.pairs.size(), recording_.folder.string(), context.log) {
+  for (const std::string& warning : recording_.warnings) skipped_.warn(warning);
 }
 
 std::optional<Frame> TumSource::next() {
@@ -90,7 +65,7 @@ std::optional<Frame> TumSource::next() {
       frame.index = given_++;
       return frame;
     } catch (const Error& reason) {
-      skip(reason);
+      skipped_.add(reason, given_);
     }
   }
   return std::nullopt;
@@ -104,25 +79,6 @@ Frame TumSource::load(const ImagePair& pair) {
   if (cv::countNonZero(recorded_depth) == 0)
     throw Error(Fault::kData, "the depth image has no measurement", pair.depth.file.string());
   return rectifier_.frame(pair.color.time, recorded_color, recorded_depth);
-}
-
-void TumSource::skip(const Error& reason) {
-  ++report_.skipped;
-  const std::size_t total = recording_.pairs.size();
-  const bool hopeless = given_ == 0 && report_.skipped >= std::min(kMaxUnusableAtStart, total);
-  if (hopeless || 2 * report_.skipped > total)
-    throw Error(
-        Fault::kData,
-        (hopeless
-             ? "none of the first " + std::to_string(report_.skipped) + " image pairs can be used"
-             : "more than half of the " + std::to_string(total) + " image pairs cannot be used") +
-            "; the last one: " + reason.what(),
-        recording_.folder.string());
-  const std::string warning = std::string("skipped: ") + reason.what();
-  log_(LogLevel::kWarning, warning);
-  if (report_.skipped <= kMaxReportedImages) report_.warnings.push_back(warning);
-  if (report_.skipped == kMaxReportedImages + 1)
-    report_.warnings.push_back("more images were skipped; the log names them");
 }
 
 }  // namespace stillpoint::source_tum

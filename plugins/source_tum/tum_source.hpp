@@ -8,14 +8,18 @@
 #include "stillpoint/sdk.hpp"
 #include "stillpoint/support/rectifier.hpp"
 #include "tum_recording/image_reader.hpp"
+#include "tum_recording/pair_selection.hpp"
 #include "tum_recording/recording.hpp"
+#include "tum_recording/skipped_pairs.hpp"
 
 namespace stillpoint::source_tum {
 
 using tum_recording::ImagePair;
 using tum_recording::ImageReader;
+using tum_recording::PairSelection;
 using tum_recording::Recording;
 using tum_recording::RecordingOptions;
+using tum_recording::SkippedPairs;
 
 /// Images that cannot be used are skipped and reported. Gives up with Error(kData) when the first
 /// ten are all unusable, or more than half.
@@ -24,10 +28,7 @@ class TumSource final : public Source {
   struct Options {
     std::string path;
     RecordingOptions pairing;
-    int start = 0;   ///< first pair
-    int end = 0;     ///< one past the last pair, 0 = all
-    int stride = 1;  ///< every n-th pair
-    int limit = 0;   ///< largest number of frames, 0 = no limit
+    PairSelection selection;
 
     void visit(OptionVisitor& visitor);
   };
@@ -36,21 +37,19 @@ class TumSource final : public Source {
 
   std::optional<Frame> next() override;
   std::optional<std::size_t> size() const override { return recording_.pairs.size(); }
-  SourceReport report() const override { return report_; }
+  SourceReport report() const override { return skipped_.report(); }
   std::filesystem::path ground_truth() const override { return recording_.ground_truth; }
 
  private:
   Frame load(const ImagePair& pair);
-  void skip(const Error& reason);
 
   Recording recording_;
   CameraModel model_;
   Rectifier rectifier_;
-  std::function<void(LogLevel, std::string_view)> log_;
   ImageReader reader_;
   std::size_t position_ = 0;  // in recording_.pairs
   std::uint32_t given_ = 0;   // frames returned by next()
-  SourceReport report_;
+  SkippedPairs skipped_;
 };
 
 }  // namespace stillpoint::source_tum

@@ -120,15 +120,15 @@ TEST_F(TumSourceTest, AcceptsJpegAndGrayColourImages) {
 TEST_F(TumSourceTest, SelectsPairs) {
   write(10);
   auto options = options_for(folder_.path());
-  options.start = 1;
-  options.end = 8;
-  options.stride = 3;
+  options.selection.start = 1;
+  options.selection.end = 8;
+  options.selection.stride = 3;
   TumSource source = open(options);
   EXPECT_EQ(source.size(), 3u);
   EXPECT_NEAR(read_all(source).back().time, 1.7, 1e-9);
-  options.limit = 2;
+  options.selection.limit = 2;
   EXPECT_EQ(open(options).size(), 2u);
-  options.start = 8;
+  options.selection.start = 8;
   EXPECT_THAT(message_of([&] { open(options); }, Fault::kUsage),
               HasSubstr("no frames are selected of the 10 pairs"));
 }
@@ -301,7 +301,7 @@ TEST(TumSourceOnRealData, ReadsFreiburg1Xyz) {
     EXPECT_EQ(by_time.pairs[i].depth.file, associated.pairs[i].depth.file);
   }
 
-  options.limit = 3;
+  options.selection.limit = 3;
   TumSource source(options, context);
   const auto frame = source.next();
   ASSERT_TRUE(frame.has_value());

@@ -42,7 +42,7 @@ const LabelledRecording& recording(const std::string& name) {
   if (!std::filesystem::exists(folder)) return loaded;
   StageContext context{.recording = folder};
   context.camera = load_camera((folder / "camera.yaml").string());
-  TumSource source({.path = folder.string(), .limit = 200}, context);
+  TumSource source({.path = folder.string(), .selection = {.limit = 200}}, context);
   LabelImageSegmenter truth({.min_object_pixels = 1}, context);
   while (auto frame = source.next()) {
     loaded.truth.push_back(truth.segment(*frame).labels);

@@ -3,19 +3,10 @@
 
 #include "inspection/audit_report.hpp"
 #include "inspection/number_text.hpp"
+#include "inspection/report_text.hpp"
 
 namespace stillpoint::inspection {
 namespace {
-
-constexpr std::size_t kListedGaps = 3;
-
-void row(std::ostream& out, const std::string& name, const std::string& value) {
-  out << "  " << name << std::string(18 - name.size(), ' ') << value << '\n';
-}
-
-std::string milliseconds(double seconds, int digits = 0) {
-  return fixed(1e3 * seconds, digits) + " ms";
-}
 
 std::string counts_text(const std::map<std::string, int>& kinds) {
   std::string text;
@@ -23,18 +14,6 @@ std::string counts_text(const std::map<std::string, int>& kinds) {
     text += std::string(text.empty() ? "" : "; ") + kind +
             (kinds.size() > 1 ? " (" + std::to_string(count) + ")" : "");
   return text.empty() ? "none could be read" : text;
-}
-
-std::string stream_text(const StreamAudit& stream, double start) {
-  std::string text = std::to_string(stream.images) + " images";
-  if (stream.interval <= 0) return text;
-  text += " in " + fixed(stream.duration, 2) + " s, " + fixed(1 / stream.interval, 1) + " Hz, ";
-  if (stream.gaps.empty()) return text + "no gaps";
-  text += std::to_string(stream.gaps.size()) + (stream.gaps.size() == 1 ? " gap: " : " gaps: ");
-  for (std::size_t i = 0; i < std::min(kListedGaps, stream.gaps.size()); ++i)
-    text += std::string(i > 0 ? ", " : "") + milliseconds(stream.gaps[i].length) + " at " +
-            fixed(stream.gaps[i].begin - start, 2) + " s";
-  return text + (stream.gaps.size() > kListedGaps ? " …" : "");
 }
 
 std::string offset_text(const TimeOffset& offset) {

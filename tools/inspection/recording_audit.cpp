@@ -12,6 +12,7 @@ namespace {
 
 using tum_recording::ImageReader;
 using tum_recording::open_recording;
+using tum_recording::StampedImage;
 
 constexpr std::size_t kStretches = 5;  // consecutive images, spread over the recording
 
@@ -75,10 +76,16 @@ void compare_stamps(RecordingAudit& audit) {
   }
 }
 
-std::vector<StampedImage> color_of(const std::vector<ImagePair>& pairs) {
-  std::vector<StampedImage> images;
-  for (const ImagePair& pair : pairs) images.push_back(pair.color);
-  return images;
+std::vector<double> times_of(const std::vector<StampedImage>& images) {
+  std::vector<double> times;
+  for (const StampedImage& image : images) times.push_back(image.time);
+  return times;
+}
+
+std::vector<double> times_of(const std::vector<ImagePair>& pairs) {
+  std::vector<double> times;
+  for (const ImagePair& pair : pairs) times.push_back(pair.color.time);
+  return times;
 }
 
 }  // namespace
@@ -87,9 +94,9 @@ RecordingAudit audit_recording(const std::filesystem::path& folder, const AuditO
   RecordingAudit audit{.recording = open_recording(folder, options.pairing),
                        .camera = options.camera};
   if (audit.camera) audit.depth_factor = audit.camera->depth_factor;
-  audit.color = audit_stream(audit.recording.color);
-  audit.depth = audit_stream(audit.recording.depth);
-  audit.pairs = audit_stream(color_of(audit.recording.pairs));
+  audit.color = audit_stream(times_of(audit.recording.color));
+  audit.depth = audit_stream(times_of(audit.recording.depth));
+  audit.pairs = audit_stream(times_of(audit.recording.pairs));
   compare_stamps(audit);
   read_images(audit, options.samples);
   if (!audit.recording.ground_truth.empty())

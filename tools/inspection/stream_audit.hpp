@@ -1,14 +1,10 @@
-// One list of images of a recording: how many, how fast, where some are missing.
+// One list of images or messages of a recording: how many, how fast, where some are missing.
 #pragma once
 
 #include <cstddef>
 #include <vector>
 
-#include "tum_recording/stamp_list.hpp"
-
 namespace stillpoint::inspection {
-
-using tum_recording::StampedImage;
 
 struct Gap {
   double begin = 0.0;   ///< seconds, stamp of the last image before it
@@ -23,7 +19,7 @@ struct StreamAudit {
   std::vector<Gap> gaps;  ///< longest first: intervals of more than 1.5 times the median
 };
 
-/// `images` in order of time.
-StreamAudit audit_stream(const std::vector<StampedImage>& images);
+/// `times` in seconds, in order.
+StreamAudit audit_stream(const std::vector<double>& times);
 
 }  // namespace stillpoint::inspection

@@ -6,31 +6,56 @@
 
 #include "commands.hpp"
 #include "inspection/audit_report.hpp"
+#include "inspection/bag_audit.hpp"
+#include "stillpoint/support/bag_files.hpp"
 
 namespace stillpoint {
 namespace {
 
 struct InspectArguments {
-  std::string folder, camera;
+  std::string recording, camera;
   inspection::AuditOptions options;
+  bag::TopicNames topics;
   bool json = false;
 };
 
 /// The camera that is named, or the one that lies beside the recording.
 std::optional<CameraModel> camera_for(const InspectArguments& arguments) {
   if (!arguments.camera.empty()) return load_camera(arguments.camera);
-  const auto beside = std::filesystem::path(arguments.folder) / "camera.yaml";
+  const auto beside = std::filesystem::path(arguments.recording) / "camera.yaml";
   if (std::filesystem::is_regular_file(beside)) return load_camera(beside.string());
   return std::nullopt;
 }
 
-void print_inspection(InspectArguments arguments) {
-  arguments.options.camera = camera_for(arguments);
-  const auto audit = inspection::audit_recording(arguments.folder, arguments.options);
-  if (arguments.json)
+template <class Audit>
+void print_audit(const Audit& audit, bool json) {
+  if (json)
     std::cout << inspection::report_json(audit).dump(2) << '\n';
   else
     std::cout << inspection::report_table(audit);
+}
+
+void print_inspection(InspectArguments arguments) {
+  arguments.options.camera = camera_for(arguments);
+  const inspection::AuditOptions& options = arguments.options;
+  if (bag_files(arguments.recording).empty())
+    print_audit(inspection::audit_recording(arguments.recording, options), arguments.json);
+  else
+    print_audit(inspection::audit_bag(arguments.recording,
+                                      {.topics = arguments.topics,
+                                       .camera = options.camera,
+                                       .max_difference = options.pairing.max_difference,
+                                       .time_offset = options.pairing.time_offset}),
+                arguments.json);
+}
+
+void add_topic_options(CLI::App& command, bag::TopicNames& topics) {
+  command.add_option("--color-topic", topics.color, "Colour images of a bag; default: found")
+      ->type_name("TOPIC");
+  command.add_option("--depth-topic", topics.depth, "Depth images of a bag; default: found")
+      ->type_name("TOPIC");
+  command.add_option("--info-topic", topics.info, "CameraInfo of a bag; default: found")
+      ->type_name("TOPIC");
 }
 
 }  // namespace
@@ -38,9 +63,12 @@ void print_inspection(InspectArguments arguments) {
 void add_inspect(CLI::App& app) {
   auto arguments = std::make_shared<InspectArguments>();
   CLI::App* command = app.add_subcommand(
-      "inspect", "Audit a recording: pairs, gaps, depth, time offset, ground truth");
-  command->add_option("recording", arguments->folder, "Folder in the format of the TUM benchmark")
-      ->type_name("DIR")
+      "inspect",
+      "Audit a recording or a bag: pairs, gaps, depth, time offset, ground truth, topics");
+  command
+      ->add_option("recording", arguments->recording,
+                   "Folder in the format of the TUM benchmark, or a bag (.bag, .mcap, .db3)")
+      ->type_name("PATH")
       ->required();
   command
       ->add_option("--camera", arguments->camera,
@@ -56,9 +84,12 @@ void add_inspect(CLI::App& app) {
   command->add_option("--time-offset", pairing.time_offset, "Added to the depth stamps, s")
       ->capture_default_str()
       ->check(CLI::Range(-10.0, 10.0));
-  command->add_option("--samples", arguments->options.samples, "Pairs whose images are read")
+  command
+      ->add_option("--samples", arguments->options.samples,
+                   "Pairs whose images are read; not of bags")
       ->capture_default_str()
       ->check(CLI::PositiveNumber);
+  add_topic_options(*command, arguments->topics);
   command->add_flag("--json", arguments->json, "Print JSON instead of a table");
   command->callback([arguments] { print_inspection(*arguments); });
 }

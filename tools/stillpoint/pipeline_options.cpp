@@ -21,8 +21,10 @@ void add_pipeline_options(CLI::App& command, PipelineRequest& request) {
                   "Pipeline file, or the name of one in configs/pipelines")
       ->type_name("PIPELINE")
       ->required();
-  command.add_option("--dataset", request.dataset, "Recording to read; replaces source.path")
-      ->type_name("DIR");
+  command
+      .add_option("--dataset", request.dataset,
+                  "Recording to read, a folder or a bag (.bag, .mcap, .db3); replaces source.path")
+      ->type_name("PATH");
   command
       .add_option("--camera", request.camera,
                   "Camera file, or the name of one in configs/cameras; replaces the camera section")

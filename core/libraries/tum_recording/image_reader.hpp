@@ -6,7 +6,7 @@
 #include <opencv2/core/mat.hpp>
 #include <vector>
 
-#include "tum_recording/png_decoder.hpp"
+#include "tum_recording/image_decoder.hpp"
 
 namespace stillpoint::tum_recording {
 
@@ -20,10 +20,9 @@ class ImageReader {
   cv::Mat depth(const std::filesystem::path& file);
 
  private:
-  cv::Mat decode(const std::filesystem::path& file, int imread_flags);
   void load(const std::filesystem::path& file);
 
-  PngDecoder png_;
+  ImageDecoder decoder_;
   std::vector<std::uint8_t> bytes_;
 };
 

@@ -6,6 +6,7 @@
 #include "stillpoint/engine/config_lookup.hpp"
 #include "stillpoint/runtime/section_file.hpp"
 #include "stillpoint/runtime/yaml_loader.hpp"
+#include "stillpoint/support/bag_files.hpp"
 
 namespace stillpoint {
 namespace {
@@ -21,12 +22,25 @@ ConfigNode scalar(std::string key, std::string value, const Location& where) {
   return node;
 }
 
+/// The two sources of recordings stand in for each other, so that every pipeline takes both kinds;
+/// another source gets what it is given. Empty: the type stays.
+std::string source_type_for(const fs::path& dataset, const ConfigNode& tree) {
+  const ConfigNode* source = tree.find("source");
+  const ConfigNode* type = source ? source->find("type") : nullptr;
+  const std::string written = type ? type->scalar : "";
+  if (written == "tum_rgbd" && !bag_files(dataset).empty()) return "bag";
+  std::error_code error;
+  if (written == "bag" && fs::exists(dataset / "rgb.txt", error)) return "tum_rgbd";
+  return {};
+}
+
 /// `source: {path: DIR}` as if it were written on the command line.
-ConfigNode dataset_overlay(const fs::path& dataset) {
+ConfigNode dataset_overlay(const fs::path& dataset, const std::string& type) {
   const Location where{"--dataset " + dataset.string()};
   ConfigNode source = empty_map(where);
   source.key = "source";
   source.key_location = where;
+  if (!type.empty()) source.children.push_back(scalar("type", type, where));
   source.children.push_back(
       scalar("path", fs::absolute(dataset).lexically_normal().string(), where));
   ConfigNode tree = empty_map(where);
@@ -34,8 +48,12 @@ ConfigNode dataset_overlay(const fs::path& dataset) {
   return tree;
 }
 
-ConfigNode command_line_overlay(const PipelineRequest& request, FaultList& faults) {
-  ConfigNode overlay = request.dataset.empty() ? empty_map({}) : dataset_overlay(request.dataset);
+ConfigNode command_line_overlay(const PipelineRequest& request, const ConfigNode& tree,
+                                FaultList& faults) {
+  ConfigNode overlay =
+      request.dataset.empty()
+          ? empty_map({})
+          : dataset_overlay(request.dataset, source_type_for(request.dataset, tree));
   for (const std::string& assignment : request.assignments) {
     ConfigNode change = parse_assignment(assignment, faults);
     load_named_sections(change, faults);
@@ -89,7 +107,7 @@ ConfigNode load_pipeline_tree(const fs::path& file, const PipelineRequest& reque
   ConfigNode tree = load_config_file(file, "pipelines", faults, [&](ConfigNode& written) {
     load_named_sections(written, faults);
   });
-  const ConfigNode overlay = command_line_overlay(request, faults);
+  const ConfigNode overlay = command_line_overlay(request, tree, faults);
 
   fs::path camera_file;
   FaultList found_again;  // by the last line

@@ -25,7 +25,9 @@ class STILLPOINT_EXPORT ConfigError final : public Error {
 /// A pipeline file and what is changed of it.
 struct PipelineRequest {
   std::string pipeline;                  ///< a file, or a name from configs/pipelines
-  std::filesystem::path dataset;         ///< replaces source.path; relative to the working folder
+  /// Replaces source.path, and `tum_rgbd` by `bag` where it is one, or the other way round; relative
+  /// to the working folder.
+  std::filesystem::path dataset;
   std::string camera;                    ///< a file, or a name from configs/cameras
   std::vector<std::string> assignments;  ///< `key.sub=value`
   std::vector<std::string> outputs;      ///< types added to the file's outputs, where not there

@@ -1,0 +1,53 @@
+#include "bag/image_stamps.hpp"
+
+#include <algorithm>
+
+#include "bag/messages.hpp"
+
+namespace stillpoint::bag {
+namespace {
+
+constexpr std::size_t kHeader = 512;  // bytes: a stamp and the name of a frame
+
+void put_in_order(ImageStamps& stamps) {
+  std::ranges::stable_sort(stamps.images, {}, &ImageStamp::time);
+  const auto same = [](const ImageStamp& a, const ImageStamp& b) { return a.time == b.time; };
+  const auto end = std::unique(stamps.images.begin(), stamps.images.end(), same);
+  stamps.repeated = static_cast<std::size_t>(stamps.images.end() - end);
+  stamps.images.erase(end, stamps.images.end());
+}
+
+std::string messages_text(std::size_t count) {
+  return std::to_string(count) + (count == 1 ? " message is" : " messages are");
+}
+
+}  // namespace
+
+std::vector<std::string> ImageStamps::warnings(const std::string& topic) const {
+  std::vector<std::string> lines;
+  if (unreadable > 0)
+    lines.push_back(topic + ": " + messages_text(unreadable) + " left out for damage");
+  if (repeated > 0)
+    lines.push_back(topic + ": " + messages_text(repeated) + " left out for a repeated time stamp");
+  return lines;
+}
+
+std::vector<ImageStamps> image_stamps(BagReader& bag, const std::vector<ImageTopic>& topics) {
+  std::vector<ImageStamps> result(topics.size());
+  for (const MessagePlace& place : bag.messages()) {
+    const auto topic = std::ranges::find(topics, place.topic, &ImageTopic::index);
+    if (topic == topics.end()) continue;
+    ImageStamps& stamps = result[static_cast<std::size_t>(topic - topics.begin())];
+    try {
+      const std::int64_t stamp =
+          header_of(bag.read(place, kHeader), bag.topics()[place.topic].serialisation).stamp;
+      stamps.images.push_back({seconds(stamp == 0 ? place.time : stamp), place});
+    } catch (const Error&) {
+      ++stamps.unreadable;
+    }
+  }
+  std::ranges::for_each(result, put_in_order);
+  return result;
+}
+
+}  // namespace stillpoint::bag

@@ -1,0 +1,59 @@
+// The messages of sensor_msgs that hold images and cameras, of ROS 1 and of ROS 2.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "bag/byte_reader.hpp"
+
+namespace stillpoint::bag {
+
+inline constexpr std::string_view kImageType = "sensor_msgs/Image";
+inline constexpr std::string_view kCompressedImageType = "sensor_msgs/CompressedImage";
+inline constexpr std::string_view kCameraInfoType = "sensor_msgs/CameraInfo";
+
+/// std_msgs/Header.
+struct MessageHeader {
+  std::int64_t stamp = 0;  ///< ns since 1970; 0: the driver has set none
+  std::string frame;       ///< of tf, without the slash before it that old ones have
+};
+
+enum class ImageKind { kColor, kGray, kDepth, kOther };
+
+/// What stands before the pixels.
+struct ImageDescription {
+  MessageHeader header;
+  bool compressed = false;
+  int width = 0, height = 0;  ///< px; 0 when compressed
+  std::string encoding;       ///< "rgb8", "16UC1", …; when compressed its format, "jpeg", …
+
+  ImageKind kind() const;
+};
+
+/// sensor_msgs/Image, or CompressedImage with `data` only. Its bytes are those of the message.
+struct ImageMessage {
+  ImageDescription description;
+  bool big_endian = false;
+  std::size_t step = 0;  ///< bytes of a row
+  ByteSpan data;
+};
+
+struct CameraInfoMessage {
+  MessageHeader header;
+  int width = 0, height = 0;  ///< px
+  std::string model;          ///< "plumb_bob", "rational_polynomial", …
+  std::vector<double> distortion;
+  std::array<double, 9> intrinsics = {};   ///< K, row by row, of the image as recorded
+  std::array<double, 12> projection = {};  ///< P, row by row, of the rectified image
+};
+
+/// All of these throw Error(kData) when the bytes end too early, which a description needs few of.
+MessageHeader header_of(ByteSpan message, Serialisation serialisation);
+ImageDescription describe_image(ByteSpan message, Serialisation serialisation, bool compressed);
+ImageMessage read_image(ByteSpan message, Serialisation serialisation, bool compressed);
+CameraInfoMessage read_camera_info(ByteSpan message, Serialisation serialisation);
+
+}  // namespace stillpoint::bag

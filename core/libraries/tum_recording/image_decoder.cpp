@@ -1,0 +1,82 @@
+#include "tum_recording/image_decoder.hpp"
+
+#include <algorithm>
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
+
+#include "stillpoint/error.hpp"
+#include "stillpoint/support/size_text.hpp"
+#include "tum_recording/image_size.hpp"
+
+namespace stillpoint::tum_recording {
+namespace {
+
+constexpr std::int64_t kMostPixels = 100'000'000;
+
+[[noreturn]] void fail(const std::string& where, const std::string& problem,
+                       const std::string& remedy = {}) {
+  throw Error(Fault::kData, problem, where, remedy);
+}
+
+/// libjpeg fills what a truncated file lacks with gray and only warns. In compressed data 0xff is
+/// always escaped, so that the end-of-image marker cannot appear there by chance.
+bool is_truncated_jpeg(std::span<const std::uint8_t> bytes) {
+  if (bytes.size() < 2 || bytes[0] != 0xff || bytes[1] != 0xd8) return false;
+  constexpr std::uint8_t kEndOfImage[] = {0xff, 0xd9};
+  const auto tail = bytes.last(std::min<std::size_t>(bytes.size(), 4096));
+  return std::search(tail.begin(), tail.end(), std::begin(kEndOfImage), std::end(kEndOfImage)) ==
+         tail.end();
+}
+
+std::string kind_of(const cv::Mat& image) {
+  const int bits = static_cast<int>(8 * image.elemSize1());
+  return std::to_string(bits) + "-bit image with " + std::to_string(image.channels()) +
+         (image.channels() == 1 ? " channel" : " channels");
+}
+
+/// A view; OpenCV only reads it.
+cv::Mat bytes_of(std::span<const std::uint8_t> file) {
+  return {1, static_cast<int>(file.size()), CV_8UC1, const_cast<std::uint8_t*>(file.data())};
+}
+
+}  // namespace
+
+cv::Mat ImageDecoder::decode(std::span<const std::uint8_t> file, const std::string& where,
+                             int imread_flags) {
+  if (const auto size = stated_size(file);
+      size && std::int64_t{size->width} * size->height > kMostPixels)
+    fail(where, "an image of " + size_text(*size) + " pixels is more than any camera gives");
+  cv::Mat image;
+  try {
+    if (PngDecoder::is_png(file)) image = png_.decode(file);
+  } catch (const std::runtime_error& error) {
+    fail(where, error.what());
+  }
+  if (is_truncated_jpeg(file)) fail(where, "truncated JPEG");
+  try {
+    if (image.empty()) image = cv::imdecode(bytes_of(file), imread_flags);
+  } catch (const cv::Exception& error) {
+    fail(where, "cannot be decoded: " + error.err);
+  }
+  if (image.empty()) fail(where, "is not an image that OpenCV can read");
+  return image;
+}
+
+cv::Mat ImageDecoder::color(std::span<const std::uint8_t> file, const std::string& where) {
+  cv::Mat image = decode(file, where, cv::IMREAD_COLOR | cv::IMREAD_IGNORE_ORIENTATION);
+  if (image.depth() != CV_8U)
+    fail(where, "a colour image must have 8 bits per channel, this is a " + kind_of(image),
+         "check that colour and depth are not exchanged");
+  if (image.channels() == 1) cv::cvtColor(image, image, cv::COLOR_GRAY2BGR);
+  return image;
+}
+
+cv::Mat ImageDecoder::depth(std::span<const std::uint8_t> file, const std::string& where) {
+  cv::Mat image = decode(file, where, cv::IMREAD_UNCHANGED);
+  if (image.type() != CV_16UC1)
+    fail(where, "a depth image must be 16-bit with 1 channel, this is an " + kind_of(image),
+         "check that colour and depth are not exchanged");
+  return image;
+}
+
+}  // namespace stillpoint::tum_recording

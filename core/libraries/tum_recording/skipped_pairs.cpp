@@ -1,0 +1,36 @@
+#include "tum_recording/skipped_pairs.hpp"
+
+#include <algorithm>
+
+namespace stillpoint::tum_recording {
+namespace {
+
+constexpr std::size_t kMaxUnusableAtStart = 10;  // unusable pairs before the first usable one
+constexpr std::size_t kMaxReportedImages = 20;
+
+}  // namespace
+
+void SkippedPairs::warn(const std::string& warning) {
+  log_(LogLevel::kWarning, warning);
+  report_.warnings.push_back(warning);
+}
+
+void SkippedPairs::add(const Error& reason, std::size_t used) {
+  ++report_.skipped;
+  const bool hopeless = used == 0 && report_.skipped >= std::min(kMaxUnusableAtStart, total_);
+  if (hopeless || 2 * report_.skipped > total_)
+    throw Error(
+        Fault::kData,
+        (hopeless
+             ? "none of the first " + std::to_string(report_.skipped) + " image pairs can be used"
+             : "more than half of the " + std::to_string(total_) + " image pairs cannot be used") +
+            "; the last one: " + reason.what(),
+        recording_);
+  const std::string warning = std::string("skipped: ") + reason.what();
+  log_(LogLevel::kWarning, warning);
+  if (report_.skipped <= kMaxReportedImages) report_.warnings.push_back(warning);
+  if (report_.skipped == kMaxReportedImages + 1)
+    report_.warnings.push_back("more images were skipped; the log names them");
+}
+
+}  // namespace stillpoint::tum_recording

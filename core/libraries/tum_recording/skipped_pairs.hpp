@@ -1,0 +1,38 @@
+// Pairs that cannot be used: they are left out and reported, until too few are left.
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <string>
+#include <string_view>
+
+#include "stillpoint/contracts/source.hpp"
+#include "stillpoint/error.hpp"
+#include "stillpoint/plugin.hpp"
+
+namespace stillpoint::tum_recording {
+
+class SkippedPairs {
+ public:
+  using Log = std::function<void(LogLevel, std::string_view)>;
+
+  /// `total`: pairs there are.
+  SkippedPairs(std::size_t total, std::string recording, Log log)
+      : total_(total), recording_(std::move(recording)), log_(std::move(log)) {}
+
+  /// Something to report that leaves out nothing.
+  void warn(const std::string& warning);
+  /// One more, after `used` that were good. Throws Error(kData) when the first ten are all
+  /// unusable, or more than half.
+  void add(const Error& reason, std::size_t used);
+
+  const SourceReport& report() const { return report_; }
+
+ private:
+  std::size_t total_;
+  std::string recording_;
+  Log log_;
+  SourceReport report_;
+};
+
+}  // namespace stillpoint::tum_recording

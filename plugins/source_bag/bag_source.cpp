@@ -1,0 +1,134 @@
+#include "source_bag/bag_source.hpp"
+
+#include <opencv2/core.hpp>
+
+#include "bag/camera_model.hpp"
+#include "bag/messages.hpp"
+#include "tum_recording/pairing.hpp"
+
+namespace stillpoint::source_bag {
+namespace {
+
+std::unique_ptr<bag::BagReader> opened(const std::string& path) {
+  if (path.empty())
+    throw Error(Fault::kUsage, "no bag is given", "", "name it with --dataset or as 'path'");
+  return bag::open_bag(path);
+}
+
+/// Depth must be seen from the colour camera.
+bag::TopicChoice checked_choice(bag::BagReader& bag, const BagSource::Options& options) {
+  bag::TopicChoice choice = bag::choose_topics(bag, options.topics);
+  if (choice.registered() || options.registered) return choice;
+  throw Error(Fault::kUsage,
+              "depth of " + choice.depth.name + " is in the frame '" +
+                  choice.depth.first.header.frame + "', colour of " + choice.color.name + " in '" +
+                  choice.color.first.header.frame + "': it is not registered to the colour images",
+              options.path,
+              "record registered depth (align_depth, depth_registered), or, if it is, set "
+              "source.registered=true");
+}
+
+CameraModel camera_of(bag::BagReader& bag, const bag::TopicChoice& choice,
+                      const BagSource::Options& options, const StageContext& context) {
+  CameraModel model = context.camera ? *context.camera : bag::camera_in_bag(bag, choice);
+  if (options.depth_factor > 0) model.depth_factor = options.depth_factor;
+  return model;
+}
+
+std::vector<double> times_of(const std::vector<bag::ImageStamp>& stamps) {
+  std::vector<double> times;
+  for (const bag::ImageStamp& stamp : stamps) times.push_back(stamp.time);
+  return times;
+}
+
+}  // namespace
+
+void BagSource::Options::visit(OptionVisitor& v) {
+  v("path", path,
+    {.help = "bag: a .bag, .mcap or .db3 file, or a folder with such files", .is_path = true});
+  v("color_topic", topics.color, {.help = "colour images; empty: found"});
+  v("depth_topic", topics.depth, {.help = "depth images; empty: found"});
+  v("info_topic", topics.info, {.help = "the colour camera's CameraInfo; empty: found"});
+  v("max_difference", max_difference,
+    {.min = 0, .max = 10, .unit = "s", .help = "largest time difference of an associated pair"});
+  v("time_offset", time_offset,
+    {.min = -10, .max = 10, .unit = "s", .help = "added to the depth stamps before pairing"});
+  v("registered", registered,
+    {.help = "depth is seen from the colour camera, although its frame is another one"});
+  v("depth_factor", depth_factor,
+    {.min = 0,
+     .max = 1e9,
+     .help = "16-bit depth of one metre; 0: the camera's, 1000 where that comes from the bag"});
+  selection.visit(v);
+}
+
+BagSource::BagSource(Options options, const StageContext& context)
+    : bag_(opened(options.path)),
+      choice_(checked_choice(*bag_, options)),
+      rectifier_(camera_of(*bag_, choice_, options, context)),
+      pairs_(make_pairs(options)),
+      skipped_(pairs_.size(), options.path, context.log) {
+  context.log(LogLevel::kInfo, "colour of " + choice_.color.name + ", depth of " +
+                                   choice_.depth.name + ", camera " +
+                                   (context.camera ? "'" + context.camera->name + "'"
+                                                   : "of " + bag_->topics()[*choice_.info].name));
+  for (const std::string& damage : bag_->damage()) skipped_.warn(damage);
+  for (const std::string& note : notes_) skipped_.warn(note);
+}
+
+std::vector<BagSource::Pair> BagSource::make_pairs(const Options& options) {
+  std::vector<bag::ImageStamps> stamps = bag::image_stamps(*bag_, {choice_.color, choice_.depth});
+  std::vector<bag::ImageStamp>& color = stamps[0].images;
+  std::vector<bag::ImageStamp>& depth = stamps[1].images;
+  notes_ = stamps[0].warnings(choice_.color.name);
+  for (std::string& note : stamps[1].warnings(choice_.depth.name))
+    notes_.push_back(std::move(note));
+  for (bag::ImageStamp& stamp : depth) stamp.time += options.time_offset;
+  std::vector<Pair> pairs;
+  for (const tum_recording::IndexPair& pair :
+       tum_recording::pair_by_time(times_of(color), times_of(depth), options.max_difference))
+    pairs.push_back({color[pair.color], depth[pair.depth]});
+  if (pairs.empty())
+    throw Error(Fault::kData,
+                "no colour image of " + choice_.color.name + " has a depth image of " +
+                    choice_.depth.name + " within " + std::to_string(options.max_difference) + " s",
+                options.path, "change max_difference or time_offset, or choose other topics");
+  options.selection.apply(pairs, options.path);
+  return pairs;
+}
+
+std::optional<Frame> BagSource::next() {
+  while (position_ < pairs_.size()) {
+    try {
+      Frame frame = load(pairs_[position_++]);
+      frame.index = given_++;
+      return frame;
+    } catch (const Error& reason) {
+      skipped_.add(reason, given_);
+    }
+  }
+  return std::nullopt;
+}
+
+Frame BagSource::load(const Pair& pair) {
+  const cv::Mat color = image_of(choice_.color, pair.color);
+  const cv::Mat depth = image_of(choice_.depth, pair.depth);
+  Frame frame = rectifier_.frame(pair.color.time, color, depth);
+  if (cv::countNonZero(frame.depth) == 0)
+    throw Error(Fault::kData, "the depth image has no measurement in the range of the camera",
+                choice_.depth.name + " at " + std::to_string(pair.depth.time) + " s");
+  return frame;
+}
+
+cv::Mat BagSource::image_of(const bag::ImageTopic& topic, const bag::ImageStamp& stamp) {
+  try {
+    const bag::ImageMessage message = bag::read_image(
+        bag_->read(stamp.place), bag_->topics()[topic.index].serialisation, topic.first.compressed);
+    return topic.index == choice_.color.index ? images_.color(message) : images_.depth(message);
+  } catch (const Error& error) {
+    throw Error(error.fault(), error.what(),
+                topic.name + " at " + std::to_string(stamp.time) + " s");
+  }
+}
+
+}  // namespace stillpoint::source_bag

@@ -1,0 +1,235 @@
+#include "source_bag/bag_source.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <opencv2/imgcodecs.hpp>
+
+#include "support/bag_writer.hpp"
+#include "support/recording_writer.hpp"
+
+namespace stillpoint::source_bag {
+namespace {
+
+using ::testing::AllOf;
+using testing::BagBytes;
+using testing::BagStyle;
+using testing::BagWriter;
+using testing::camera_info_message;
+using testing::compressed_message;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using testing::image_message;
+using testing::TemporaryFolder;
+using testing::TestCameraInfo;
+
+constexpr int kWidth = 64;
+constexpr int kHeight = 48;
+constexpr std::int64_t kStart = 1'305'031'102'175'304'000;  // ns
+constexpr std::int64_t kInterval = 33'333'000;              // ns
+constexpr const char* kColor = "/camera/color/image_raw";
+constexpr const char* kDepth = "/camera/depth_registered/image_raw";
+
+cv::Mat color_image(int value) { return {kHeight, kWidth, CV_8UC3, cv::Scalar(value, 100, 200)}; }
+cv::Mat depth_image(int value) { return {kHeight, kWidth, CV_16UC1, cv::Scalar(value)}; }
+
+BagBytes encoded(const cv::Mat& image, const std::string& ending = ".png") {
+  BagBytes bytes;
+  cv::imencode(ending, image, bytes);
+  return bytes;
+}
+
+class BagSourceTest : public ::testing::TestWithParam<BagStyle> {
+ protected:
+  explicit BagSourceTest(const BagStyle& style)
+      : file_(folder_.path() / ("a." + style.format)),
+        writer_(testing::make_bag_writer(file_, style)),
+        serialisation_(writer_->serialisation()) {}
+  BagSourceTest() : BagSourceTest(GetParam()) {}
+
+  void add(const std::string& topic, const std::string& type, std::int64_t time,
+           const BagBytes& message) {
+    writer_->add(topic, type, time + 5'000'000, message);  // it arrives later
+  }
+  void color(int i, const std::string& frame = "color_frame") {
+    add(kColor, "sensor_msgs/Image", stamp(i),
+        image_message(serialisation_, stamp(i), frame, color_image(i), "bgr8"));
+  }
+  void depth(int i, const std::string& frame = "color_frame", const char* topic = kDepth) {
+    add(topic, "sensor_msgs/Image", stamp(i),
+        image_message(serialisation_, stamp(i) + 4'000'000, frame, depth_image(1000 + i), "16UC1"));
+  }
+  void info(const TestCameraInfo& camera = {}) {
+    add("/camera/color/camera_info", "sensor_msgs/CameraInfo", stamp(0),
+        camera_info_message(serialisation_, camera));
+  }
+  void write(int count) {
+    info();
+    for (int i = 0; i < count; ++i) {
+      color(i);
+      depth(i);
+    }
+  }
+  BagSource open(BagSource::Options options = {}, const StageContext& context = {}) {
+    if (writer_) writer_->finish();
+    writer_.reset();
+    options.path = file_.string();
+    return BagSource(options, context);
+  }
+  static std::int64_t stamp(int i) { return kStart + kInterval * i; }
+  static std::vector<Frame> read_all(BagSource& source) {
+    std::vector<Frame> frames;
+    while (auto frame = source.next()) frames.push_back(*frame);
+    return frames;
+  }
+  static std::string message_of(const std::function<void()>& action, Fault fault) {
+    try {
+      action();
+    } catch (const Error& error) {
+      EXPECT_EQ(error.fault(), fault);
+      return error.what();
+    }
+    return "nothing was thrown";
+  }
+
+  TemporaryFolder folder_;
+  std::filesystem::path file_;
+  std::unique_ptr<BagWriter> writer_;
+  bag::Serialisation serialisation_;
+};
+
+TEST_P(BagSourceTest, GivesFramesWithTheCameraOfTheBag) {
+  write(5);
+  BagSource source = open();
+  EXPECT_EQ(source.size(), 5U);
+  const auto frames = read_all(source);
+  ASSERT_EQ(frames.size(), 5U);
+  EXPECT_EQ(frames[3].index, 3U);
+  EXPECT_DOUBLE_EQ(frames[3].time, 1305031102.275303);  // of the exposure
+  EXPECT_EQ(frames[3].bgr.at<cv::Vec3b>(5, 7), cv::Vec3b(3, 100, 200));
+  EXPECT_FLOAT_EQ(frames[3].depth.at<float>(5, 7), 1.003F);  // millimetres
+  EXPECT_EQ(frames[3].camera->fx, 50);
+  EXPECT_EQ(frames[3].camera->width, kWidth);
+  EXPECT_TRUE(source.report().warnings.empty());
+  EXPECT_FALSE(source.next().has_value());
+}
+
+TEST_P(BagSourceTest, ReadsATruncatedBagAsFarAsItGoes) {
+  write(20);
+  writer_->finish();
+  writer_.reset();
+  testing::truncate_file(file_, 0.6);
+  BagSource source = open();
+  const auto frames = read_all(source);
+  EXPECT_GE(frames.size(), 8U);
+  EXPECT_LE(frames.size(), 13U);
+  EXPECT_FALSE(source.report().warnings.empty());
+}
+
+INSTANTIATE_TEST_SUITE_P(Formats, BagSourceTest,
+                         ::testing::Values(BagStyle{"bag", "lz4"}, BagStyle{"mcap", "zstd"},
+                                           BagStyle{"db3", "none"}),
+                         [](const auto& parameter) { return parameter.param.format; });
+
+class OneBagSourceTest : public BagSourceTest {
+ protected:
+  OneBagSourceTest() : BagSourceTest(BagStyle{"mcap", "none"}) {}
+};
+
+TEST_F(OneBagSourceTest, TakesAnotherCameraAndItsDepthFactor) {
+  write(2);
+  StageContext context;
+  context.camera = CameraModel{
+      .name = "mine", .width = kWidth, .height = kHeight, .fx = 60, .depth_factor = 2000};
+  BagSource source = open({}, context);
+  const auto frame = source.next();
+  ASSERT_TRUE(frame.has_value());
+  EXPECT_EQ(frame->camera->fx, 60);
+  EXPECT_FLOAT_EQ(frame->depth.at<float>(5, 7), 0.5F);
+}
+
+TEST_F(OneBagSourceTest, TakesAnotherDepthFactor) {
+  write(1);
+  BagSource source = open({.depth_factor = 500});
+  EXPECT_FLOAT_EQ(source.next()->depth.at<float>(5, 7), 2.0F);
+}
+
+TEST_F(OneBagSourceTest, ReadsCompressedImages) {
+  info();
+  const auto compressed = [&](const char* topic, int i, const char* format, const BagBytes& file) {
+    add(topic, "sensor_msgs/CompressedImage", stamp(i),
+        compressed_message(serialisation_, stamp(i), "color_frame", format, file));
+  };
+  compressed("/camera/color/image_raw/compressed", 0, "rgb8; jpeg compressed bgr8",
+             encoded(color_image(90), ".jpg"));
+  compressed("/camera/color/image_raw/compressed", 1, "rgb8; png compressed bgr8",
+             encoded(color_image(91)));
+  for (int i = 0; i < 2; ++i) {
+    BagBytes depth_file(12, 0);
+    const BagBytes png = encoded(depth_image(2000 + i));
+    depth_file.insert(depth_file.end(), png.begin(), png.end());
+    compressed("/camera/depth/image_raw/compressedDepth", i, "16UC1; compressedDepth png",
+               depth_file);
+  }
+  BagSource source = open();
+  const auto frames = read_all(source);
+  ASSERT_EQ(frames.size(), 2U);
+  EXPECT_NEAR(frames[0].bgr.at<cv::Vec3b>(5, 7)[0], 90, 3);
+  EXPECT_EQ(frames[1].bgr.at<cv::Vec3b>(5, 7), cv::Vec3b(91, 100, 200));
+  EXPECT_FLOAT_EQ(frames[1].depth.at<float>(5, 7), 2.001F);
+}
+
+TEST_F(OneBagSourceTest, SkipsImagesThatCannotBeUsed) {
+  info();
+  for (int i = 0; i < 5; ++i) {
+    if (i == 2)
+      add(kColor, "sensor_msgs/Image", stamp(i),
+          image_message(serialisation_, stamp(i), "color_frame", color_image(i), "bgr99"));
+    else
+      color(i);
+    depth(i);
+  }
+  BagSource source = open();
+  EXPECT_EQ(read_all(source).size(), 4U);
+  EXPECT_EQ(source.report().skipped, 1U);
+  EXPECT_THAT(source.report().warnings,
+              ElementsAre(AllOf(HasSubstr("skipped: /camera/color/image_raw at 1305031102.2"),
+                                HasSubstr("cannot have the encoding 'bgr99'"))));
+}
+
+TEST_F(OneBagSourceTest, LeavesOutRepeatedStamps) {
+  write(3);
+  color(2);
+  BagSource source = open();
+  EXPECT_EQ(read_all(source).size(), 3U);
+  EXPECT_THAT(source.report().warnings,
+              ElementsAre(HasSubstr("1 message is left out for a repeated")));
+}
+
+TEST_F(OneBagSourceTest, RefusesDepthThatIsNotRegistered) {
+  info();
+  color(0);
+  depth(0, "depth_frame", "/camera/depth/image_raw");
+  EXPECT_THAT(message_of([&] { open(); }, Fault::kUsage),
+              AllOf(HasSubstr("is in the frame 'depth_frame'"), HasSubstr("not registered"),
+                    HasSubstr("source.registered=true")));
+  EXPECT_EQ(open({.registered = true}).size(), 1U);
+}
+
+TEST_F(OneBagSourceTest, AsksForACamera) {
+  color(0);
+  depth(0);
+  EXPECT_THAT(message_of([&] { open(); }, Fault::kUsage),
+              AllOf(HasSubstr("has no CameraInfo"), HasSubstr("--camera")));
+}
+
+TEST_F(OneBagSourceTest, SaysWhenNothingPairs) {
+  write(2);
+  EXPECT_THAT(message_of([&] { open({.max_difference = 0.001}); }, Fault::kData),
+              AllOf(HasSubstr("within 0.001"), HasSubstr("change max_difference")));
+  EXPECT_EQ(open({.max_difference = 0.001, .time_offset = -0.004}).size(), 2U);
+}
+
+}  // namespace
+}  // namespace stillpoint::source_bag
