@@ -70,8 +70,9 @@ struct RunData {
   std::string name;       ///< of the folder, or SEQUENCE/VARIANT/REPEAT
   std::string recording;  ///< name of its sequence, or of the recording's folder
   std::filesystem::path folder;
-  std::filesystem::path truth;  ///< groundtruth.txt; empty: none found
-  std::string made_by;          ///< "Stillpoint 0.1.0, commit …; machine; date", as far as known
+  std::filesystem::path truth;     ///< groundtruth.txt; empty: none found
+  std::filesystem::path pipeline;  ///< the file that was run; empty: not known
+  std::string made_by;  ///< "Stillpoint 0.1.0, commit …; machine; date", as far as known
   bool complete = false;
   std::vector<std::string> notes;  ///< what failed or is missing, a sentence each
 
