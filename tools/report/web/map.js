@@ -6,7 +6,7 @@ import {OrbitControls} from 'three/examples/jsm/controls/OrbitControls.js';
 
 import {unpacked} from './data.js';
 import {choice, el} from './dom.js';
-import {css, heat, redrawn} from './theme.js';
+import {css, fitted, heat, redrawn} from './theme.js';
 
 /** Views into the bytes of a map, see map_bytes() of the program. */
 function planes(buffer, count) {
@@ -121,7 +121,7 @@ export async function mapView(map, path) {
     draw();
   };
   controls.addEventListener('change', draw);
-  new ResizeObserver(() => requestAnimationFrame(draw)).observe(canvas);
+  fitted(canvas, draw);
   redrawn(canvas, draw);
   show(0);
   const cubes = map.shown < map.occupied

@@ -49,9 +49,10 @@ function timeFigures(run) {
     parts.push(figure('Absolute trajectory error', seriesChart(
       withGaps(scaled(run.trace.t, 1e-3), run.trace.gap, scaled(run.trace.e, 0.1)),
       [{label: 'ATE [mm]', colour: kind(0)}], {...common, yName: '[mm]'})));
-  if (run.drift.t.length)
+  const drifted = scaled(run.drift.t, 1e-3);
+  if (drifted.length)
     parts.push(figure('Relative pose error over the next second', seriesChart(
-      [scaled(run.drift.t, 1e-3), scaled(run.drift.m, 0.1), scaled(run.drift.deg, 1e-3)],
+      withGaps(drifted, behindLost(drifted, run.lost), scaled(run.drift.m, 0.1), scaled(run.drift.deg, 1e-3)),
       [{label: 'position [mm]', colour: kind(0)},
        {label: 'rotation [deg]', colour: kind(1), scale: 'y2', digits: 3}],
       {...common, yName: '[mm]', y2Name: '[deg]'})));
@@ -72,6 +73,11 @@ function timeFigures(run) {
     run.lost.length ? el('span', {}, el('i', {class: 'lost-key'}), 'no pose') : null,
     run.loops.length ? el('span', {}, el('i', {class: 'loop-key'}), 'loop closed') : null);
   return [legend, el('div', {class: 'pair'}, ...parts)];
+}
+
+/** Which of the moments is the first one behind a lost stretch. */
+function behindLost(t, lost) {
+  return t.map((seconds, i) => i > 0 && lost.some(([begin]) => t[i - 1] < begin && begin <= seconds));
 }
 
 const facts = [['coverage', v => `${(100 * v).toFixed(1)} %`, 'coverage'], ['frames', v => v, 'frames'],

@@ -3,7 +3,7 @@ import uPlot from 'uplot';
 import 'uplot/dist/uPlot.min.css';
 
 import {el} from './dom.js';
-import {css, redrawn} from './theme.js';
+import {css, fitted, redrawn} from './theme.js';
 
 /** Shades lost stretches and marks loops, behind the lines. */
 function events(lost, loops) {
@@ -63,7 +63,7 @@ export function seriesChart(data, series, options) {
     else if (box.clientWidth && Math.abs(box.clientWidth - chart.width) > 1)
       chart.setSize({width: box.clientWidth, height: options.height ?? 180});
   };
-  new ResizeObserver(() => requestAnimationFrame(fit)).observe(box);
+  fitted(box, fit);
   redrawn(box, draw);
   return box;
 }

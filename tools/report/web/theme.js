@@ -32,6 +32,12 @@ function set(theme) {
 }
 const dark = () => document.documentElement.dataset.theme === 'dark';
 
+/** Calls `fit` when the element has another size on screen; on paper it is scaled. */
+export function fitted(element, fit) {
+  const paper = matchMedia('print');
+  new ResizeObserver(() => paper.matches || requestAnimationFrame(fit)).observe(element);
+}
+
 /** Begins with what the system says; paper is light. */
 export function startTheme() {
   const system = matchMedia('(prefers-color-scheme: dark)');
