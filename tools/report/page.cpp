@@ -86,6 +86,7 @@ class Blocks {
     }
     try {
       const MapVoxels voxels = read_voxels(run.octree, limits_.voxels);
+      if (voxels.size() == 0) return;
       const std::string packed = block("map-" + id, map_bytes(voxels));
       maps_ += packed.size();
       text += packed;
