@@ -102,6 +102,17 @@ TEST(ReportProgram, SeveralRunsAreComparedWithTheFirst) {
   EXPECT_EQ(data.runs[1].base, "a run");
 }
 
+TEST(ReportProgram, SeveralRunsAreReportedInTheWorkingFolder) {
+  SKIP_WITHOUT_PAGE();
+  const TemporaryFolder folder;
+  fs::copy(finished_run(), folder.path() / "other", fs::copy_options::recursive);
+  const Outcome outcome =
+      call({"report", finished_run().string(), "other"}, {.folder = folder.path()});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_THAT(text_of(folder.path() / "report.html"), HasSubstr("id=\"run-1\">"));
+  EXPECT_TRUE(fs::exists(folder.path() / "tables.tex"));
+}
+
 TEST(ReportProgram, DamagedRunsAreShownAsFarAsTheyGo) {
   SKIP_WITHOUT_PAGE();
   const TemporaryFolder folder;

@@ -86,8 +86,8 @@ void write_report(const ReportArguments& arguments) {
       study::origin_of({.version = STILLPOINT_VERSION, .commit = built_from_commit()});
   const std::string html =
       filled_page(page_file(), data, "Stillpoint " STILLPOINT_VERSION ", " + here.date);
-  const fs::path folder = page.parent_path();
-  write_text(page, html);
+  const fs::path folder = fs::absolute(page).parent_path();
+  write_text(folder / page.filename(), html);
   write_text(folder / "tables.tex", latex_tables(data.tables));
   write_text(folder / "tables.csv", csv_tables(data.tables));
   for (const std::string& note : data.notes) std::cerr << "note: " << note << '\n';
