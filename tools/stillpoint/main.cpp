@@ -21,10 +21,10 @@ using stillpoint::Error;
 using stillpoint::Fault;
 
 constexpr void (*kCommands[])(CLI::App&) = {
-    stillpoint::add_ablate,   stillpoint::add_check,    stillpoint::add_compare,
-    stillpoint::add_evaluate, stillpoint::add_import,   stillpoint::add_inspect,
-    stillpoint::add_map,      stillpoint::add_plugins,  stillpoint::add_record,
-    stillpoint::add_run,      stillpoint::add_simulate,
+    stillpoint::add_ablate,   stillpoint::add_check,   stillpoint::add_compare,
+    stillpoint::add_evaluate, stillpoint::add_import,  stillpoint::add_inspect,
+    stillpoint::add_map,      stillpoint::add_plugins, stillpoint::add_record,
+    stillpoint::add_report,   stillpoint::add_run,     stillpoint::add_simulate,
 };
 
 constexpr const char* kExitCodes =
