@@ -1,0 +1,36 @@
+// What the stages of a run cost.
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "figures/course.hpp"
+
+namespace stillpoint::figures {
+
+/// Milliseconds, wall clock.
+struct StageTime {
+  std::string stage;
+  double mean_per_frame = 0;         ///< over all frames, those without the stage included
+  double p50 = 0, p95 = 0, p99 = 0;  ///< percentiles of its calls
+};
+
+struct RunTimes {
+  std::string name;
+  std::vector<StageTime> stages;  ///< in the order of the pipeline
+};
+
+/// Above, what an average frame costs, a bar of stages for each run; below, the percentiles of each
+/// stage: 50th (dot), 95th (thick line) and 99th (thin line). As wide as a column.
+Figure stage_time_figure(std::span<const RunTimes> runs);
+
+struct StageCourse {
+  std::string stage;
+  Course ms;
+};
+
+/// A line for each stage, as wide as the page.
+Figure frame_time_figure(std::span<const StageCourse> stages);
+
+}  // namespace stillpoint::figures
