@@ -31,7 +31,7 @@ void draw_y_axis(Canvas& canvas, const PanelPlace& place, double numbers_pt) {
     canvas.line(Points{{axes.x, y}, {end, y}}, kAxis);
     if (axis.numbers) canvas.text(tick.text, {beside, y}, kTextPt, {1, 0.5});
   }
-  const double label = beside - numbers_pt - kTextGapPt;
+  const double label = beside - numbers_pt - 2 * kTextGapPt;
   canvas.text(axis.label, {label, axes.y + axes.height / 2}, kTextPt, {0.5, 1}, true);
 }
 
@@ -63,8 +63,9 @@ void draw_colour_bar(Canvas& canvas, const Box& bar, const ColourScale& scale) {
   const double step = bar.height / kSteps;
   for (int i = 0; i < kSteps; ++i) {
     const double share = 1 - (i + 0.5) / kSteps;
-    const double overlap = i + 1 < kSteps ? step / 2 : 0;  // no seams
-    canvas.fill(Box{bar.x, bar.y + i * step, bar.width, step + overlap}, value_colour(share));
+    // Down to the end, each over the one before: no seams.
+    canvas.fill(Box{bar.x, bar.y + i * step, bar.width, bar.height - i * step},
+                value_colour(share));
   }
   double numbers = 0;
   for (const Tick& tick : ticks_of(scale.values, bar.height / kApartPt)) {

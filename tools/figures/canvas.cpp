@@ -103,7 +103,8 @@ Canvas::Canvas(Format format, double width_pt, double height_pt, const std::stri
   }
   cairo_->context = cairo_create(cairo_->surface);
   cairo_set_line_join(cairo_->context, CAIRO_LINE_JOIN_ROUND);
-  fill(Box{0, 0, width_pt, height_pt}, kPaper);
+  set_colour(cairo_->context, kPaper, 1.0);
+  cairo_paint(cairo_->context);
 }
 
 Canvas::~Canvas() {

@@ -12,14 +12,15 @@ struct Colour {
 };
 
 inline constexpr Colour kInk{0.15, 0.16, 0.18}, kReferenceGrey{0.62, 0.63, 0.65},
-    kGridGrey{0.90, 0.90, 0.91}, kPaper{1, 1, 1};
+    kOtherPartsGrey{0.75, 0.75, 0.76}, kGridGrey{0.90, 0.90, 0.91}, kPaper{1, 1, 1};
 
 /// Of the i-th run (Okabe & Ito, Color Universal Design, 2008); again from the first after the
 /// last.
 Colour run_colour(std::size_t index);
+inline constexpr std::size_t kRunColours = 6;
 
-/// Of the i-th part of a whole, for areas (P. Tol, Colour Schemes, 2021: "muted"); grey after the
-/// last.
+/// Of the i-th part of a whole, for areas (P. Tol, Colour Schemes, 2021: "muted");
+/// again from the first after the last.
 Colour part_colour(std::size_t index);
 inline constexpr std::size_t kPartColours = 9;
 

@@ -36,6 +36,12 @@ void mark_lost(Panel& panel, const std::vector<Range>& lost, std::size_t run, st
   }
 }
 
+void limit_x(Panel& panel, const Range& times) {
+  if (times.low >= times.high) return;
+  panel.x.low = times.low;
+  panel.x.high = times.high;
+}
+
 LengthUnit unit_for(double largest_m) {
   return largest_m > 1 ? LengthUnit{"m", 1} : LengthUnit{"mm", 1000};
 }

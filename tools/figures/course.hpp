@@ -29,6 +29,9 @@ Eigen::Vector2d line_break();
 /// the only run, in a lane of its own for one of several.
 void mark_lost(Panel& panel, const std::vector<Range>& lost, std::size_t run, std::size_t runs);
 
+/// The x axis reaches over these times; as it was where there are none.
+void limit_x(Panel& panel, const Range& times);
+
 /// Metres, or millimetres where nothing is larger than one metre.
 struct LengthUnit {
   std::string name;

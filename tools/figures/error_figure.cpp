@@ -47,11 +47,7 @@ void share_times(std::span<const RunErrors> runs, std::vector<Row>& rows) {
       times.include(stretch.high);
     }
   }
-  if (times.low > times.high) return;
-  for (Row& row : rows) {
-    row.panels[0].x.low = times.low;
-    row.panels[0].x.high = times.high;
-  }
+  for (Row& row : rows) limit_x(row.panels[0], times);
 }
 
 }  // namespace

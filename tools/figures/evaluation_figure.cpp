@@ -50,7 +50,8 @@ std::vector<Range> lost_stretches(const std::vector<double>& seconds, const Rang
 Panel along_axis(std::span<const RunPath> runs, int axis, const Range& times) {
   constexpr const char* kTitle[3] = {"x", "y", "z"};
   constexpr double kTruthPt = 2.0;
-  Panel panel{kTitle[axis], {"time [s]", times.low, times.high}, {axis == 0 ? "[m]" : ""}};
+  Panel panel{kTitle[axis], {"time [s]"}, {axis == 0 ? "[m]" : ""}};
+  limit_x(panel, times);
   const auto coordinate = [axis](const RunPath& run, const std::vector<Eigen::Vector3d>& path) {
     Course course{run.seconds, {}};
     for (const Eigen::Vector3d& point : path) course.values.push_back(point[axis]);
@@ -68,7 +69,7 @@ Panel along_axis(std::span<const RunPath> runs, int axis, const Range& times) {
 }  // namespace
 
 Figure evaluation_figure(std::span<const Contestant> runs) {
-  constexpr double kViewPt = 150, kAxisPt = 70, kErrorPt = 80;
+  constexpr double kAxesPt = 195, kAxisPt = 70, kErrorPt = 80;
   std::vector<RunPath> paths;
   Range times = empty_range();
   for (const Contestant& run : runs) {
@@ -82,13 +83,14 @@ Figure evaluation_figure(std::span<const Contestant> runs) {
     errors.push_back({path.name, {path.seconds, path.errors_m()}, {}, path.lost, {}});
   }
   Figure figure{"Trajectories and their errors", kPagePt};
-  figure.rows.push_back({kViewPt, {view_along(paths, 0, 1), view_along(paths, 0, 2)}});
+  const double view_pt =
+      std::max(view_height_pt(paths, 1, kAxesPt), view_height_pt(paths, 2, kAxesPt));
+  figure.rows.push_back({view_pt, {view_along(paths, 0, 1), view_along(paths, 0, 2)}});
   figure.rows.push_back({kAxisPt, {}});
   for (int axis = 0; axis < 3; ++axis)
     figure.rows[1].panels.push_back(along_axis(paths, axis, times));
   Panel error = absolute_error_panel(errors);
-  error.x.low = times.low;
-  error.x.high = times.high;
+  limit_x(error, times);
   figure.rows.push_back({kErrorPt, {std::move(error)}});
   figure.colour_scale = error_colours(paths);
   return figure;

@@ -6,9 +6,9 @@
 namespace stillpoint::figures {
 namespace {
 
-constexpr double kMargin = 0.05;      // of the range, free on either side
-constexpr double kLeastSpan = 1e-3;   // of the largest number: less is none
-constexpr double kSpanOfNothing = 1;  // where everything is one number
+constexpr double kMargin = 0.05;     // of the range, free on either side
+constexpr double kLeastSpan = 1e-6;  // of the largest number: less is none
+constexpr double kWide = 1e-3;       // of the largest number: the span of nothing, at least 1
 
 void include_points(Range& range, const Points& points, int axis) {
   for (const Eigen::Vector2d& point : points)
@@ -39,12 +39,17 @@ struct Extent {
   }
 };
 
-Range with_margin(Range range) {
+double largest_number(const Range& range) {
+  return std::max(std::abs(range.low), std::abs(range.high));
+}
+
+double span_of_nothing(const Range& range) { return std::max(1.0, kWide * largest_number(range)); }
+
+Range with_margin(const Range& range) {
   if (range.low > range.high) return {0, 1};  // no data
-  const double largest = std::max(std::abs(range.low), std::abs(range.high));
-  if (range.span() <= kLeastSpan * kLeastSpan * largest)
-    return {range.middle() - kSpanOfNothing / 2, range.middle() + kSpanOfNothing / 2};
-  const double margin = kMargin * range.span();
+  const double margin = range.span() <= kLeastSpan * largest_number(range)
+                            ? span_of_nothing(range) / 2
+                            : kMargin * range.span();
   return {range.low - margin, range.high + margin};
 }
 
@@ -61,7 +66,7 @@ Range range_along(const Panel& panel, int axis) {
   Range range = with_margin(extent.range);
   if (description.low) range.low = *description.low;
   if (description.high) range.high = *description.high;
-  if (range.span() <= 0) range.high = range.low + kSpanOfNothing;
+  if (range.span() <= 0) range.high = range.low + span_of_nothing(range);
   return range;
 }
 

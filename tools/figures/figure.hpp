@@ -43,8 +43,8 @@ struct Dot {
   double radius_pt = 2.0;
 };
 
-/// A stretch of x, over the whole height or, with a lane, as a narrow strip at the bottom, that of
-/// lane 0 lowest. Without length it is a thin line.
+/// A stretch of x, over the whole height or, with a lane, as a narrow strip at the top, that of
+/// lane 0 uppermost. Without length it is a thin line.
 struct Stretch {
   std::string name;
   Range x;

@@ -9,7 +9,8 @@
 namespace stillpoint::figures {
 namespace {
 
-constexpr double kEdgePt = 3;           // free around everything
+constexpr double kEdgePt = 3;           // of the page, free
+constexpr double kRightPt = 6;          // for half of the last number
 constexpr double kGapPt = 12;           // between panels beside each other
 constexpr double kLinePt = 10;          // of text
 constexpr double kBarPt = 6;            // width of the colour bar
@@ -45,7 +46,7 @@ double left_of(const Figure& figure, double numbers_pt) {
   const bool label = std::ranges::any_of(figure.rows, [](const Row& row) {
     return any_panel(row, [](const Panel& p) { return !p.y.label.empty(); });
   });
-  return numbers_pt + kTickPt + kTextGapPt + (label ? kLinePt : 0);
+  return numbers_pt + kTickPt + kTextGapPt + (label ? kLinePt + kTextGapPt : 0);
 }
 
 double widest_text(const std::vector<Tick>& ticks) {
@@ -65,10 +66,10 @@ void place_row(const Figure& figure, const Row& row, double top, Layout& layout)
   const double left = left_of(figure, layout.numbers_pt);
   const double space = has_values(row) ? colour_bar_space(figure) : 0;
   const double count = static_cast<double>(row.panels.size());
-  const double width = (figure.width_pt - 2 * kEdgePt - space - (count - 1) * kGapPt) / count;
+  const double width = (figure.width_pt - kEdgePt - space - (count - 1) * kGapPt) / count;
   double x = kEdgePt;
   for (const Panel& panel : row.panels) {
-    PanelPlace place{&panel, {x + left, top, width - left - kEdgePt, row.height_pt}, {}, {}};
+    PanelPlace place{&panel, {x + left, top, width - left - kRightPt, row.height_pt}, {}, {}};
     place.x = range_along(panel, 0);
     place.y = range_along(panel, 1);
     if (panel.equal_scale) equalise(place.x, place.y, place.axes);

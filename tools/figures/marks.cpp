@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace stillpoint::figures {
 namespace {
@@ -101,8 +102,7 @@ class Painter {
     if (right - left < kHairPt)
       canvas_.line(Points{{left, axes.y}, {left, axes.bottom()}}, {stretch.colour, kHairPt});
     else if (stretch.lane)
-      canvas_.fill({left, axes.bottom() - (*stretch.lane + 1) * kLanePt, right - left, kLanePt},
-                   stretch.colour);
+      canvas_.fill({left, axes.y + *stretch.lane * kLanePt, right - left, kLanePt}, stretch.colour);
     else
       canvas_.fill({left, axes.y, right - left, axes.height}, stretch.colour, kTranslucent);
   }
@@ -147,7 +147,7 @@ struct Sample {
       const Eigen::Vector2d middle = at + Eigen::Vector2d(kSamplePt / 2, 0), half(0, kTextPt / 2);
       canvas.line(Points{middle - half, middle + half}, {stretch.colour, kHairPt});
     } else {
-      patch(stretch.colour, stretch.lane ? 1.0 : kTranslucent);
+      patch(kReferenceGrey, stretch.lane ? 1.0 : kTranslucent);
     }
   }
   void operator()(const Bar& bar) const { patch(bar.colour, 1.0); }

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iomanip>
 #include <limits>
+#include <sstream>
 
 #include "evaluation/format.hpp"
 
@@ -11,15 +13,23 @@ namespace {
 
 constexpr double kSmallPart = 1e-9;  // of a step: rounding
 
+/// Of the round steps the one that comes closest to `count` ticks.
 double tick_step(const Range& range, double count) {
   const double rough = range.span() / std::max(count, 1.0);
   const double power = std::pow(10.0, std::floor(std::log10(rough)));
-  for (double factor : {1.0, 2.0, 5.0})
-    if (factor * power >= rough * (1 - kSmallPart)) return factor * power;
-  return 10 * power;
+  double best = power;
+  for (const double factor : {2.0, 5.0, 10.0})
+    if (factor * power * best < rough * rough) best = factor * power;
+  return best;
 }
 
 std::string number_text(double value, double step) {
+  constexpr double kLargest = 1e7;  // is written out
+  if (std::abs(value) >= kLargest) {
+    std::ostringstream text;
+    text << std::setprecision(3) << value;
+    return text.str();
+  }
   const int decimals = std::max(0, static_cast<int>(std::ceil(-std::log10(step) - kSmallPart)));
   const std::string digits = evaluation::fixed(std::abs(value), decimals);
   return value < 0 ? "\u2212" + digits : digits;  // a minus, not a hyphen

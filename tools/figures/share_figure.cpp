@@ -14,10 +14,7 @@ Figure share_figure(std::span<const RunShare> runs) {
     panel.marks.emplace_back(std::move(line));
     for (const double second : runs[k].excluded.seconds) times.include(second);
   }
-  if (times.low < times.high) {
-    panel.x.low = times.low;
-    panel.x.high = times.high;
-  }
+  limit_x(panel, times);
   Figure figure{"Share of the image left out"};
   figure.rows.push_back({kHeightPt, {std::move(panel)}});
   return figure;

@@ -21,8 +21,9 @@ struct RunTimes {
   std::vector<StageTime> stages;  ///< in the order of the pipeline
 };
 
-/// Above, what an average frame costs, a bar of stages for each run; below, the percentiles of each
-/// stage: 50th (dot), 95th (thick line) and 99th (thin line). As wide as a column.
+/// Above, what an average frame costs, a bar of stages for each run, those of little cost in one
+/// piece; below, the percentiles of each stage: 50th (bar), 95th (narrower) and 99th (line). As
+/// wide as a column.
 Figure stage_time_figure(std::span<const RunTimes> runs);
 
 struct StageCourse {
@@ -30,7 +31,7 @@ struct StageCourse {
   Course ms;
 };
 
-/// A line for each stage, as wide as the page.
+/// A line for each of the costliest stages, as wide as the page.
 Figure frame_time_figure(std::span<const StageCourse> stages);
 
 }  // namespace stillpoint::figures

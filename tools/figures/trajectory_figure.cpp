@@ -85,15 +85,18 @@ Panel view_along(std::span<const RunPath> runs, int horizontal, int vertical) {
   return panel;
 }
 
+double view_height_pt(std::span<const RunPath> runs, int vertical, double width_pt) {
+  constexpr double kLowest = 60, kHighest = 1.2, kLeastM = 1e-3;
+  const double width_m = std::max(span_along(runs, 0), kLeastM);
+  return std::clamp(width_pt * span_along(runs, vertical) / width_m, kLowest, kHighest * width_pt);
+}
+
 Figure trajectory_figure(std::span<const RunPath> runs) {
-  constexpr double kWidthPt = 185;  // about that of the axes
-  constexpr double kLowest = 45, kHighest = 230;
+  constexpr double kAxesPt = 175;  // about as wide as they become
   Figure figure{"Trajectories"};
-  const double width_m = std::max(span_along(runs, 0), 1e-3);
-  for (const int vertical : {1, 2}) {
-    const double height = kWidthPt * span_along(runs, vertical) / width_m;
-    figure.rows.push_back({std::clamp(height, kLowest, kHighest), {view_along(runs, 0, vertical)}});
-  }
+  for (const int vertical : {1, 2})
+    figure.rows.push_back(
+        {view_height_pt(runs, vertical, kAxesPt), {view_along(runs, 0, vertical)}});
   figure.rows[0].panels[0].x.label.clear();
   figure.colour_scale = error_colours(runs);
   return figure;

@@ -29,6 +29,10 @@ Figure trajectory_figure(std::span<const RunPath> runs);
 Panel view_along(std::span<const RunPath> runs, int horizontal, int vertical);
 std::optional<ColourScale> error_colours(std::span<const RunPath> runs);
 
+/// Height of axes `width_pt` wide in which the view along z (vertical 1) or y (2) has equal scales,
+/// within limits.
+double view_height_pt(std::span<const RunPath> runs, int vertical, double width_pt);
+
 /// The run that shows most of the truth.
 const RunPath& longest_of(std::span<const RunPath> runs);
 
