@@ -101,7 +101,7 @@ RunErrors errors(const std::string& name, double metres) {
     course.seconds.push_back(0.1 * i);
     course.values.push_back(metres);
   }
-  return {name, course, course, {{4.05, 5.05}}, {7}};
+  return {name, course, course, course, {{4.05, 5.05}}, {7}};
 }
 
 TEST(ErrorFigure, ShowsBothErrorsLostStretchesLoopsAndTheRootMeanSquare) {
@@ -131,7 +131,7 @@ TEST(ErrorFigure, OfSeveralEachHasALaneForItsLostStretches) {
 }
 
 TEST(ErrorFigure, WithoutErrorsThereAreAxes) {
-  const std::vector<RunErrors> runs = {{"nothing", {}, {}, {}, {}}};
+  const std::vector<RunErrors> runs = {{"nothing", {}, {}, {}, {}, {}}};
   EXPECT_FALSE(draw(error_figure(runs, "1 s"), Format::kSvg).empty());
 }
 
@@ -178,7 +178,7 @@ TEST(StageTimeFigure, StagesOfLittleCostAreOnePiece) {
 TEST(FrameTimeFigure, HasALineForEachOfTheCostliestStages) {
   std::vector<StageCourse> stages;
   for (int i = 0; i < 9; ++i)
-    stages.push_back({"stage " + std::to_string(i), {{0, 1, 2}, {1.0 * i, 2.0 * i, 1.0 * i}}});
+    stages.push_back({"stage " + std::to_string(i), {0, 1, 2}, {1.0 * i, 2.0 * i, 1.0 * i}});
   const Figure figure = frame_time_figure(stages);
   EXPECT_EQ(names_in(figure).size(), kRunColours);
   EXPECT_THAT(names_in(figure), IsSupersetOf({"stage 8", "stage 3"}));

@@ -80,7 +80,7 @@ Figure evaluation_figure(std::span<const Contestant> runs) {
   std::vector<RunErrors> errors;
   for (RunPath& path : paths) {
     path.lost = lost_stretches(path.seconds, times);
-    errors.push_back({path.name, {path.seconds, path.errors_m()}, {}, path.lost, {}});
+    errors.push_back({path.name, {path.seconds, path.errors_m()}, {}, {}, path.lost, {}});
   }
   Figure figure{"Trajectories and their errors", kPagePt};
   const double view_pt =

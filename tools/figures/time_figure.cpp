@@ -70,7 +70,7 @@ void add_percentiles(Panel& panel, const std::string& name, const StageTime& tim
 
 Panel percentiles(std::span<const RunTimes> runs, const std::map<std::string, Colour>& colours) {
   constexpr double kOfCategory = 0.75;
-  Panel panel{"A call: median, 95th and 99th percentile", {"time [ms]"}, {}};
+  Panel panel{"Wall time of a call: median, 95th, 99th percentile", {"time [ms]"}, {}};
   panel.x.low = 0;
   panel.y.categories = stage_names(runs);
   const double thickness = kOfCategory / static_cast<double>(runs.size());
@@ -88,7 +88,7 @@ Panel percentiles(std::span<const RunTimes> runs, const std::map<std::string, Co
 }
 
 double sum_of(const StageCourse& stage) {
-  return std::accumulate(stage.ms.values.begin(), stage.ms.values.end(), 0.0);
+  return std::accumulate(stage.ms.begin(), stage.ms.end(), 0.0);
 }
 
 /// As many as lines can be told apart, in their order.
@@ -110,7 +110,7 @@ Figure stage_time_figure(std::span<const RunTimes> runs) {
   const auto height = [](std::size_t categories) {
     return kCategoryPt * static_cast<double>(std::max<std::size_t>(categories, 1));
   };
-  Panel stacked{"Mean of a frame", {}, {}};
+  Panel stacked{"CPU time of a frame, mean", {}, {}};
   stacked.x.low = 0;
   for (const RunTimes& run : runs) stack_stages(stacked, run, colours);
   Figure figure{"Time of the stages"};
@@ -121,16 +121,16 @@ Figure stage_time_figure(std::span<const RunTimes> runs) {
 
 Figure frame_time_figure(std::span<const StageCourse> stages) {
   constexpr double kHeightPt = 110, kThinPt = 0.7;
-  Panel panel{"", {"time [s]"}, {"a call [ms]"}};
+  Panel panel{"", {"frame"}, {"CPU [ms]"}};
   panel.y.low = 0;
-  Range times = empty_range();
+  Range frames = empty_range();
   for (const StageCourse& stage : costliest(stages)) {
-    panel.marks.emplace_back(
-        Line{stage.stage, points_of(stage.ms, {}), run_colour(panel.marks.size()), kThinPt});
-    for (const double second : stage.ms.seconds) times.include(second);
+    panel.marks.emplace_back(Line{stage.stage, points_of({stage.frames, stage.ms}, {}),
+                                  run_colour(panel.marks.size()), kThinPt});
+    for (const double frame : stage.frames) frames.include(frame);
   }
-  limit_x(panel, times);
-  Figure figure{"Time of the stages over the run", kPagePt};
+  limit_x(panel, frames);
+  Figure figure{"CPU time of the stages", kPagePt};
   figure.rows.push_back({kHeightPt, {std::move(panel)}});
   return figure;
 }

@@ -9,11 +9,11 @@
 
 namespace stillpoint::figures {
 
-/// Milliseconds, wall clock.
+/// Milliseconds.
 struct StageTime {
   std::string stage;
-  double mean_per_frame = 0;         ///< over all frames, those without the stage included
-  double p50 = 0, p95 = 0, p99 = 0;  ///< percentiles of its calls
+  double mean_per_frame = 0;         ///< CPU time, over all frames, also those without the stage
+  double p50 = 0, p95 = 0, p99 = 0;  ///< percentiles of its calls, wall time
 };
 
 struct RunTimes {
@@ -26,9 +26,10 @@ struct RunTimes {
 /// wide as a column.
 Figure stage_time_figure(std::span<const RunTimes> runs);
 
+/// CPU time of the frames, ms; `frames` rise.
 struct StageCourse {
   std::string stage;
-  Course ms;
+  std::vector<double> frames, ms;
 };
 
 /// A line for each of the costliest stages, as wide as the page.

@@ -1,6 +1,7 @@
 #include "figures/trajectory_figure.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "figures/course.hpp"
 
@@ -10,24 +11,31 @@ namespace {
 constexpr double kTruthPt = 2.0;
 constexpr const char* kAxisLabel[3] = {"x [m]", "y [m]", "z [m]"};
 
-struct Flat {
-  Points points;
-  std::vector<double> values;
-};
+bool breaks_before(const RunPath& run, std::size_t i) {
+  return i > 0 && lost_between(run.lost, run.seconds[i - 1], run.seconds[i]);
+}
 
-/// Two of the three coordinates; a value for each point, those of breaks included.
-Flat flatten(const RunPath& run, const std::vector<Eigen::Vector3d>& path,
-             const std::vector<double>& values, int horizontal, int vertical) {
-  Flat flat;
-  const auto add = [&](const Eigen::Vector2d& point, double value) {
-    flat.points.push_back(point);
-    flat.values.push_back(value);
-  };
+/// Two of the three coordinates.
+Points points_of(const RunPath& run, const std::vector<Eigen::Vector3d>& path, int horizontal,
+                 int vertical) {
+  Points points;
   for (std::size_t i = 0; i < path.size(); ++i) {
-    if (i > 0 && lost_between(run.lost, run.seconds[i - 1], run.seconds[i])) add(line_break(), 0);
-    add({path[i][horizontal], path[i][vertical]}, values[i]);
+    if (breaks_before(run, i)) points.push_back(line_break());
+    points.emplace_back(path[i][horizontal], path[i][vertical]);
   }
-  return flat;
+  return points;
+}
+
+/// Errors in the unit of the colour scale, one for each of the points.
+std::vector<double> values_of(const RunPath& run) {
+  const std::vector<double> errors = run.errors_m();
+  const double per_metre = unit_for(largest_of(errors)).per_metre;
+  std::vector<double> values;
+  for (std::size_t i = 0; i < errors.size(); ++i) {
+    if (breaks_before(run, i)) values.push_back(0);
+    values.push_back(per_metre * errors[i]);
+  }
+  return values;
 }
 
 double span_along(std::span<const RunPath> runs, int axis) {
@@ -51,7 +59,7 @@ const RunPath& longest_of(std::span<const RunPath> runs) {
 }
 
 std::optional<ColourScale> error_colours(std::span<const RunPath> runs) {
-  if (runs.size() != 1) return std::nullopt;
+  if (runs.size() != 1 || runs[0].truth.empty()) return std::nullopt;
   const double largest = largest_of(runs[0].errors_m());
   const LengthUnit unit = unit_for(largest);
   constexpr double kNoErrorM = 1e-6;
@@ -60,27 +68,23 @@ std::optional<ColourScale> error_colours(std::span<const RunPath> runs) {
 }
 
 Panel view_along(std::span<const RunPath> runs, int horizontal, int vertical) {
-  Panel panel{vertical == 1 ? "From above" : "From the side",
-              {kAxisLabel[horizontal]},
-              {kAxisLabel[vertical]},
-              {},
-              true};
+  Panel panel{"", {kAxisLabel[horizontal]}, {kAxisLabel[vertical]}, {}, true};
   const RunPath& longest = longest_of(runs);
-  const std::vector<double> no_values(longest.truth.size());
-  panel.marks.emplace_back(
-      Line{"truth", flatten(longest, longest.truth, no_values, horizontal, vertical).points,
-           kReferenceGrey, kTruthPt});
-  for (std::size_t k = 0; k < runs.size(); ++k) {
-    std::vector<double> errors = runs[k].errors_m();
-    const double per_metre = unit_for(largest_of(errors)).per_metre;
-    for (double& error : errors) error *= per_metre;
-    Flat flat = flatten(runs[k], runs[k].estimate, errors, horizontal, vertical);
-    if (runs.size() == 1)
-      panel.marks.emplace_back(ValueLine{std::move(flat.points), std::move(flat.values)});
-    else
-      panel.marks.emplace_back(Line{runs[k].name, std::move(flat.points), run_colour(k)});
+  if (!longest.truth.empty()) {
+    panel.title = vertical == 1 ? "From above" : "From the side";
+    panel.marks.emplace_back(Line{"truth", points_of(longest, longest.truth, horizontal, vertical),
+                                  kReferenceGrey, kTruthPt});
   }
-  const Eigen::Vector3d& start = longest.truth.front();
+  const std::optional<ColourScale> colours = error_colours(runs);
+  for (std::size_t k = 0; k < runs.size(); ++k) {
+    Points points = points_of(runs[k], runs[k].estimate, horizontal, vertical);
+    if (colours)
+      panel.marks.emplace_back(ValueLine{std::move(points), values_of(runs[k])});
+    else
+      panel.marks.emplace_back(Line{runs[k].name, std::move(points), run_colour(k)});
+  }
+  const Eigen::Vector3d& start =
+      longest.truth.empty() ? longest.estimate.front() : longest.truth.front();
   panel.marks.emplace_back(Dot{"start", {start[horizontal], start[vertical]}});
   return panel;
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -10,15 +11,16 @@
 
 namespace stillpoint::figures {
 
-/// The poses of a run whose true ones are known: metres, in the world of the truth, where z points
-/// up.
+/// Poses of a run beside the true ones: metres, in the world of the truth, where z points up.
+/// Without truth, in the run's own world.
 struct RunPath {
   std::string name;
-  std::vector<double> seconds;  ///< rising, since the recording began
-  std::vector<Eigen::Vector3d> truth, estimate;
+  std::vector<double> seconds;         ///< rising, since the recording began
+  std::vector<Eigen::Vector3d> truth;  ///< empty: not known
+  std::vector<Eigen::Vector3d> estimate;
   std::vector<Range> lost;  ///< stretches of time without poses
 
-  std::vector<double> errors_m() const;
+  std::vector<double> errors_m() const;  ///< empty without truth
 };
 
 /// From above (x, y) and from the side (x, z), as wide as a column. A single run has the colours of
