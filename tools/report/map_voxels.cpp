@@ -1,11 +1,14 @@
 #include "report/map_voxels.hpp"
 
+#include <yaml-cpp/yaml.h>
+
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <unordered_map>
+#include <vector>
 
-#include "semantic_octree/cost_map.hpp"
 #include "semantic_octree/octree_reader.hpp"
 
 namespace stillpoint::report {
@@ -47,6 +50,21 @@ Eigen::Vector3d corner_of(const SavedOctree& map) {
   return low;
 }
 
+/// Away from the floor that the run has found, which stands in the cost map's file; without one,
+/// the up of the first camera.
+Eigen::Vector3d up_beside(const std::filesystem::path& octree) {
+  const Eigen::Vector3d camera_up(0, -1, 0);
+  try {
+    const std::filesystem::path cost_map = octree.parent_path() / "map.yaml";
+    const auto pose = YAML::LoadFile(cost_map.string())["world_from_map"].as<std::vector<double>>();
+    if (pose.size() != 7) return camera_up;
+    const Eigen::Quaterniond world_from_map(pose[6], pose[3], pose[4], pose[5]);
+    return world_from_map.normalized() * Eigen::Vector3d::UnitZ();
+  } catch (const YAML::Exception&) {
+    return camera_up;
+  }
+}
+
 void append(MapVoxels& voxels, const Cube& cube) {
   const auto part = [&](int shift) {
     return static_cast<std::uint16_t>(cube.key >> shift & 0xffff);
@@ -78,8 +96,7 @@ MapVoxels read_voxels(const std::filesystem::path& octree, std::size_t limit) {
   voxels.occupied = cubes.size();
   for (; cubes.size() > limit; voxels.edge *= 2) cubes = merged(cubes);
   voxels.corner = low.array() - 0.5 * voxels.resolution;
-  const auto floor = semantic_octree::floor_of(*map.tree, {});
-  voxels.up = floor ? floor->up : Eigen::Vector3d(0, -1, 0);  // of the first camera
+  voxels.up = up_beside(octree);
   for (const Cube& cube : cubes) append(voxels, cube);
   return voxels;
 }

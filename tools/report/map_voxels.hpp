@@ -16,7 +16,7 @@ struct MapVoxels {
   double edge = 0;                     ///< metres, of the cubes below
   double resolution = 0;               ///< metres, of the map's own voxels
   Eigen::Vector3d corner{0, 0, 0};     ///< of the cube (0, 0, 0), metres in world
-  Eigen::Vector3d up{0, 0, 0};         ///< away from the floor
+  Eigen::Vector3d up{0, 0, 0};         ///< away from the floor, unit length
   std::size_t occupied = 0;            ///< voxels of the map
   std::vector<std::uint16_t> x, y, z;  ///< cubes, in edges from the corner
   std::vector<std::uint8_t> red, green, blue;

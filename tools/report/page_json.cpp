@@ -1,5 +1,6 @@
 #include "report/page_json.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -20,6 +21,8 @@ Json quantised(double value, double step) {
 
 constexpr double kMillimetre = 1e-3, kTenthOfMillimetre = 1e-4, kMillisecond = 1e-3,
                  kMicrosecond = 1e-3 /* ms */, kMillidegree = 1e-3, kPerMille = 1e-3;
+
+constexpr std::size_t kStageParts = 400;  // as many as can be told apart in a stack
 
 Json optional_json(const std::optional<double>& value) { return value ? Json(*value) : Json(); }
 
@@ -210,7 +213,7 @@ Json run_json(const RunData& run, std::size_t points) {
                {"notes", run.notes},
                {"facts", facts_json(run)},
                {"frames", frames_json(run, points)},
-               {"stages", stages_json(run, points)},
+               {"stages", stages_json(run, std::min(points, kStageParts))},
                {"loops", run.loops},
                {"yaml", run.yaml},
                {"base", run.base}};

@@ -1,6 +1,7 @@
 // stillpoint report: a page and tables of runs or of a study.
 #include <filesystem>
 #include <iostream>
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -15,6 +16,7 @@
 #include "report/table_files.hpp"
 #include "stillpoint/engine/install_layout.hpp"
 #include "stillpoint/error.hpp"
+#include "study/origin.hpp"
 #include "study/text_file.hpp"
 #include "study_file.hpp"
 
@@ -60,8 +62,12 @@ report::ReportData read(const ReportArguments& arguments) {
   report::ReportData data = is_study ? report::read_study(first, recorded_study(study))
                                      : report::read_runs(arguments.folders);
   if (!arguments.base.empty()) {
-    for (report::RunData& run : data.runs)
-      compare_options(run, arguments.base, effective_yaml(arguments.base, run.truth.parent_path()));
+    std::map<fs::path, std::string> yaml;  // by recording: loading a pipeline takes a while
+    for (report::RunData& run : data.runs) {
+      std::string& base = yaml[run.truth.parent_path()];
+      if (base.empty()) base = effective_yaml(arguments.base, run.truth.parent_path());
+      compare_options(run, arguments.base, base);
+    }
   } else if (data.runs.size() == 1) {
     compare_with_its_file(data.runs.front());
   }

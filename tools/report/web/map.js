@@ -6,7 +6,7 @@ import {OrbitControls} from 'three/examples/jsm/controls/OrbitControls.js';
 
 import {unpacked} from './data.js';
 import {choice, el} from './dom.js';
-import {css, heat, redrawn} from './theme.js';
+import {css, fitted, heat, redrawn} from './theme.js';
 
 /** Views into the bytes of a map, see map_bytes() of the program. */
 function planes(buffer, count) {
@@ -58,7 +58,7 @@ function cameraFor(map, data, element) {
   const up = new Vector3(...map.up);
   // The first camera looks along z: from behind it.
   const ahead = new Vector3(0, 0, 1).addScaledVector(up, -up.z).normalize();
-  camera.position.copy(centre).addScaledVector(ahead, -1.35 * radius).addScaledVector(up, 1.0 * radius);
+  camera.position.copy(centre).addScaledVector(ahead, -1.25 * radius).addScaledVector(up, 0.85 * radius);
   const controls = new OrbitControls(camera, element);
   controls.target.copy(centre);
   controls.update();
@@ -91,7 +91,7 @@ function trajectory(path) {
 /** Resolves when the map is drawn. */
 export async function mapView(map, path) {
   const data = planes(await unpacked(map.id), map.shown);
-  const canvas = el('canvas', {class: 'map', tabindex: 0,
+  const canvas = el('canvas', {class: 'map on-screen', tabindex: 0,
                                'aria-label': 'Dense map; drag to turn, wheel to zoom'});
   let renderer;
   try {
@@ -114,6 +114,13 @@ export async function mapView(map, path) {
     renderer.setClearColor(css('--plot'));
     renderer.render(scene, camera);
   };
+  // Browsers print what WebGL has drawn at another size; a plain copy they print as it is.
+  const copy = el('canvas', {class: 'map on-paper'});
+  window.addEventListener('beforeprint', () => {
+    copy.width = canvas.width;
+    copy.height = canvas.height;
+    copy.getContext('2d').drawImage(canvas, 0, 0);
+  });
   const legend = el('div');
   const show = i => {
     paint(mesh, list[i][1]);
@@ -121,7 +128,7 @@ export async function mapView(map, path) {
     draw();
   };
   controls.addEventListener('change', draw);
-  new ResizeObserver(draw).observe(canvas);
+  fitted(canvas, draw);
   redrawn(canvas, draw);
   show(0);
   const cubes = map.shown < map.occupied
@@ -130,6 +137,6 @@ export async function mapView(map, path) {
     : `${map.occupied.toLocaleString('en')} voxels of ${(100 * map.resolution).toFixed(1)} cm.`;
   return el('div', {class: 'map-view'},
             el('div', {class: 'map-bar'}, choice(list.map(([name]) => name), 0, show), legend),
-            canvas, el('p', {class: 'quiet'}, cubes + ' Drag to turn, wheel to zoom, right button to move. ',
+            canvas, copy, el('p', {class: 'quiet'}, cubes + ' Drag to turn, wheel to zoom, right button to move. ',
                        path ? 'Pink: the camera\u2019s path.' : ''));
 }

@@ -49,9 +49,10 @@ function timeFigures(run) {
     parts.push(figure('Absolute trajectory error', seriesChart(
       withGaps(scaled(run.trace.t, 1e-3), run.trace.gap, scaled(run.trace.e, 0.1)),
       [{label: 'ATE [mm]', colour: kind(0)}], {...common, yName: '[mm]'})));
-  if (run.drift.t.length)
+  const drifted = scaled(run.drift.t, 1e-3);
+  if (drifted.length)
     parts.push(figure('Relative pose error over the next second', seriesChart(
-      [scaled(run.drift.t, 1e-3), scaled(run.drift.m, 0.1), scaled(run.drift.deg, 1e-3)],
+      withGaps(drifted, behindLost(drifted, run.lost), scaled(run.drift.m, 0.1), scaled(run.drift.deg, 1e-3)),
       [{label: 'position [mm]', colour: kind(0)},
        {label: 'rotation [deg]', colour: kind(1), scale: 'y2', digits: 3}],
       {...common, yName: '[mm]', y2Name: '[deg]'})));
@@ -74,9 +75,13 @@ function timeFigures(run) {
   return [legend, el('div', {class: 'pair'}, ...parts)];
 }
 
-const facts = [['coverage', v => `${(100 * v).toFixed(1)} %`, 'coverage'],
-  ['times_lost', v => v, 'times lost'], ['loops', v => v, 'loops closed'], ['frames', v => v, 'frames'],
-  ['keyframes', v => v, 'key frames'], ['landmarks', v => v.toLocaleString('en'), 'landmarks'],
+/** Which of the moments is the first one behind a lost stretch. */
+function behindLost(t, lost) {
+  return t.map((seconds, i) => i > 0 && lost.some(([begin]) => t[i - 1] < begin && begin <= seconds));
+}
+
+const facts = [['coverage', v => `${(100 * v).toFixed(1)} %`, 'coverage'], ['frames', v => v, 'frames'],
+  ['times_lost', v => v, 'times lost'], ['loops', v => v, 'loops closed'], ['keyframes', v => v, 'key frames'],
   ['speed', v => v.toFixed(1), 'frames/s'], ['cpu', v => `${v.toFixed(1)} ms`, 'CPU per frame'],
   ['memory', v => `${v.toFixed(0)} MiB`, 'peak memory']];
 
@@ -84,8 +89,8 @@ function headline(run) {
   const tiles = [];
   const tile = (value, label) => tiles.push(el('div', {class: 'tile'}, el('b', {}, String(value)), label));
   if (run.errors) {
-    tile(`${(1000 * run.errors.ate_m[0]).toFixed(1)} mm`, 'ATE, RMSE');
-    if (run.errors.rpe_m) tile(`${(1000 * run.errors.rpe_m[0]).toFixed(1)} mm`, 'RPE over 1 s, RMSE');
+    tile(`${(1000 * run.errors.ate_m[0]).toFixed(1)} mm`, 'ATE');
+    if (run.errors.rpe_m) tile(`${(1000 * run.errors.rpe_m[0]).toFixed(1)} mm`, 'RPE over 1 s');
   }
   for (const [key, text, label] of facts)
     if (run.facts[key] !== null) tile(text(run.facts[key]), label);
