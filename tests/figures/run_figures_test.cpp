@@ -76,6 +76,16 @@ TEST(TrajectoryFigure, SeveralHaveAColourEach) {
   EXPECT_NE(lines[1].colour, lines[2].colour);
 }
 
+TEST(TrajectoryFigure, ASeventhRunIsTheDashedFirst) {
+  std::vector<RunPath> runs;
+  for (int i = 0; i < 7; ++i) runs.push_back(path("run " + std::to_string(i), 0.02 * i));
+  const std::vector<Line> lines = marks_of<Line>(trajectory_figure(runs).rows[0].panels[0]);
+  ASSERT_EQ(lines.size(), 8u);
+  EXPECT_EQ(lines[1].colour, lines[7].colour);
+  EXPECT_FALSE(lines[1].dashed);
+  EXPECT_TRUE(lines[7].dashed);
+}
+
 TEST(TrajectoryFigure, LinesBreakWhereTheCameraWasLost) {
   std::vector<RunPath> runs = {path("one", 0.02)};
   runs[0].lost = {{3.0, 3.1}, {7.05, 7.07}};

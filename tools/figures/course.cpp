@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace stillpoint::figures {
 
@@ -23,6 +24,12 @@ bool lost_between(const std::vector<Range>& lost, double earlier, double later) 
 
 Eigen::Vector2d line_break() {
   return Eigen::Vector2d::Constant(std::numeric_limits<double>::quiet_NaN());
+}
+
+Line run_line(const std::string& name, Points points, std::size_t run) {
+  Line line{name, std::move(points), run_colour(run)};
+  line.dashed = run / kRunColours % 2 == 1;
+  return line;
 }
 
 void mark_lost(Panel& panel, const std::vector<Range>& lost, std::size_t run, std::size_t runs) {

@@ -25,6 +25,9 @@ bool lost_between(const std::vector<Range>& lost, double earlier, double later);
 /// The point at which lines break.
 Eigen::Vector2d line_break();
 
+/// In the colour of the run; dashed where colours come again.
+Line run_line(const std::string& name, Points points, std::size_t run);
+
 /// Puts a mark into the panel for each stretch in which a run was lost: over the whole height for
 /// the only run, in a lane of its own for one of several.
 void mark_lost(Panel& panel, const std::vector<Range>& lost, std::size_t run, std::size_t runs);

@@ -19,7 +19,7 @@ Panel panel_of(std::span<const RunErrors> runs, CourseOf course, const std::stri
   }
   for (std::size_t k = 0; k < runs.size(); ++k)
     panel.marks.emplace_back(
-        Line{runs[k].name, points_of(runs[k].*course, runs[k].lost, scale), run_colour(k), 0.9});
+        run_line(runs[k].name, points_of(runs[k].*course, runs[k].lost, scale), k));
   return panel;
 }
 

@@ -61,8 +61,7 @@ Panel along_axis(std::span<const RunPath> runs, int axis, const Range& times) {
   panel.marks.emplace_back(
       Line{"truth", coordinate(longest, longest.truth), kReferenceGrey, kTruthPt});
   for (std::size_t k = 0; k < runs.size(); ++k)
-    panel.marks.emplace_back(
-        Line{runs[k].name, coordinate(runs[k], runs[k].estimate), run_colour(k)});
+    panel.marks.emplace_back(run_line(runs[k].name, coordinate(runs[k], runs[k].estimate), k));
   return panel;
 }
 

@@ -9,7 +9,7 @@ Figure share_figure(std::span<const RunShare> runs) {
   Range times = empty_range();
   for (std::size_t k = 0; k < runs.size(); ++k) {
     mark_lost(panel, runs[k].lost, k, runs.size());
-    Line line{runs[k].name, points_of(runs[k].excluded, runs[k].lost, kPercent), run_colour(k)};
+    Line line = run_line(runs[k].name, points_of(runs[k].excluded, runs[k].lost, kPercent), k);
     line.filled = runs.size() == 1;
     panel.marks.emplace_back(std::move(line));
     for (const double second : runs[k].excluded.seconds) times.include(second);

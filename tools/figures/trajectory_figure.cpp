@@ -81,7 +81,7 @@ Panel view_along(std::span<const RunPath> runs, int horizontal, int vertical) {
     if (colours)
       panel.marks.emplace_back(ValueLine{std::move(points), values_of(runs[k])});
     else
-      panel.marks.emplace_back(Line{runs[k].name, std::move(points), run_colour(k)});
+      panel.marks.emplace_back(run_line(runs[k].name, std::move(points), k));
   }
   const Eigen::Vector3d& start =
       longest.truth.empty() ? longest.estimate.front() : longest.truth.front();
