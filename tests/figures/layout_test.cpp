@@ -47,6 +47,23 @@ TEST(Layout, AnAxisOfOneNumberOrNoneStillHasLength) {
   }
 }
 
+TEST(Layout, TheColourBarAndItsLabelStayOnThePage) {
+  for (const double most : {0.00123, 5.8, 1'234.0}) {
+    Panel panel{"", {"x [m]"}, {"y [m]"}};
+    panel.marks.emplace_back(ValueLine{{{0, 0}, {1, 1}}, {0, most}});
+    Figure figure = figure_of(panel);
+    figure.colour_scale = ColourScale{"error [mm]", {0, most}};
+    const Picture picture(figure);
+    const Box bar = picture.layout().colour_bar.value();
+    double numbers = 0;
+    for (const Tick& tick : ticks_of({0, most}, kColourTicks))
+      numbers = std::max(numbers, text_width_pt(tick.text, kTextPt));
+    EXPECT_LT(bar.right() + kTickPt + 2 * kTextGapPt + numbers + kTextPt,
+              picture.layout().width_pt);
+    EXPECT_GT(bar.x, picture.layout().panels[0].axes.right());
+  }
+}
+
 TEST(Layout, TheLegendHasEachNameOnceAndStaysOnThePage) {
   Panel panel = with_line({{0, 0}, {1, 1}});
   for (int i = 0; i < 9; ++i) {

@@ -59,7 +59,6 @@ void draw_axes(Canvas& canvas, const PanelPlace& place, double numbers_pt) {
 
 void draw_colour_bar(Canvas& canvas, const Box& bar, const ColourScale& scale) {
   constexpr int kSteps = 64;
-  constexpr double kApartPt = 24;
   const double step = bar.height / kSteps;
   for (int i = 0; i < kSteps; ++i) {
     const double share = 1 - (i + 0.5) / kSteps;
@@ -68,7 +67,7 @@ void draw_colour_bar(Canvas& canvas, const Box& bar, const ColourScale& scale) {
                 value_colour(share));
   }
   double numbers = 0;
-  for (const Tick& tick : ticks_of(scale.values, bar.height / kApartPt)) {
+  for (const Tick& tick : ticks_of(scale.values, kColourTicks)) {
     const double y = bar.y + (scale.values.high - tick.at) / scale.values.span() * bar.height;
     canvas.line(Points{{bar.right(), y}, {bar.right() + kTickPt, y}}, kAxis);
     canvas.text(tick.text, {bar.right() + kTickPt + kTextGapPt, y}, kTextPt, {0, 0.5});

@@ -58,7 +58,7 @@ double widest_text(const std::vector<Tick>& ticks) {
 // Space at the right of rows with values: the bar, its numbers and its label.
 double colour_bar_space(const Figure& figure) {
   if (!figure.colour_scale) return 0;
-  const double numbers = widest_text(ticks_of(figure.colour_scale->values, 4));
+  const double numbers = widest_text(ticks_of(figure.colour_scale->values, kColourTicks));
   return kBarGapPt + kBarPt + kTickPt + kTextGapPt + numbers + kLinePt;
 }
 

@@ -31,6 +31,9 @@ struct LegendPlace {
 };
 inline constexpr double kSamplePt = 14;
 
+/// About so many numbers stand beside the colour bar.
+inline constexpr double kColourTicks = 5;
+
 struct Layout {
   double width_pt, height_pt;
   std::vector<LegendPlace> legend;
