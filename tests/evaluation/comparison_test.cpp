@@ -7,7 +7,6 @@
 #include <sstream>
 
 #include "evaluation/format.hpp"
-#include "evaluation/plot.hpp"
 #include "fixtures.hpp"
 
 namespace stillpoint::evaluation {
@@ -60,14 +59,6 @@ TEST(Comparison, JsonHasAllFiguresOfEach) {
   EXPECT_EQ(json[1]["name"], "große Karte");
   EXPECT_EQ(json[1]["aligned"]["position_m"]["rmse"], comparison.contestants[1].error.metres.rmse);
   EXPECT_EQ(json[1]["ate"]["se3_m"]["rmse"], comparison.contestants[1].error.metres.rmse);
-}
-
-TEST(Comparison, CanBeDrawn) {
-  const Comparison comparison = of_three();
-  std::vector<PlottedRun> runs;
-  for (const Contestant& one : comparison.contestants)
-    runs.push_back({one.name, one.evaluation, one.error});
-  EXPECT_FALSE(draw_plot(runs).empty());
 }
 
 }  // namespace

@@ -4,11 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
-#include <opencv2/imgcodecs.hpp>
 
-#include "evaluation/plot.hpp"
 #include "fixtures.hpp"
-#include "stillpoint/error.hpp"
 
 namespace stillpoint::evaluation {
 namespace {
@@ -49,29 +46,6 @@ TEST(Report, ShortTrajectoriesHaveNoRelativeErrorInEither) {
   const Evaluation e = evaluate(path, path, {}, {});
   EXPECT_THAT(report_table(e), HasSubstr("RPE over 1 s: the trajectories are too short"));
   EXPECT_TRUE(report_json(e)["rpe"]["translation_m"].is_null());
-}
-
-TEST(Plot, IsAPictureWithBothPaths) {
-  const TemporaryFile file("plot.png", "");
-  const Evaluation square = of_square();
-  write_plot(std::vector<PlottedRun>{{"square", square, square.rigid}}, file.path());
-  const cv::Mat picture = cv::imread(file.path().string());
-  ASSERT_FALSE(picture.empty());
-  EXPECT_GT(picture.cols, picture.rows);
-}
-
-TEST(Plot, ACameraThatStandsStillCanBeDrawn) {
-  Trajectory still = winding_path(20, 0.1);
-  for (StampedPose& pose : still.poses) pose.world_from_camera = Pose::Identity();
-  const Evaluation e = evaluate(still, still, {}, {});
-  EXPECT_FALSE(draw_plot(std::vector<PlottedRun>{{"still", e, e.rigid}}).empty());
-}
-
-TEST(Plot, FileThatCannotBeWrittenIsAnError) {
-  const Evaluation square = of_square();
-  const std::vector<PlottedRun> runs = {{"square", square, square.rigid}};
-  EXPECT_THROW(write_plot(runs, "no/such/folder/plot.png"), Error);
-  EXPECT_THROW(write_plot(runs, "plot.unknown"), Error);
 }
 
 }  // namespace

@@ -44,7 +44,7 @@ TEST_F(Compare, ReadsTheFormatsOfOthersBesideEachOther) {
   write("recording/groundtruth.txt", "tum", 0.0);
   write("ours/trajectory.txt", "tum", 0.004);
   const std::string theirs = write("theirs.csv", "euroc", 0.02);
-  const std::string plot = (folder_.path() / "plot.png").string();
+  const std::string plot = (folder_.path() / "plot.svg").string();
   const std::string reference = (folder_.path() / "recording").string();
   const std::string ours = (folder_.path() / "ours").string() + "/";
   Outcome outcome = call({"compare", "--reference", reference, ours, theirs, "--plot", plot});
@@ -78,6 +78,9 @@ TEST_F(Compare, WhatCannotBeComparedIsNamed) {
   outcome = call({"compare", "--reference", truth, kitti});
   EXPECT_EQ(outcome.exit_code, 3);
   EXPECT_THAT(outcome.err, HasSubstr("do not overlap in time"));
+  outcome = call({"compare", "--reference", truth, truth, "--plot", "plot.jpg"});
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_THAT(outcome.err, HasSubstr("plot.jpg: a figure is a .png, .svg or .pdf file"));
   outcome = call({"compare", "--reference", truth, (folder_.path() / "nothing").string()});
   EXPECT_EQ(outcome.exit_code, 3);
   EXPECT_THAT(outcome.err, HasSubstr("nothing: no such file"));

@@ -10,7 +10,8 @@
 
 #include "commands.hpp"
 #include "evaluation/comparison.hpp"
-#include "evaluation/plot.hpp"
+#include "figures/evaluation_figure.hpp"
+#include "figures/figure_file.hpp"
 #include "stillpoint/error.hpp"
 
 namespace stillpoint {
@@ -86,17 +87,14 @@ void print_comparison(const CompareArguments& arguments) {
   using namespace evaluation;
   require_numbers(
       {arguments.options.max_difference, arguments.options.offset, arguments.options.delta.length});
+  if (!arguments.plot.empty()) figures::format_of(arguments.plot);  // before the work
   const Comparison comparison = compare(arguments);
-  if (!arguments.plot.empty()) {
-    std::vector<PlottedRun> runs;
-    for (const Contestant& one : comparison.contestants)
-      runs.push_back({one.name, one.evaluation, one.error});
-    write_plot(runs, arguments.plot);
-  }
   if (arguments.json)
     std::cout << comparison_json(comparison).dump(2) << '\n';
   else
     std::cout << comparison_table(comparison);
+  if (!arguments.plot.empty())
+    figures::write_figure(figures::evaluation_figure(comparison.contestants), arguments.plot);
 }
 
 }  // namespace
@@ -137,7 +135,9 @@ void add_compare(CLI::App& app) {
   number("--offset", options.offset, "Added to the times of all runs, s", -1e10, 1e10);
   number("--delta", options.delta.length, "Interval of the relative pose error, s", 1e-3, 1e6);
   command->add_flag("--json", arguments->json, "Print JSON instead of a table");
-  command->add_option("--plot", arguments->plot, "Draw all trajectories and their errors, PNG file")
+  command
+      ->add_option("--plot", arguments->plot,
+                   "Draw all trajectories and their errors: .png, .svg or .pdf")
       ->type_name("FILE");
   command->callback([arguments] { print_comparison(*arguments); });
 }

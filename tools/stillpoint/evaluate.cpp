@@ -8,9 +8,10 @@
 #include <vector>
 
 #include "commands.hpp"
-#include "evaluation/evaluation.hpp"
-#include "evaluation/plot.hpp"
+#include "evaluation/comparison.hpp"
 #include "evaluation/report.hpp"
+#include "figures/evaluation_figure.hpp"
+#include "figures/figure_file.hpp"
 #include "stillpoint/error.hpp"
 
 namespace stillpoint {
@@ -26,20 +27,21 @@ void print_evaluation(const EvaluateArguments& arguments) {
   using namespace evaluation;
   EvaluationOptions options = arguments.options;
   require_numbers({options.max_difference, options.offset, options.delta.length});
+  if (!arguments.plot.empty()) figures::format_of(arguments.plot);  // before the work
   options.delta.unit = arguments.delta_unit == "s" ? DeltaUnit::kSeconds : DeltaUnit::kFrames;
   Trajectory reference = read_trajectory(arguments.reference);
   Trajectory estimate = read_trajectory(arguments.estimate);
   const std::vector<double> frames =
       arguments.frames.empty() ? std::vector<double>() : read_stamps(arguments.frames);
   const Evaluation result = evaluate(std::move(reference), std::move(estimate), frames, options);
-  if (!arguments.plot.empty()) {
-    const std::string name = std::filesystem::path(arguments.estimate).filename().string();
-    write_plot(std::vector<PlottedRun>{{name, result, result.rigid}}, arguments.plot);
-  }
   if (arguments.json)
     std::cout << report_json(result).dump(2) << '\n';
   else
     std::cout << report_table(result);
+  if (arguments.plot.empty()) return;
+  const std::string name = std::filesystem::path(arguments.estimate).filename().string();
+  const std::vector<Contestant> runs = {{name, result, result.rigid}};
+  figures::write_figure(figures::evaluation_figure(runs), arguments.plot);
 }
 
 }  // namespace
@@ -72,7 +74,7 @@ void add_evaluate(CLI::App& app) {
       ->check(CLI::IsMember({"s", "f"}))
       ->type_name("s|f");
   command->add_flag("--json", arguments->json, "Print JSON instead of a table");
-  file("--plot", arguments->plot, "Draw both trajectories and the error, PNG file");
+  file("--plot", arguments->plot, "Draw both trajectories and the error: .png, .svg or .pdf");
   command->callback([arguments] { print_evaluation(*arguments); });
 }
 

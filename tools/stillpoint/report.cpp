@@ -10,6 +10,7 @@
 #include "commands.hpp"
 #include "commit.hpp"
 #include "evaluation/format.hpp"
+#include "report/figures.hpp"
 #include "report/page.hpp"
 #include "report/report_reader.hpp"
 #include "report/run_reader.hpp"
@@ -27,7 +28,7 @@ namespace fs = std::filesystem;
 
 struct ReportArguments {
   std::vector<fs::path> folders;
-  fs::path output;
+  fs::path output, figures;
   std::string base;
 };
 
@@ -82,6 +83,9 @@ void write_report(const ReportArguments& arguments) {
                         : alone                   ? arguments.folders.front() / "report.html"
                                                   : fs::path("report.html");
   const report::ReportData data = read(arguments);
+  if (!arguments.figures.empty())
+    std::cout << report::write_figures(data, arguments.figures) << " figures in "
+              << arguments.figures.string() << ", each as SVG and PDF\n";
   const study::Origin here =
       study::origin_of({.version = STILLPOINT_VERSION, .commit = built_from_commit()});
   const std::string html =
@@ -110,6 +114,10 @@ void add_report(CLI::App& app) {
                    "The page; tables.tex and tables.csv lie beside it. Default: report.html in the "
                    "folder, or here when there are several")
       ->type_name("FILE");
+  command
+      ->add_option("--figures", arguments->figures,
+                   "Folder for every figure as SVG and PDF, for papers")
+      ->type_name("FOLDER");
   command
       ->add_option("--base", arguments->base,
                    "Pipeline with whose options those of each run are compared. Default: the file "
