@@ -23,6 +23,8 @@ void add_plugins(CLI::App& app);
 void add_plugins_check(CLI::App& plugins);
 void add_plugins_new(CLI::App& plugins);
 void add_run(CLI::App& app);
+/// For jobs of studies, not listed by --help.
+void add_run_cell(CLI::App& app);
 void add_simulate(CLI::App& app);
 
 /// What the last of the words after the program's name can become, for the completion of shells.
