@@ -24,6 +24,7 @@
 #include "study/markdown_report.hpp"
 #include "study/recordings.hpp"
 #include "study/slurm_batch.hpp"
+#include "study/slurm_queue.hpp"
 #include "study/slurm_runner.hpp"
 #include "study/text_file.hpp"
 #include "study_file.hpp"
@@ -80,6 +81,7 @@ class Ablation {
     StudyResults results{
         .study = study(), .cells = cells_of(study()), .results = {}, .command = command_};
     results.results.resize(results.cells.size());
+    if (with_slurm_) ask_slurm();
     if (!record_scenes(stop)) return results;
     const std::vector<PlannedCell> plan = plan_cells(results.cells);
     for (std::size_t i = 0; i < plan.size(); ++i) results.results[i] = valid_result(plan[i]);
@@ -99,16 +101,22 @@ class Ablation {
 
   fs::path jobs_folder() const { return output_ / "slurm"; }
 
+  /// Before any work: there may be none.
+  void ask_slurm() {
+    make_folder(jobs_folder());
+    slurm_ = {.name = file_.file.stem().string(),
+              .folder = jobs_folder(),
+              .program = this_program(),
+              .largest_array = largest_array(jobs_folder() / "scontrol.txt"),
+              .options = study().slurm};
+  }
+
   void follow_jobs(const std::vector<PlannedCell>& plan, const std::stop_token& stop,
                    const CellFinished& finished, std::vector<std::optional<CellResult>>& results) {
-    const SlurmStudy slurm{.name = file_.file.stem().string(),
-                           .folder = jobs_folder(),
-                           .program = this_program(),
-                           .options = study().slurm};
     const SlurmEvents events{.finished = finished,
                              .note = [this](const std::string& text) { console_.note(text); },
                              .status = [this](const std::string& text) { console_.status(text); }};
-    queued_jobs_ = run_missing_with_slurm(plan, program(), slurm, stop, events, results);
+    queued_jobs_ = run_missing_with_slurm(plan, program(), slurm_, stop, events, results);
   }
 
   void say_how_it_goes_on() {
@@ -255,6 +263,7 @@ class Ablation {
   const fs::path output_;
   const int jobs_;
   const bool with_slurm_;
+  SlurmStudy slurm_;
   std::vector<std::string> queued_jobs_;  // that go on after Ctrl-C
   const bool quiet_;
   Console console_;

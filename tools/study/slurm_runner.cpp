@@ -47,7 +47,6 @@ class SlurmRunner {
   std::vector<std::string> run() {
     const std::vector<std::size_t> missing = missing_cells(cells_, results_);
     total_ = missing.size();
-    make_folder(study_.folder);
     waiting_.assign(missing.begin(), missing.end());
     follow_earlier_jobs();
     while (!stop_.stop_requested()) {
@@ -70,6 +69,10 @@ class SlurmRunner {
 
   std::filesystem::path scratch() const { return study_.folder / "squeue.txt"; }
 
+  std::string share(std::size_t count) const {
+    return std::to_string(count) + " of " + std::to_string(total_) + " runs";
+  }
+
   std::vector<std::string> jobs() const {
     std::set<std::string> ids;
     for (const auto& [task, queued] : queued_) ids.insert(task.job);
@@ -90,8 +93,7 @@ class SlurmRunner {
     for (const auto& [task, queued] : queued_) followed.insert(queued.cell);
     std::erase_if(waiting_, [&](std::size_t i) { return followed.contains(i); });
     if (!followed.empty())
-      events_.note("following " + std::to_string(followed.size()) +
-                   " runs that are in the queue, job " + join(jobs()));
+      events_.note("in the queue already: " + share(followed.size()) + ", job " + join(jobs()));
   }
 
   /// False when all its tasks are over.
@@ -138,9 +140,8 @@ class SlurmRunner {
   void submit() {
     if (room() < std::min(waiting_.size(), limit_ / 2 + 1)) return;
     while (!waiting_.empty() && room() > 0 && !stop_.stop_requested()) {
-      if (array_ == 0) array_ = largest_array(scratch());
       try {
-        submit_first(std::min({room(), array_, waiting_.size()}));
+        submit_first(std::min({room(), study_.largest_array, waiting_.size()}));
       } catch (const Error& error) {
         if (queued_.empty()) throw;
         limit_ = queued_.size();  // which it has taken
@@ -164,7 +165,7 @@ class SlurmRunner {
           .cell = waiting_.front(), .log = batch.log(k), .missed = {}};
       waiting_.pop_front();
     }
-    events_.note("submitted " + std::to_string(count) + " runs as job " + batch.job);
+    events_.note("submitted as job " + batch.job + ": " + share(count));
   }
 
   void wait() {
@@ -258,7 +259,6 @@ class SlurmRunner {
   std::map<SlurmTask, Queued> queued_;                  // submitted, without a result
   std::size_t limit_ = study_.options.tasks > 0 ? static_cast<std::size_t>(study_.options.tasks)
                                                 : cells_.size();  // of queued_
-  std::size_t array_ = 0;  // tasks that an array may have; 0: not asked yet
   std::size_t total_ = 0;
   std::size_t done_ = 0;
   bool silent_ = false;  // squeue does not answer

@@ -1,6 +1,7 @@
 // Runs the cells of a study that have no result yet as job arrays of Slurm.
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <functional>
 #include <optional>
@@ -17,6 +18,7 @@ struct SlurmStudy {
   std::string name;               ///< of its jobs
   std::filesystem::path folder;   ///< where it keeps what it knows of them
   std::filesystem::path program;  ///< that they run
+  std::size_t largest_array = 1;  ///< tasks that Slurm takes in one array
   SlurmOptions options;
 };
 
