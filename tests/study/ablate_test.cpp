@@ -200,6 +200,25 @@ TEST_F(Ablate, NamesEveryFaultOfAStudyWithItsPlace) {
   for (const std::string& line : expected) EXPECT_THAT(outcome.err, HasSubstr(line));
 }
 
+TEST_F(Ablate, WhatJobsAskForIsChecked) {
+  const Outcome outcome = ablate(
+      "version: 1\n"
+      "sequences: [{name: s, scene: office}]\n"
+      "variants: [{name: v, pipeline: orb_baseline}]\n"
+      "slurm: {time: soon, memry: 1G, memory: lots, cpus: -1, options: [-p]}\n");
+  EXPECT_EQ(outcome.exit_code, 2);
+  for (const char* line :
+       {"4:1: error: study.slurm: 'time' is written as sbatch reads it: 90 (minutes), 1:30:00, "
+        "2-12",
+        "4:1: error: study.slurm: 'memory' is written as sbatch reads it: 4G, 500M",
+        "4:1: error: study.slurm: 'options' are written --NAME or --NAME=VALUE",
+        "4:21: error: study.slurm: unknown key 'memry'; did you mean 'memory'?",
+        "4:52: error: study.slurm.cpus = -1 is outside [0, 4096]"})
+    EXPECT_THAT(outcome.err, HasSubstr(line));
+  EXPECT_THAT(call({"ablate", "quick", "--executor", "slrum"}).err,
+              HasSubstr("--executor: slrum not in {local,slurm}"));
+}
+
 TEST_F(Ablate, AnEmptyNameIsNoFolder) {
   fs::create_directories(out() / "recordings/mine");
   const Outcome outcome = ablate(

@@ -15,6 +15,7 @@
 #include "interrupt.hpp"
 #include "stillpoint/error.hpp"
 #include "stillpoint/runtime/folder_lock.hpp"
+#include "stillpoint/support/did_you_mean.hpp"
 #include "stillpoint/support/model_lookup.hpp"
 #include "study/cell_runner.hpp"
 #include "study/child_process.hpp"
@@ -22,6 +23,9 @@
 #include "study/fingerprint.hpp"
 #include "study/markdown_report.hpp"
 #include "study/recordings.hpp"
+#include "study/slurm_batch.hpp"
+#include "study/slurm_queue.hpp"
+#include "study/slurm_runner.hpp"
 #include "study/text_file.hpp"
 #include "study_file.hpp"
 
@@ -36,6 +40,7 @@ struct AblateArguments {
   std::string study;
   fs::path output;
   int jobs = 1;
+  std::string executor = "local";
   bool quiet = false;
 };
 
@@ -49,6 +54,7 @@ class Ablation {
                                                       : arguments.output)
                     .lexically_normal()),
         jobs_(arguments.jobs),
+        with_slurm_(arguments.executor == "slurm"),
         quiet_(arguments.quiet),
         console_(arguments.quiet) {}
 
@@ -64,7 +70,7 @@ class Ablation {
       signal = Interrupt::signal();
       if (signal == 0) return throw_if_failed(results);
     }
-    console_.note("stopped; the same command resumes the study");
+    say_how_it_goes_on();
     std::raise(signal);  // so that a calling script sees that it was interrupted
   }
 
@@ -75,17 +81,51 @@ class Ablation {
     StudyResults results{
         .study = study(), .cells = cells_of(study()), .results = {}, .command = command_};
     results.results.resize(results.cells.size());
+    if (with_slurm_) ask_slurm();
     if (!record_scenes(stop)) return results;
     const std::vector<PlannedCell> plan = plan_cells(results.cells);
     for (std::size_t i = 0; i < plan.size(); ++i) results.results[i] = valid_result(plan[i]);
     say_what_is_there(results);
-    run_missing(
-        plan, program(), jobs_, stop,
-        [this](const Cell& cell, const CellResult& result, const StudyProgress& progress) {
-          report(cell, result, progress);
-        },
-        results.results);
+    const CellFinished finished = [this](const Cell& cell, const CellResult& result,
+                                         const StudyProgress& progress) {
+      report(cell, result, progress);
+    };
+    if (with_slurm_) {
+      follow_jobs(plan, stop, finished, results.results);
+    } else {
+      refuse_queued_jobs(jobs_folder());
+      run_missing(plan, program(), jobs_, stop, finished, results.results);
+    }
     return results;
+  }
+
+  fs::path jobs_folder() const { return output_ / "slurm"; }
+
+  /// Before any work: there may be none.
+  void ask_slurm() {
+    make_folder(jobs_folder());
+    slurm_ = {.name = file_.file.stem().string(),
+              .folder = jobs_folder(),
+              .program = this_program(),
+              .largest_array = largest_array(jobs_folder() / "scontrol.txt"),
+              .options = study().slurm};
+  }
+
+  void follow_jobs(const std::vector<PlannedCell>& plan, const std::stop_token& stop,
+                   const CellFinished& finished, std::vector<std::optional<CellResult>>& results) {
+    const SlurmEvents events{.finished = finished,
+                             .note = [this](const std::string& text) { console_.note(text); },
+                             .status = [this](const std::string& text) { console_.status(text); }};
+    queued_jobs_ = run_missing_with_slurm(plan, program(), slurm_, stop, events, results);
+  }
+
+  void say_how_it_goes_on() {
+    if (queued_jobs_.empty())
+      console_.note("stopped; the same command resumes the study");
+    else
+      console_.note("no longer followed, but in Slurm's queue: job " + join(queued_jobs_) +
+                    "; the same command follows it again, 'scancel " + join(queued_jobs_, " ") +
+                    "' cancels it");
   }
 
   /// One after the other: the simulator uses all cores. False: stopped.
@@ -222,6 +262,9 @@ class Ablation {
   const StudyFile file_;
   const fs::path output_;
   const int jobs_;
+  const bool with_slurm_;
+  SlurmStudy slurm_;
+  std::vector<std::string> queued_jobs_;  // that go on after Ctrl-C
   const bool quiet_;
   Console console_;
 };
@@ -240,10 +283,18 @@ void add_ablate(CLI::App& app) {
       ->add_option("-o,--output", arguments->output,
                    "Folder for runs and tables; a study in it is resumed; default: out/STUDY")
       ->type_name("DIR");
-  command->add_option("-j,--jobs", arguments->jobs, "Runs in parallel; use 1 to measure times")
+  command
+      ->add_option("-j,--jobs", arguments->jobs,
+                   "Runs in parallel on this machine; use 1 to measure times")
       ->capture_default_str()
       ->check(CLI::Range(1, 1024))
       ->type_name("N");
+  command
+      ->add_option("--executor", arguments->executor,
+                   "Where the runs are made: local, on this machine; slurm, as jobs of a cluster")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"local", "slurm"}))
+      ->type_name("NAME");
   command->add_flag("-q,--quiet", arguments->quiet, "Print only warnings and errors");
   command->callback([arguments] { Ablation(*arguments).run(); });
 }

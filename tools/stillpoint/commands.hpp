@@ -26,6 +26,8 @@ void add_plugins_new(CLI::App& plugins);
 void add_record(CLI::App& app);
 void add_report(CLI::App& app);
 void add_run(CLI::App& app);
+/// For jobs of studies, not listed by --help.
+void add_run_cell(CLI::App& app);
 void add_simulate(CLI::App& app);
 
 /// What the last of the words after the program's name can become, for the completion of shells.

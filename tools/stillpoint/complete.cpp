@@ -30,8 +30,9 @@ struct Place {
 
 bool takes_value(const CLI::Option& option) { return option.get_items_expected_max() > 0; }
 
+/// Without those that --help does not list.
 std::vector<const CLI::App*> subcommands(const CLI::App& command) {
-  return command.get_subcommands([](const CLI::App* sub) { return !sub->get_name().empty(); });
+  return command.get_subcommands([](const CLI::App* sub) { return !sub->get_group().empty(); });
 }
 
 Place follow(const CLI::App& app, const std::vector<std::string>& words) {

@@ -24,7 +24,8 @@ constexpr void (*kCommands[])(CLI::App&) = {
     stillpoint::add_ablate,   stillpoint::add_check,   stillpoint::add_compare,
     stillpoint::add_evaluate, stillpoint::add_import,  stillpoint::add_inspect,
     stillpoint::add_map,      stillpoint::add_plugins, stillpoint::add_record,
-    stillpoint::add_report,   stillpoint::add_run,     stillpoint::add_simulate,
+    stillpoint::add_report,   stillpoint::add_run,     stillpoint::add_run_cell,
+    stillpoint::add_simulate,
 };
 
 constexpr const char* kExitCodes =
@@ -38,8 +39,9 @@ void check_command(const CLI::App& app, std::span<char*> words, const std::strin
   const std::string word = words[0];
   std::vector<std::string> names;
   for (const CLI::App* command : commands) {
-    names.push_back(command->get_name());
-    if (names.back() == word) return check_command(*command, words.subspan(1), where + ' ' + word);
+    if (command->get_name() == word)
+      return check_command(*command, words.subspan(1), where + ' ' + word);
+    if (!command->get_group().empty()) names.push_back(command->get_name());
   }
   const std::string suggestion = stillpoint::did_you_mean(word, names);
   throw Error(Fault::kUsage, "no command '" + word + "'" + suggestion, where,

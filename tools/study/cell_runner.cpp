@@ -28,7 +28,8 @@ double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-/// Nothing when it was stopped.
+}  // namespace
+
 std::optional<CellResult> run_cell(const PlannedCell& cell, const Program& program,
                                    const std::stop_token& stop) {
   remove_folder(cell.run);
@@ -56,6 +57,8 @@ std::optional<CellResult> run_cell(const PlannedCell& cell, const Program& progr
   write_result(cell.run, result);
   return result;
 }
+
+namespace {
 
 /// Hands out cells and takes their results.
 class Queue {
@@ -97,14 +100,19 @@ std::optional<CellResult> valid_result(const PlannedCell& cell) {
   return result;
 }
 
-void run_missing(const std::vector<PlannedCell>& cells, const Program& program, int jobs,
-                 const std::stop_token& stop, const CellFinished& finished,
-                 std::vector<std::optional<CellResult>>& results) {
+std::vector<std::size_t> missing_cells(const std::vector<PlannedCell>& cells,
+                                       const std::vector<std::optional<CellResult>>& results) {
   std::vector<std::size_t> missing;
   for (std::size_t i = 0; i < cells.size(); ++i)
     if (!results[i]) missing.push_back(i);
-  // A study that is stopped half-way has something to say about everything.
   std::ranges::stable_sort(missing, {}, [&](std::size_t i) { return cells[i].cell.repeat; });
+  return missing;
+}
+
+void run_missing(const std::vector<PlannedCell>& cells, const Program& program, int jobs,
+                 const std::stop_token& stop, const CellFinished& finished,
+                 std::vector<std::optional<CellResult>>& results) {
+  std::vector<std::size_t> missing = missing_cells(cells, results);
   const int workers = std::min(jobs, static_cast<int>(missing.size()));
   Queue queue(std::move(missing), jobs);
   const auto work = [&] {

@@ -36,6 +36,15 @@ using CellFinished =
 /// The result that a cell already has: nothing when it failed or was made from something else.
 std::optional<CellResult> valid_result(const PlannedCell& cell);
 
+/// The cells without a result, first repeats first: a study that is stopped half-way has something
+/// to say about everything.
+std::vector<std::size_t> missing_cells(const std::vector<PlannedCell>& cells,
+                                       const std::vector<std::optional<CellResult>>& results);
+
+/// Runs it, and keeps the result beside the run. Nothing when it was stopped.
+std::optional<CellResult> run_cell(const PlannedCell& cell, const Program& program,
+                                   const std::stop_token& stop);
+
 /// Fills the empty `results` (parallel to `cells`), first repeats first, `jobs` processes at most
 /// at a time, and keeps each result beside its run. After a stop they stay empty. A run that fails
 /// is a result. `program` is the one that the commands run.

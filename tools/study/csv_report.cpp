@@ -54,8 +54,8 @@ struct WithoutResult {
 WithoutResult without_result(const StudyResults& results, std::size_t sequence,
                              std::size_t variant) {
   WithoutResult count;
-  for (std::size_t i = 0; i < results.cells.size(); ++i) {
-    if (results.cells[i].sequence != sequence || results.cells[i].variant != variant) continue;
+  const auto [first, last] = results.cells_of(sequence, variant);
+  for (std::size_t i = first; i < last; ++i) {
     if (!results.results[i])
       ++count.missing;
     else if (results.results[i]->failed())

@@ -1,6 +1,7 @@
 // The cells of a study: sequences × variants × repeats.
 #pragma once
 
+#include <compare>
 #include <cstddef>
 #include <filesystem>
 #include <string>
@@ -15,7 +16,7 @@ struct Cell {
   std::size_t variant = 0;   ///< index into the study's
   int repeat = 0;
 
-  bool operator==(const Cell&) const = default;
+  auto operator<=>(const Cell&) const = default;
 };
 
 /// By sequence, then variant, then repeat; without what `only` and `skip` leave out.

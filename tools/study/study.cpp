@@ -60,6 +60,7 @@ void Study::visit(OptionVisitor& v) {
       {.help = "runtime.mode of all; pipeline: as its file says"});
   v("set", set, {.help = "changes of every pipeline"});
   v("baseline", baseline, {.help = "variant that the others are compared with"});
+  v("slurm", slurm, {.help = "what jobs of --executor slurm ask for"});
   refuse_seed(v, set);
 }
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "stillpoint/options.hpp"
+#include "study/slurm_options.hpp"
 
 namespace stillpoint::study {
 
@@ -43,6 +44,7 @@ struct Study {
   Mode mode = Mode::kPipeline;
   std::vector<std::string> set;  ///< for all variants
   std::string baseline;          ///< name of a variant; empty: none
+  SlurmOptions slurm;            ///< for jobs of a cluster
 
   void visit(OptionVisitor& visitor);
 };

@@ -39,19 +39,26 @@ std::optional<Spread> spread_of(std::vector<double> values) {
                 .count = n};
 }
 
+std::pair<std::size_t, std::size_t> StudyResults::cells_of(std::size_t sequence,
+                                                           std::size_t variant) const {
+  const auto first = std::ranges::lower_bound(cells, Cell{sequence, variant, 0});
+  const auto last = std::ranges::lower_bound(first, cells.end(), Cell{sequence, variant + 1, 0});
+  return {static_cast<std::size_t>(first - cells.begin()),
+          static_cast<std::size_t>(last - cells.begin())};
+}
+
 std::optional<Spread> StudyResults::spread(std::size_t sequence, std::size_t variant,
                                            MetricId metric) const {
   std::vector<double> values;
-  for (std::size_t i = 0; i < cells.size(); ++i)
-    if (cells[i].sequence == sequence && cells[i].variant == variant && results[i] &&
-        results[i]->values[metric])
-      values.push_back(*results[i]->values[metric]);
+  const auto [first, last] = cells_of(sequence, variant);
+  for (std::size_t i = first; i < last; ++i)
+    if (results[i] && results[i]->values[metric]) values.push_back(*results[i]->values[metric]);
   return spread_of(std::move(values));
 }
 
 const CellResult* StudyResults::find(const Cell& cell) const {
-  const auto found = std::ranges::find(cells, cell);
-  if (found == cells.end()) return nullptr;
+  const auto found = std::ranges::lower_bound(cells, cell);
+  if (found == cells.end() || *found != cell) return nullptr;
   const std::optional<CellResult>& result =
       results[static_cast<std::size_t>(found - cells.begin())];
   return result ? &*result : nullptr;

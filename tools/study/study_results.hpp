@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "study/cell_result.hpp"
@@ -25,10 +26,12 @@ std::optional<Spread> spread_of(std::vector<double> values);
 
 struct StudyResults {
   const Study& study;
-  std::vector<Cell> cells;
+  std::vector<Cell> cells;                         ///< in the order of cells_of()
   std::vector<std::optional<CellResult>> results;  ///< parallel to `cells`; nothing: not run yet
   std::string command;                             ///< that makes them
 
+  /// Of the repeats: the first index, and the one behind the last.
+  std::pair<std::size_t, std::size_t> cells_of(std::size_t sequence, std::size_t variant) const;
   std::optional<Spread> spread(std::size_t sequence, std::size_t variant, MetricId metric) const;
   /// Null: not run, or not wanted.
   const CellResult* find(const Cell& cell) const;
