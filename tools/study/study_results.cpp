@@ -49,6 +49,14 @@ std::optional<Spread> StudyResults::spread(std::size_t sequence, std::size_t var
   return spread_of(std::move(values));
 }
 
+std::optional<Spread> StudyResults::spread(std::size_t variant, MetricId metric) const {
+  std::vector<double> values;
+  for (std::size_t i = 0; i < cells.size(); ++i)
+    if (cells[i].variant == variant && results[i] && results[i]->values[metric])
+      values.push_back(*results[i]->values[metric]);
+  return spread_of(std::move(values));
+}
+
 const CellResult* StudyResults::find(const Cell& cell) const {
   const auto found = std::ranges::find(cells, cell);
   if (found == cells.end()) return nullptr;
@@ -87,6 +95,30 @@ std::optional<Spread> improvement_percent(const StudyResults& results, std::size
       improvements.push_back(100.0 * (1.0 - *own->values[kAte] / *other->values[kAte]));
   }
   return spread_of(std::move(improvements));
+}
+
+std::optional<std::size_t> best_variant(const StudyResults& results, std::size_t sequence,
+                                        MetricId metric) {
+  const std::size_t count = results.study.variants.size();
+  const auto coverage = [&](std::size_t variant) {
+    const auto spread = results.spread(sequence, variant, kCoverage);
+    return spread ? spread->median : 0.0;
+  };
+  double most = 0.0;
+  for (std::size_t variant = 0; variant < count; ++variant)
+    most = std::max(most, coverage(variant));
+  std::optional<std::size_t> best;
+  double smallest = 0.0;
+  std::size_t eligible = 0;
+  for (std::size_t variant = 0; variant < count; ++variant) {
+    const auto spread = results.spread(sequence, variant, metric);
+    if (!spread || most - coverage(variant) > kSameCoveragePercent) continue;
+    ++eligible;
+    if (best && spread->median >= smallest) continue;
+    best = variant;
+    smallest = spread->median;
+  }
+  return eligible > 1 ? best : std::nullopt;
 }
 
 }  // namespace stillpoint::study

@@ -30,6 +30,8 @@ struct StudyResults {
   std::string command;                             ///< that makes them
 
   std::optional<Spread> spread(std::size_t sequence, std::size_t variant, MetricId metric) const;
+  /// Of all runs of the variant.
+  std::optional<Spread> spread(std::size_t variant, MetricId metric) const;
   /// Null: not run, or not wanted.
   const CellResult* find(const Cell& cell) const;
   std::size_t failed() const;
@@ -45,5 +47,13 @@ std::optional<double> dynamic_penalty(const StudyResults& results, std::size_t s
 /// repeat with the baseline's run of the same seed.
 std::optional<Spread> improvement_percent(const StudyResults& results, std::size_t sequence,
                                           std::size_t variant);
+
+/// Runs that cover less by more percentage points of the frames cannot be compared.
+inline constexpr double kSameCoveragePercent = 1.0;
+
+/// The variant with the smallest figure on a sequence, among those that cover as much of it as the
+/// one that covers most, up to 1 % of the frames. Nothing when there is no other.
+std::optional<std::size_t> best_variant(const StudyResults& results, std::size_t sequence,
+                                        MetricId metric);
 
 }  // namespace stillpoint::study
