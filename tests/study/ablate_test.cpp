@@ -137,8 +137,14 @@ TEST_F(Ablate, AGridThatIsNoneIsRefusedWithItsPlace) {
   EXPECT_THAT(refusal("{tracker.featurs: [1]}"), HasSubstr("did you mean 'features'?"));
 }
 
+/// The same in a few frames, for what happens around the runs.
+const std::string kShort = [] {
+  std::string text = kTiny;
+  return text.replace(text.find("frames: 30"), 10, "frames: 5");
+}();
+
 TEST_F(Ablate, AMovedStudyIsNotRunAnew) {
-  ASSERT_EQ(ablate(kTiny).exit_code, 0);
+  ASSERT_EQ(ablate(kShort).exit_code, 0);
   fs::rename(out(), folder_.path() / "elsewhere");
   const std::string study = (folder_.path() / "study.yaml").string();
   const Outcome moved = call({"ablate", study, "-o", (folder_.path() / "elsewhere").string()});
@@ -146,20 +152,19 @@ TEST_F(Ablate, AMovedStudyIsNotRunAnew) {
 }
 
 TEST_F(Ablate, AFolderHoldsOneStudy) {
-  ASSERT_EQ(ablate(kTiny).exit_code, 0);
+  ASSERT_EQ(ablate(kShort).exit_code, 0);
   const std::string results = text_of(out() / "results.csv");
-  const std::string other = folder_.write("other.yaml", kTiny).string();
+  const std::string other = folder_.write("other.yaml", kShort).string();
   const Outcome refused = call({"ablate", other, "-o", out().string()});
   EXPECT_EQ(refused.exit_code, 2);
   EXPECT_THAT(refused.err, AllOf(HasSubstr("holds the study 'study' ("), HasSubstr("not 'other' ("),
                                  HasSubstr("choose another folder with -o")));
-  const std::string namesake =
-      folder_.write("copies/study.yaml", std::string(kTiny) + "seed: 9\n").string();
+  const std::string namesake = folder_.write("copies/study.yaml", kShort + "seed: 9\n").string();
   EXPECT_THAT(call({"ablate", namesake, "-o", out().string()}).err,
               HasSubstr("holds the study 'study' ("));
   EXPECT_EQ(text_of(out() / "results.csv"), results);
 
-  folder_.write("copies/study.yaml", kTiny);  // as another installation has it
+  folder_.write("copies/study.yaml", kShort);  // as another installation has it
   EXPECT_EQ(call({"ablate", namesake, "-o", out().string()}).exit_code, 0);
   folder_.write("out/study.json", "{\"study\": \"stu");
   const Outcome damaged = call({"ablate", namesake, "-o", out().string()});
@@ -168,16 +173,16 @@ TEST_F(Ablate, AFolderHoldsOneStudy) {
 }
 
 TEST_F(Ablate, HalfWrittenResultsAreMadeAgain) {
-  ASSERT_EQ(ablate(kTiny).exit_code, 0);
+  ASSERT_EQ(ablate(kShort).exit_code, 0);
   truncate_file(out() / "runs/tiny/few/0/result.json", 0.5);
   folder_.write("out/runs/tiny/many/0/result.json", "[]");
-  const Outcome again = ablate(kTiny);
+  const Outcome again = ablate(kShort);
   EXPECT_EQ(again.exit_code, 0);
   EXPECT_THAT(again.err, AllOf(HasSubstr("[2/2] tiny/"), Not(HasSubstr("simulating"))));
 }
 
 TEST_F(Ablate, PublishedFiguresStandBesideThoseOfTheRuns) {
-  const Outcome outcome = ablate(std::string(kTiny) +
+  const Outcome outcome = ablate(kShort +
                                  "published:\n"
                                  "  - name: Theirs\n"
                                  "    source: Table I\n"
@@ -195,7 +200,7 @@ TEST_F(Ablate, PublishedFiguresStandBesideThoseOfTheRuns) {
 
 TEST_F(Ablate, NamesEveryFaultOfPublishedFigures) {
   const Outcome outcome =
-      ablate(std::string(kTiny) +
+      ablate(kShort +
              "published:\n"
              "  - name: Theirs\n"
              "    errors:\n"
@@ -204,16 +209,16 @@ TEST_F(Ablate, NamesEveryFaultOfPublishedFigures) {
              "    times: {prepar_ms: 9, track_ms: -1}\n");
   EXPECT_EQ(outcome.exit_code, 2);
   for (const char* line :
-       {"9:5: error: study.published[0]: 'source' is missing",
-        "11:7: error: no recording named 'fr3_walking_xzy_empty'; did you mean "
+       {"10:5: error: study.published[0]: 'source' is missing",
+        "12:7: error: no recording named 'fr3_walking_xzy_empty'; did you mean "
         "'fr3_walking_xyz_empty'?",
-        "12:7: error: study.published[0].errors.fr3_walking_xyz_empty: an error is [RMSE], or "
+        "13:7: error: study.published[0].errors.fr3_walking_xyz_empty: an error is [RMSE], or "
         "[RMSE, mean, median, S.D.]",
-        "12:31: error: study.published[0].errors.fr3_walking_xyz_empty: unknown key 'ate'; did you "
-        "mean 'ate_m'?",
-        "13:13: error: study.published[0].times: unknown key 'prepar_ms'; did you mean "
+        "13:31: error: study.published[0].errors.fr3_walking_xyz_empty: unknown key 'ate'; known: "
+        "ate_m, rpe_translation_m, rpe_rotation_deg",
+        "14:13: error: study.published[0].times: unknown key 'prepar_ms'; did you mean "
         "'prepare_ms'?",
-        "13:37: error: study.published[0].times.track_ms = -1 must be at least 0"})
+        "14:37: error: study.published[0].times.track_ms = -1 must be at least 0"})
     EXPECT_THAT(outcome.err, HasSubstr(line));
 }
 

@@ -90,6 +90,10 @@ std::string latex_published(const Published& system, const std::string& recordin
   return value ? italic(fixed(*value, metrics()[metric].digits)) : kEmpty;
 }
 
+bool is_among(const std::vector<std::size_t>& list, std::size_t element) {
+  return std::ranges::find(list, element) != list.end();
+}
+
 class LatexReport {
  public:
   LatexReport(const StudyResults& results, std::string title)
@@ -111,23 +115,30 @@ class LatexReport {
  private:
   std::string label(const std::string& name) const { return title_ + "-" + name; }
 
-  /// What every caption says: how many runs, and whether all are there.
-  std::string runs_note() const {
-    std::string text = study_.repeats > 1 ? " Median (smallest--largest) of " +
-                                                std::to_string(study_.repeats) + " runs."
-                                          : " One run of each.";
-    if (results_.missing() > 0)
-      text += " Not finished: " + std::to_string(results_.missing()) + " of " +
-              std::to_string(results_.cells.size()) + " runs are missing.";
-    return text;
+  std::string runs_note(const std::string& figure) const {
+    if (study_.repeats == 1) return " One run of each.";
+    return " " + figure + " of " + std::to_string(study_.repeats) + " runs.";
   }
 
-  std::string published_note(const std::vector<const Published*>& systems) const {
+  /// At the end of every caption.
+  std::string missing_note() const {
+    if (results_.missing() == 0) return {};
+    return " Not finished: " + std::to_string(results_.missing()) + " of " +
+           std::to_string(results_.cells.size()) + " runs are missing.";
+  }
+
+  /// Systems with the same source together.
+  static std::string published_note(const std::vector<const Published*>& systems) {
     std::string text;
-    for (const Published* system : systems)
-      text += (text.empty() ? " In italics, as published: " : "; ") + latex(system->name) + ": " +
-              latex(system->source);
-    return text.empty() ? text : text + ".";
+    for (std::size_t i = 0; i < systems.size(); ++i) {
+      text += (i == 0 ? " In italics, as published: " : "") + latex(systems[i]->name);
+      const bool last = i + 1 == systems.size();
+      if (!last && systems[i + 1]->source == systems[i]->source)
+        text += ", ";
+      else
+        text += ": " + latex(systems[i]->source) + (last ? "." : "; ");
+    }
+    return text;
   }
 
   /// A part of a sequence: its error says less than that of the whole.
@@ -146,20 +157,21 @@ class LatexReport {
   LatexTable ate_table() const {
     const auto systems = published_with(study_, kAte, kAte + 1);
     LatexTable table{.label = label("ate"),
-                     .caption = "Absolute trajectory error, RMSE (m)." + runs_note() +
+                     .caption = "Absolute trajectory error, RMSE (m)." +
+                                runs_note("Median (smallest--largest)") +
                                 " In brackets: coverage, where it is below 100\\,\\%. Bold: the "
                                 "smallest of its row, among those that cover the same." +
-                                published_note(systems),
+                                published_note(systems) + missing_note(),
                      .columns = "l",
                      .header = {"Sequence"},
                      .rows = {}};
     add_systems(systems, table);
     for (std::size_t sequence = 0; sequence < study_.sequences.size(); ++sequence) {
-      const auto best = best_variant(results_, sequence, kAte);
+      const auto best = best_variants(results_, sequence, kAte);
       std::vector<std::string> row = {latex(study_.sequences[sequence].name)};
       for (std::size_t variant = 0; variant < study_.variants.size(); ++variant)
         row.push_back(latex_spread(results_.spread(sequence, variant, kAte), metrics()[kAte].digits,
-                                   best == variant) +
+                                   is_among(best, variant)) +
                       coverage_note(sequence, variant));
       for (const Published* system : systems)
         row.push_back(latex_published(*system, original_of(study_.sequences[sequence]), kAte));
@@ -173,10 +185,10 @@ class LatexReport {
     const auto systems = published_with(study_, figures.rmse, figures.rmse + 1);
     const Metric& m = metrics()[figures.rmse];
     LatexTable table{.label = label(m.key),
-                     .caption = latex(figures.brief) + " (" + m.unit + ")." + runs_note() +
+                     .caption = latex(figures.brief) + " (" + m.unit + ")." + runs_note("Median") +
                                 " Bold: the smallest of a sequence, among those that cover the "
                                 "same." +
-                                published_note(systems),
+                                published_note(systems) + missing_note(),
                      .columns = "llrrrr",
                      .header = {"Sequence", "System", "RMSE", "Mean", "Median", "S.D."},
                      .rows = {}};
@@ -188,16 +200,19 @@ class LatexReport {
   void add_error_rows(const ErrorFigures& figures, std::size_t sequence,
                       const std::vector<const Published*>& systems,
                       std::vector<std::vector<std::string>>& rows) const {
+    std::vector<std::vector<std::size_t>> best;
+    for (const MetricId metric : figures.all())
+      best.push_back(best_variants(results_, sequence, metric));
     std::string name = latex(study_.sequences[sequence].name);  // in the first row only
     for (std::size_t variant = 0; variant < study_.variants.size(); ++variant) {
       if (!results_.spread(sequence, variant, figures.rmse)) continue;
       if (!rows.empty() && !name.empty()) rows.emplace_back();
       rows.push_back({std::exchange(name, ""), latex(study_.variants[variant].name)});
-      for (const MetricId metric : figures.all()) {
+      for (std::size_t i = 0; i < best.size(); ++i) {
+        const MetricId metric = figures.all()[i];
         const auto spread = results_.spread(sequence, variant, metric);
         const std::string text = spread ? fixed(spread->median, metrics()[metric].digits) : kEmpty;
-        rows.back().push_back(best_variant(results_, sequence, metric) == variant ? bold(text)
-                                                                                  : text);
+        rows.back().push_back(is_among(best[i], variant) ? bold(text) : text);
       }
     }
     if (!name.empty()) return;  // nothing has been measured
@@ -218,7 +233,7 @@ class LatexReport {
                    "rank-biserial correlation, 1 where the variant is always better; $p$: "
                    "Wilcoxon's signed-rank test of the absolute trajectory error, two-sided, "
                    "corrected after Holm." +
-                   runs_note(),
+                   missing_note(),
         .columns = "lrrrrrr",
         .header = {"Variant", "Better", "Worse", "ATE ratio", "CPU ratio", "Effect", "$p$"},
         .rows = {}};
@@ -247,7 +262,7 @@ class LatexReport {
                      .caption =
                          "Time of each stage, mean of its calls (ms, wall clock), over all "
                          "sequences: median (smallest--largest) of the runs." +
-                         published_note(systems),
+                         published_note(systems) + missing_note(),
                      .columns = "l",
                      .header = {"Stage"},
                      .rows = {}};

@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
+
+#include "evaluation/format.hpp"
 
 namespace stillpoint::study {
 namespace {
@@ -97,8 +100,8 @@ std::optional<Spread> improvement_percent(const StudyResults& results, std::size
   return spread_of(std::move(improvements));
 }
 
-std::optional<std::size_t> best_variant(const StudyResults& results, std::size_t sequence,
-                                        MetricId metric) {
+std::vector<std::size_t> best_variants(const StudyResults& results, std::size_t sequence,
+                                       MetricId metric) {
   const std::size_t count = results.study.variants.size();
   const auto coverage = [&](std::size_t variant) {
     const auto spread = results.spread(sequence, variant, kCoverage);
@@ -107,18 +110,20 @@ std::optional<std::size_t> best_variant(const StudyResults& results, std::size_t
   double most = 0.0;
   for (std::size_t variant = 0; variant < count; ++variant)
     most = std::max(most, coverage(variant));
-  std::optional<std::size_t> best;
-  double smallest = 0.0;
-  std::size_t eligible = 0;
-  for (std::size_t variant = 0; variant < count; ++variant) {
-    const auto spread = results.spread(sequence, variant, metric);
-    if (!spread || most - coverage(variant) > kSameCoveragePercent) continue;
-    ++eligible;
-    if (best && spread->median >= smallest) continue;
-    best = variant;
-    smallest = spread->median;
-  }
-  return eligible > 1 ? best : std::nullopt;
+  std::vector<std::pair<double, std::size_t>> comparable;
+  for (std::size_t variant = 0; variant < count; ++variant)
+    if (const auto spread = results.spread(sequence, variant, metric);
+        spread && most - coverage(variant) <= kSameCoveragePercent)
+      comparable.emplace_back(spread->median, variant);
+  std::vector<std::size_t> best;
+  if (comparable.size() < 2) return best;
+  const auto shown = [&](double value) {
+    return evaluation::fixed(value, metrics()[metric].digits);
+  };
+  const std::string smallest = shown(std::ranges::min(comparable).first);
+  for (const auto& [value, variant] : comparable)
+    if (shown(value) == smallest) best.push_back(variant);
+  return best;
 }
 
 }  // namespace stillpoint::study

@@ -51,9 +51,9 @@ std::optional<Spread> improvement_percent(const StudyResults& results, std::size
 /// Runs that cover less by more percentage points of the frames cannot be compared.
 inline constexpr double kSameCoveragePercent = 1.0;
 
-/// The variant with the smallest figure on a sequence, among those that cover as much of it as the
-/// one that covers most, up to 1 % of the frames. Nothing when there is no other.
-std::optional<std::size_t> best_variant(const StudyResults& results, std::size_t sequence,
-                                        MetricId metric);
+/// The variants with the smallest figure on a sequence, to the digits that tables show, among those
+/// that cover as much of it as the one that covers most. Empty when only one can be compared.
+std::vector<std::size_t> best_variants(const StudyResults& results, std::size_t sequence,
+                                       MetricId metric);
 
 }  // namespace stillpoint::study
