@@ -137,6 +137,98 @@ TEST_F(Ablate, AGridThatIsNoneIsRefusedWithItsPlace) {
   EXPECT_THAT(refusal("{tracker.featurs: [1]}"), HasSubstr("did you mean 'features'?"));
 }
 
+/// The same in a few frames, for what happens around the runs.
+const std::string kShort = [] {
+  std::string text = kTiny;
+  return text.replace(text.find("frames: 30"), 10, "frames: 5");
+}();
+
+TEST_F(Ablate, AMovedStudyIsNotRunAnew) {
+  ASSERT_EQ(ablate(kShort).exit_code, 0);
+  fs::rename(out(), folder_.path() / "elsewhere");
+  const std::string study = (folder_.path() / "study.yaml").string();
+  const Outcome moved = call({"ablate", study, "-o", (folder_.path() / "elsewhere").string()});
+  EXPECT_EQ(moved.err, "2 of 2 runs are there already\n");
+}
+
+TEST_F(Ablate, AFolderHoldsOneStudy) {
+  ASSERT_EQ(ablate(kShort).exit_code, 0);
+  const std::string results = text_of(out() / "results.csv");
+  const std::string other = folder_.write("other.yaml", kShort).string();
+  const Outcome refused = call({"ablate", other, "-o", out().string()});
+  EXPECT_EQ(refused.exit_code, 2);
+  EXPECT_THAT(refused.err, AllOf(HasSubstr("holds the study 'study' ("), HasSubstr("not 'other' ("),
+                                 HasSubstr("choose another folder with -o")));
+  const std::string namesake = folder_.write("copies/study.yaml", kShort + "seed: 9\n").string();
+  EXPECT_THAT(call({"ablate", namesake, "-o", out().string()}).err,
+              HasSubstr("holds the study 'study' ("));
+  EXPECT_EQ(text_of(out() / "results.csv"), results);
+
+  folder_.write("copies/study.yaml", kShort);  // as another installation has it
+  EXPECT_EQ(call({"ablate", namesake, "-o", out().string()}).exit_code, 0);
+  folder_.write("out/study.json", "{\"study\": \"stu");
+  const Outcome damaged = call({"ablate", namesake, "-o", out().string()});
+  EXPECT_EQ(damaged.exit_code, 2);
+  EXPECT_THAT(damaged.err, HasSubstr("study.json: does not say whose folder this is; remove it"));
+}
+
+TEST_F(Ablate, HalfWrittenResultsAreMadeAgain) {
+  ASSERT_EQ(ablate(kShort).exit_code, 0);
+  truncate_file(out() / "runs/tiny/few/0/result.json", 0.5);
+  folder_.write("out/runs/tiny/many/0/result.json", "[]");
+  const Outcome again = ablate(kShort);
+  EXPECT_EQ(again.exit_code, 0);
+  EXPECT_THAT(again.err, AllOf(HasSubstr("[2/2] tiny/"), Not(HasSubstr("simulating"))));
+}
+
+TEST_F(Ablate, PublishedFiguresStandBesideThoseOfTheRuns) {
+  const Outcome outcome = ablate(kShort +
+                                 "published:\n"
+                                 "  - name: Theirs\n"
+                                 "    source: Table I\n"
+                                 "    errors: {fr3_walking_xyz_empty: {ate_m: [0.125]}}\n"
+                                 "    times: {prepare_ms: 9.5}\n");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, ::testing::ContainsRegex("\\| tiny .*\\| 0.1250 +\\|"));
+  EXPECT_THAT(outcome.out, AllOf(HasSubstr("Theirs (published)"), HasSubstr("* Theirs: Table I"),
+                                 HasSubstr("## Time of each stage"),
+                                 HasSubstr("## RMSE, mean, median and standard deviation")));
+  EXPECT_THAT(text_of(out() / "tables.tex"), HasSubstr("\\textit{0.1250}"));
+  EXPECT_THAT(text_of(out() / "summary.csv"),
+              AllOf(HasSubstr("tiny,few,ate_sd_m,1,"), HasSubstr("tiny,few,track_ms,1,")));
+}
+
+TEST_F(Ablate, NamesEveryFaultOfPublishedFigures) {
+  const Outcome outcome =
+      ablate(kShort +
+             "published:\n"
+             "  - name: Theirs\n"
+             "    errors:\n"
+             "      fr3_walking_xzy_empty: {ate_m: [0.1]}\n"
+             "      fr3_walking_xyz_empty: {ate: [0.1], rpe_rotation_deg: [1, 2]}\n"
+             "    times: {prepar_ms: 9, track_ms: -1}\n");
+  EXPECT_EQ(outcome.exit_code, 2);
+  for (const char* line :
+       {"10:5: error: study.published[0]: 'source' is missing",
+        "12:7: error: no recording named 'fr3_walking_xzy_empty'; did you mean "
+        "'fr3_walking_xyz_empty'?",
+        "13:7: error: study.published[0].errors.fr3_walking_xyz_empty: an error is [RMSE], or "
+        "[RMSE, mean, median, S.D.]",
+        "13:31: error: study.published[0].errors.fr3_walking_xyz_empty: unknown key 'ate'; known: "
+        "ate_m, rpe_translation_m, rpe_rotation_deg",
+        "14:13: error: study.published[0].times: unknown key 'prepar_ms'; did you mean "
+        "'prepare_ms'?",
+        "14:37: error: study.published[0].times.track_ms = -1 must be at least 0"})
+    EXPECT_THAT(outcome.err, HasSubstr(line));
+}
+
+TEST_F(Ablate, WithoutAStudyItSaysWhereTheyAreListed) {
+  const Outcome outcome = call({"ablate"});
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_THAT(outcome.err, HasSubstr("needs a study; name a file, or one that 'stillpoint ablate "
+                                     "--list' prints"));
+}
+
 TEST_F(Ablate, CtrlCKeepsWhatIsDone) {
   folder_.write("study.yaml",
                 "version: 1\n"

@@ -6,8 +6,10 @@
 
 #include <sys/stat.h>
 
+#include <cmath>
 #include <csignal>
 #include <fstream>
+#include <stdexcept>
 #include <thread>
 
 #include "fixtures.hpp"
@@ -25,7 +27,8 @@ using ::testing::HasSubstr;
 constexpr const char* kSummary =
     R"({"coverage": 0.5, "times_lost": 1, "dropped_frames": 0, "processed_frames": 60, )"
     R"("wall_seconds": 1.5, "cpu_ms_per_frame": 20,)"
-    R"( "peak_memory_mib": 80, "stages": {"track_thread": {"cpu_ms": {"p50": 9, "p95": 12}}}})";
+    R"( "peak_memory_mib": 80, "stages": {"track_thread": {"wall_ms": {"mean": 10.5}, "cpu_ms": {"p50": 9, "p95": 12}}, )"
+    R"("output preview": {"wall_ms": {"mean": 1}}}})";
 
 class CellRunner : public ::testing::Test {
  protected:
@@ -87,6 +90,54 @@ TEST_F(CellRunner, MeasuresARun) {
   EXPECT_EQ(result.values[kTrackP95], 12.0);
   EXPECT_EQ(result.values[kSpeed], 40.0);
   EXPECT_EQ(result.program, "build");
+}
+
+MetricId metric_of(const std::string& key) {
+  for (std::size_t i = 0; i < kMetricCount; ++i)
+    if (metrics()[i].key == key) return static_cast<MetricId>(i);
+  throw std::out_of_range(key);
+}
+
+TEST_F(CellRunner, MeasuresTheTimeOfEachStage) {
+  run({cell(0, "")});
+  const MetricValues& values = results_[0]->values;
+  EXPECT_EQ(values[metric_of("track_thread_ms")], 10.5);
+  EXPECT_FALSE(values[metric_of("segmentation_ms")]);
+  EXPECT_STREQ(metrics()[kMetricCount - 1].key, "dense_ms");
+}
+
+// A square of 2 x 2 m in 400 poses; after alignment, every tenth one lies 0.1 m off its place,
+// alternately above and below.
+TEST_F(CellRunner, MeasuresMeanMedianAndStandardDeviationOfTheErrors) {
+  std::string truth, estimate;
+  for (int i = 0; i < 400; ++i) {
+    const int side = i / 100, along = i % 100;
+    const double way = 0.02 * along;
+    const double x[] = {way, 2, 2 - way, 0}, y[] = {0, way, 2, 2 - way};
+    const double off = i % 10 == 5 ? (i % 20 == 5 ? 0.1 : -0.1) : 0.0;
+    const auto pose = [&](double z) {
+      return std::to_string(1 + 0.1 * i) + " " + std::to_string(x[side]) + " " +
+             std::to_string(y[side]) + " " + std::to_string(z) + " 0 0 0 1\n";
+    };
+    truth += pose(0);
+    estimate += pose(off);
+  }
+  folder_.write("recording/groundtruth.txt", truth);
+  const std::string file = folder_.write("estimate.txt", estimate).string();
+  run({cell(0, "cp '" + path("summary.json").string() + "' '" + path("runs/0").string() +
+                   "' && cp '" + file + "' '" + path("runs/0/trajectory.txt").string() + "'")});
+  const MetricValues& values = results_[0]->values;
+  ASSERT_TRUE(values[kAteMean]) << results_[0]->message;
+  // Aligning turns the estimate by less than a milliradian.
+  EXPECT_NEAR(*values[kAte], 0.1 * std::sqrt(0.1), 1e-3);
+  EXPECT_NEAR(*values[kAteMean], 0.01, 1e-3);
+  EXPECT_NEAR(*values[kAteMedian], 0.0, 1e-3);
+  EXPECT_NEAR(*values[kAteSd], 0.03, 1e-3);
+  // Over 1 s, every tenth motion is wrong by 0.2 m: from one displaced pose to the next.
+  EXPECT_NEAR(*values[kRpeTranslationMean], 0.02, 1e-3);
+  EXPECT_NEAR(*values[kRpeTranslationMedian], 0.0, 1e-9);
+  EXPECT_NEAR(*values[kRpeTranslationSd], 0.06, 1e-3);
+  EXPECT_NEAR(*values[kRpeRotationMean], 0.0, 1e-9);
 }
 
 TEST_F(CellRunner, KeepsWhereAndWhenARunWasMade) {

@@ -41,20 +41,22 @@ TEST(Fingerprint, OfARecordingSeesListsAndImages) {
   EXPECT_NE(recording_fingerprint(folder.path()), repainted);
 }
 
-TEST(Fingerprint, OfInputsSeesNetworksAndLabels) {
+TEST(Fingerprint, OfAPipelineSeesNetworksAndLabels) {
   const TemporaryFolder folder, models;
   const std::string network = folder.write("nets/own.onnx", "network");
   folder.write("labels/1.png", "image");
   folder.write("recording/1.png", "image");
-  const auto print = [&] {
+  FileContents contents;
+  const auto print = [&](const std::string& schedule = "wait") {
     const std::string root = folder.path();
-    return input_fingerprint(
-        "source: {path: " + root + "/recording}\nsegmenter:\n  model: " + network +
-            "\n  path: " + root + "/labels\nother: [{model: " + root + "/found.onnx}, wait]\n",
-        folder.path() / "recording", {models.path()});
+    return pipeline_fingerprint(
+        "source: {path: " + root + "/recording}\nsegmenter:\n  model: " + network + "\n  path: " +
+            root + "/labels\nother: [{model: " + root + "/found.onnx}, " + schedule + "]\n",
+        folder.path() / "recording", {models.path()}, contents);
   };
   const std::string before = print();
   EXPECT_EQ(print(), before);
+  EXPECT_NE(print("latest"), before);
   folder.write("recording/1.png", "another image");
   EXPECT_EQ(print(), before) << "the recording has a fingerprint of its own";
   folder.write("nets/own.onnx", "another network");
@@ -65,6 +67,41 @@ TEST(Fingerprint, OfInputsSeesNetworksAndLabels) {
   EXPECT_NE(relabelled, retrained);
   models.write("found.onnx", "network");
   EXPECT_NE(print(), relabelled);
+}
+
+TEST(Fingerprint, OfAPipelineIsTheSameInAnotherInstallation) {
+  const TemporaryFolder here, there;
+  FileContents contents;
+  const auto print = [&](const std::string& root, const std::string& comment) {
+    return pipeline_fingerprint("segmenter:  # " + comment + "\n  model: " + root +
+                                    "/configs/own.onnx\n  path: " + root +
+                                    "/labels\nsource: {path: " + root + "/recording}\n",
+                                root + "/recording", {root + "/models"}, contents);
+  };
+  for (const TemporaryFolder* folder : {&here, &there}) {
+    folder->write("models/own.onnx", "network");
+    folder->write("labels/1.png", "image");
+  }
+  const std::string first = print(here.path(), "as built");
+  EXPECT_EQ(print(there.path(), "as installed"), first);
+  there.write("models/own.onnx", "NETWORK");
+  EXPECT_NE(print(there.path(), "as installed"), first);
+}
+
+TEST(Fingerprint, OfAProgramIsThatOfItsFiles) {
+  const TemporaryFolder here, there;
+  FileContents contents;
+  const auto print = [&](const TemporaryFolder& folder) {
+    return program_fingerprint({folder.path() / "bin/program", folder.path() / "lib/plugin.so"},
+                               contents);
+  };
+  for (const TemporaryFolder* folder : {&here, &there}) {
+    folder->write("bin/program", "code");
+    folder->write("lib/plugin.so", "more code");
+  }
+  EXPECT_EQ(print(here), print(there));
+  there.write("lib/plugin.so", "MORE CODE!");
+  EXPECT_NE(print(here), print(there));
 }
 
 TEST(Fingerprint, OfNoRecordingIsAFaultOfTheData) {

@@ -3,6 +3,7 @@
 
 #include "fixtures.hpp"
 #include "study/csv_report.hpp"
+#include "study/latex_report.hpp"
 #include "study/markdown_report.hpp"
 #include "study/markdown_table.hpp"
 
@@ -26,6 +27,9 @@ TEST(MarkdownTable, HasColumnsOfEqualWidth) {
             "| 1–2   | x\\|y |\n"
             "| 12345 |      |\n");
 }
+
+// Of the columns for mean, median and S.D. of the errors, and for stages.
+const std::string kNoDetails(kMetricCount - kAteMean, ',');
 
 /// Two repeats of everything; one run has failed, one sequence was not covered, one has not run.
 class Report : public ::testing::Test {
@@ -127,12 +131,23 @@ TEST_F(Report, AsCsv) {
       csv_report(results_),
       "sequence,variant,repeat,seed,state,exit_code,ate_m,sim3_scale,rpe_translation_m,"
       "rpe_rotation_deg,coverage_percent,times_lost,dropped_frames,frames_per_second,track_p50_ms,"
-      "track_p95_ms,cpu_ms_per_frame,peak_memory_mib,seconds,version,commit,machine,date,"
-      "message\n"
-      "walking,plain,0,7,done,0,0.5,,,,100,0,,,,,,,2.5,1.2.3,0123456789ab,"
-      "\"a machine, 2 cores\",2026-01-30,\n"
-      "walking,better,1,8,failed,3,,,,,,,,,,,,,0,,,,,\"cannot read 'a', \"\"b\"\"\"\n"
-      "walking_empty,better,1,8,missing,,,,,,,,,,,,,,,,,,,\n");
+      "track_p95_ms,cpu_ms_per_frame,peak_memory_mib,"
+      "ate_mean_m,ate_median_m,ate_sd_m,rpe_translation_mean_m,"
+      "rpe_translation_median_m,rpe_translation_sd_m,rpe_rotation_mean_deg,"
+      "rpe_rotation_median_deg,rpe_rotation_sd_deg,source_ms,prepare_ms,"
+      "moving_check_ms,map_check_ms,segmentation_wait_ms,segmentation_ms,propagate_ms,"
+      "beside_wait_ms,decision_ms,track_ms,track_thread_ms,outputs_ms,map_insert_ms,"
+      "map_refine_ms,map_correct_ms,loop_ms,loop_adjust_ms,dense_ms,"
+      "seconds,version,commit,machine,date,message\n"
+      "walking,plain,0,7,done,0,0.5,,,,100,0,,,,,,," +
+          kNoDetails +
+          "2.5,1.2.3,0123456789ab,"
+          "\"a machine, 2 cores\",2026-01-30,\n"
+          "walking,better,1,8,failed,3,,,,,,,,,,,,," +
+          kNoDetails +
+          "0,,,,,\"cannot read 'a', \"\"b\"\"\"\n"
+          "walking_empty,better,1,8,missing,,,,,,,,,,,,,," +
+          kNoDetails + ",,,,,\n");
 }
 
 TEST_F(Report, AVariantOfAStudyWithOneSequenceIsARow) {
@@ -146,6 +161,119 @@ TEST_F(Report, AVariantOfAStudyWithOneSequenceIsARow) {
                   "|---------|----------------------------------|---------------------|\n"
                   "| plain   | 0.6000 (0.5000–0.7000)           | 100.0 (100.0–100.0) |\n"
                   "| better  | 0.0600, coverage 90.0 % [1 of 2] | 90.0 [1 of 2]       |\n"));
+}
+
+/// With all figures, of which others have published some.
+class PublishedReport : public Report {
+ protected:
+  PublishedReport() {
+    study_.question = "What for?";
+    study_.sequences[0].original = "fr9_walking";
+    study_.published = {{.name = "Other_SLAM",
+                         .source = "Them & al., 2020",
+                         .errors = {{"fr9_walking", {.ate_m = {0.25, 0.2, 0.15, 0.05}}}},
+                         .times = {}}};
+    study_.published[0].times.ms[1] = 9.375;
+    for (auto& result : results_.results) {
+      if (!result || result->failed()) continue;
+      const double ate = *result->values[kAte];
+      result->values[kAteMean] = ate / 2;
+      result->values[kAteMedian] = ate / 4;
+      result->values[kAteSd] = ate / 8;
+      result->values[kFirstStage + 1] = 5.0;
+    }
+  }
+};
+
+TEST_F(PublishedReport, AsMarkdown) {
+  const std::string report = markdown_report(results_, "demo");
+  EXPECT_THAT(report, ::testing::StartsWith("# demo\n\nWhat for?\n\nMedian (smallest"));
+  EXPECT_THAT(report,
+              ::testing::HasSubstr(
+                  "| sequence      | plain                  | better                           | "
+                  "Other_SLAM (published) |\n"
+                  "|---------------|------------------------|----------------------------------|-"
+                  "-----------------------|\n"
+                  "| walking       | 0.6000 (0.5000–0.7000) | 0.0600, coverage 90.0 % [1 of 2] | "
+                  "0.2500                 |\n"
+                  "| walking_empty | 0.0150 (0.0100–0.0200) | 0.0200 [1 of 2]                  | "
+                  "–                      |\n"
+                  "\n"
+                  "Published, not measured here:\n\n"
+                  "* Other_SLAM: Them & al., 2020\n"));
+  EXPECT_THAT(report,
+              ::testing::HasSubstr(
+                  "## Time of each stage, mean of its calls (ms)\n"
+                  "\n"
+                  "| stage                          | plain            | better           | "
+                  "Other_SLAM (published) |\n"
+                  "|--------------------------------|------------------|------------------|-"
+                  "-----------------------|\n"
+                  "| Feature extraction (`prepare`) | 5.00 (5.00–5.00) | 5.00 (5.00–5.00) | "
+                  "9.38                   |\n"));
+  EXPECT_THAT(report, ::testing::ContainsRegex("walking +\\| plain +\\| 0.6000 +\\| 0.3000 +\\| "
+                                               "0.1500 +\\| 0.0750 +\\| – "));
+  EXPECT_THAT(report, ::testing::ContainsRegex("walking +\\| Other_SLAM \\(published\\) +\\| "
+                                               "0.2500 +\\| 0.2000 +\\| 0.1500 +\\| 0.0500 "));
+}
+
+TEST_F(PublishedReport, AsLatex) {
+  const std::string tables = latex_report(results_, "demo");
+  EXPECT_THAT(
+      tables,
+      ::testing::StartsWith(
+          "% Needs \\usepackage{booktabs}. Tables of the study demo.\n"
+          "% stillpoint ablate demo\n"
+          "% 6 of 7 runs: Stillpoint 1.2.3, commit 0123456789ab; a machine, 2 cores; 2026-01-30 to "
+          "2026-02-01\n"));
+  // The better one covers too little to be the best of its sequence.
+  EXPECT_THAT(tables,
+              ::testing::HasSubstr(
+                  "    Sequence & plain & better & \\textit{Other\\_SLAM} \\\\\n"
+                  "    \\midrule\n"
+                  "    walking & 0.6000 {\\scriptsize (0.5000--0.7000)} & 0.0600 {\\scriptsize "
+                  "[90.0\\,\\%]} & \\textit{0.2500} \\\\\n"
+                  "    walking\\_empty & \\textbf{0.0150} {\\scriptsize (0.0100--0.0200)} & 0.0200 "
+                  "& -- \\\\\n"
+                  "    \\bottomrule\n"));
+  EXPECT_THAT(tables, ::testing::HasSubstr("Not finished: 1 of 8 runs are missing."));
+  EXPECT_THAT(tables, ::testing::HasSubstr("Other\\_SLAM: Them \\& al., 2020."));
+  EXPECT_THAT(tables, ::testing::HasSubstr(
+                          "    Sequence & System & RMSE & Mean & Median & S.D. \\\\\n"
+                          "    \\midrule\n"
+                          "    walking & plain & 0.6000 & 0.3000 & 0.1500 & 0.0750 \\\\\n"
+                          "     & better & 0.0600 & 0.0300 & 0.0150 & 0.0075 \\\\\n"
+                          "     & \\textit{Other\\_SLAM} & \\textit{0.2500} & \\textit{0.2000} & "
+                          "\\textit{0.1500} & \\textit{0.0500} \\\\\n"
+                          "    \\addlinespace\n"
+                          "    walking\\_empty & plain & \\textbf{0.0150} & "));
+  for (const char* label : {"ate", "ate_m", "comparison", "times"})
+    EXPECT_THAT(tables, ::testing::HasSubstr("\\label{tab:demo-" + std::string(label) + "}"));
+  EXPECT_THAT(tables, ::testing::Not(::testing::HasSubstr("rpe")));
+}
+
+TEST_F(Report, TheBestOfASequenceCoversAsMuchAsTheOthers) {
+  using ::testing::ElementsAre;
+  EXPECT_THAT(best_variants(results_, 0, kAte), ElementsAre());
+  EXPECT_THAT(best_variants(results_, 1, kAte), ElementsAre(0u));
+  results_.results[6]->values[kAte] = 0.01501;  // 0.0150, as the other
+  EXPECT_THAT(best_variants(results_, 1, kAte), ElementsAre(0u, 1u));
+}
+
+TEST(Published, IsFoundByRecordingAndFigure) {
+  Published system;
+  system.errors["r"].rpe_rotation_deg = {4, 3, 2, 1};
+  system.errors["r"].ate_m = {0.5};
+  EXPECT_EQ(system.find("r", kRpeRotation), 4);
+  EXPECT_EQ(system.find("r", kRpeRotationSd), 1);
+  EXPECT_EQ(system.find("r", kAte), 0.5);
+  EXPECT_EQ(system.find("r", kAteMean), std::nullopt);
+  EXPECT_EQ(system.find("r", kRpeTranslation), std::nullopt);
+  EXPECT_EQ(system.find("r", kCoverage), std::nullopt);
+  EXPECT_EQ(system.find("s", kAte), std::nullopt);
+  EXPECT_EQ(system.find("r", kFirstStage), std::nullopt);
+  system.times.ms[0] = 7;
+  EXPECT_EQ(system.find("r", kFirstStage), 7);
 }
 
 TEST_F(Report, AsSummary) {

@@ -19,8 +19,10 @@
 #include "stillpoint/support/model_lookup.hpp"
 #include "study/cell_runner.hpp"
 #include "study/child_process.hpp"
+#include "study/claim.hpp"
 #include "study/csv_report.hpp"
 #include "study/fingerprint.hpp"
+#include "study/latex_report.hpp"
 #include "study/markdown_report.hpp"
 #include "study/recordings.hpp"
 #include "study/slurm_batch.hpp"
@@ -28,6 +30,7 @@
 #include "study/slurm_runner.hpp"
 #include "study/text_file.hpp"
 #include "study_file.hpp"
+#include "study_list.hpp"
 
 namespace stillpoint {
 namespace {
@@ -42,6 +45,7 @@ struct AblateArguments {
   int jobs = 1;
   std::string executor = "local";
   bool quiet = false;
+  bool list = false;
 };
 
 /// One call of `stillpoint ablate`.
@@ -62,6 +66,7 @@ class Ablation {
   void run() {
     make_folder(output_);
     const FolderLock lock(output_);
+    claim_folder(output_, file_.file);
     int signal = 0;
     {
       const Interrupt interrupt;
@@ -152,7 +157,7 @@ class Ablation {
 
   std::vector<PlannedCell> plan_cells(const std::vector<Cell>& cells) {
     std::vector<PlannedCell> plan;
-    std::string recording_print, pipeline, inputs;
+    std::string recording_print, pipeline;
     for (const Cell& cell : cells) {
       const Sequence sequence = at_repeat(study(), study().sequences[cell.sequence], cell.repeat);
       const fs::path recording = recording_of(output_, sequence);
@@ -162,8 +167,8 @@ class Ablation {
       if (other) recording_print = recording_fingerprint(recording);
       if (other || cell.repeat == 0) {
         const PipelineConfig config = load_pipeline(request, registry_);
-        pipeline = config.effective_yaml;
-        inputs = input_fingerprint(pipeline, config.recording, folders_of_models());
+        pipeline = pipeline_fingerprint(config.effective_yaml, config.recording,
+                                        folders_of_models(), contents_);
       }
       const int seed = study().seed + cell.repeat;
       const fs::path run = run_folder(output_, study(), cell);
@@ -171,7 +176,7 @@ class Ablation {
                       .command = command_of(request, run, seed),
                       .run = run,
                       .recording = recording,
-                      .fingerprint = cell_fingerprint(pipeline, recording_print + inputs, seed),
+                      .fingerprint = cell_fingerprint(pipeline, recording_print, seed),
                       .time_limit = study().time_limit});
     }
     return plan;
@@ -197,10 +202,10 @@ class Ablation {
     return folders;
   }
 
-  Program program() const {
+  Program program() {
     std::vector<fs::path> files = {this_program()};
     for (const PluginType& type : registry_.types()) files.push_back(type.library);
-    return {.fingerprint = program_fingerprint(files),
+    return {.fingerprint = program_fingerprint(files, contents_),
             .version = STILLPOINT_VERSION,
             .commit = built_from_commit()};
   }
@@ -238,10 +243,11 @@ class Ablation {
     write_text(output_ / "study.yaml", file_.effective_yaml);
     write_text(output_ / "results.csv", csv_report(results));
     write_text(output_ / "summary.csv", csv_summary(results));
+    write_text(output_ / "tables.tex", latex_report(results, file_.file.stem().string()));
     write_text(output_ / "results.md", tables);
     if (quiet_) return;
     std::cout << tables << "\nfiles in " << output_.string()
-              << ": results.md results.csv summary.csv study.yaml runs/\n"
+              << ": results.md tables.tex results.csv summary.csv study.yaml runs/\n"
               << std::flush;
   }
 
@@ -260,6 +266,7 @@ class Ablation {
   const std::string command_;
   Registry registry_;
   const StudyFile file_;
+  FileContents contents_;
   const fs::path output_;
   const int jobs_;
   const bool with_slurm_;
@@ -277,8 +284,7 @@ void add_ablate(CLI::App& app) {
       app.add_subcommand("ablate", "Run a matrix of sequences, variants and repeats; make tables");
   command
       ->add_option("study", arguments->study, "Study file, or the name of one in configs/studies")
-      ->type_name("STUDY")
-      ->required();
+      ->type_name("STUDY");
   command
       ->add_option("-o,--output", arguments->output,
                    "Folder for runs and tables; a study in it is resumed; default: out/STUDY")
@@ -296,7 +302,17 @@ void add_ablate(CLI::App& app) {
       ->check(CLI::IsMember({"local", "slurm"}))
       ->type_name("NAME");
   command->add_flag("-q,--quiet", arguments->quiet, "Print only warnings and errors");
-  command->callback([arguments] { Ablation(*arguments).run(); });
+  command
+      ->add_flag("--list", arguments->list,
+                 "List the studies in configs/studies: name, number of runs, question")
+      ->excludes("study");
+  command->callback([arguments] {
+    if (arguments->list) return list_studies(std::cout);
+    if (arguments->study.empty())
+      throw Error(Fault::kUsage, "needs a study", "stillpoint ablate",
+                  "name a file, or one that 'stillpoint ablate --list' prints");
+    Ablation(*arguments).run();
+  });
 }
 
 }  // namespace stillpoint

@@ -60,9 +60,8 @@ report::ReportData read(const ReportArguments& arguments) {
   if (is_study && arguments.folders.size() > 1)
     throw Error(Fault::kUsage, "a report is of one study, or of runs", study->string(),
                 "give it alone");
-  report::ReportData data = is_study
-                                ? report::read_study(*study, recorded_study(*study / "study.yaml"))
-                                : report::read_runs(arguments.folders);
+  report::ReportData data = is_study ? report::read_study(*study, read_study(*study / "study.yaml"))
+                                     : report::read_runs(arguments.folders);
   if (!arguments.base.empty()) {
     std::map<fs::path, std::string> yaml;  // by recording: loading a pipeline takes a while
     for (report::RunData& run : data.runs) {

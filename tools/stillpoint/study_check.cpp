@@ -67,6 +67,7 @@ class StudyChecker {
     check_name_in(names_of(study_.variants), study_.baseline, place("baseline"), "variant");
     for (std::size_t i = 0; i < study_.sequences.size(); ++i) check_sequence(i);
     for (std::size_t i = 0; i < study_.variants.size(); ++i) check_variant(i);
+    for (std::size_t i = 0; i < study_.published.size(); ++i) check_published(i);
     throw_if_any();
   }
 
@@ -145,6 +146,16 @@ class StudyChecker {
       request.camera.clear();
       check_outputs(i, load_pipeline(request, registry_));
     });
+  }
+
+  void check_published(std::size_t i) {
+    std::vector<std::string> originals;
+    for (const Sequence& sequence : study_.sequences) originals.push_back(original_of(sequence));
+    const ConfigNode* list = tree_.find("published");
+    const ConfigNode* errors = list->children[i].find("errors");
+    if (!errors) return;
+    for (const ConfigNode& recording : errors->children)
+      check_name_in(originals, recording.key, recording.key_location, "recording");
   }
 
   void check_outputs(std::size_t i, const PipelineConfig& config) {

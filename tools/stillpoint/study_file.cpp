@@ -25,6 +25,29 @@ void check_version(const ConfigNode& tree, FaultList& faults) {
                                       "' is not known to this program, which reads version 1");
 }
 
+/// With a variant for each combination of its grids. Throws where nothing more can be said.
+ConfigNode load_tree(const fs::path& file, FaultList& faults) {
+  ConfigNode tree = load_config_file(file, "studies", faults);
+  faults.throw_if_any();
+  remove_nulls(tree);
+  tree.key_location = tree.location;
+  check_version(tree, faults);
+  FaultList of_grids;
+  expand_grids(tree, of_grids);
+  of_grids.throw_if_any();
+  return tree;
+}
+
+/// Returns every option with its value, as YAML.
+std::string read_options(const ConfigNode& tree, Study& study, FaultList& faults) {
+  YamlOptionReader reader(&tree, "study");
+  reader.ignore("version");
+  study.visit(reader);
+  reader.finish();
+  faults.add(reader.faults());
+  return print_yaml(reader.record());
+}
+
 /// A file beside the study becomes absolute; a name, or a file seen from the working folder, stays.
 void resolve(std::string& name_or_file, const fs::path& folder) {
   std::error_code error;
@@ -37,21 +60,9 @@ void resolve(std::string& name_or_file, const fs::path& folder) {
 StudyFile load_study(const std::string& name_or_file, Registry& registry) {
   StudyFile result{.file = find_config(name_or_file, "studies"), .study = {}, .effective_yaml = {}};
   FaultList faults;
-  ConfigNode tree = load_config_file(result.file, "studies", faults);
-  faults.throw_if_any();  // of what cannot be read, nothing more can be said
+  ConfigNode tree = load_tree(result.file, faults);
   substitute_environment(tree, faults);
-  remove_nulls(tree);
-  tree.key_location = tree.location;
-  check_version(tree, faults);
-  FaultList of_grids;
-  expand_grids(tree, of_grids);
-  of_grids.throw_if_any();
-
-  YamlOptionReader reader(&tree, "study");
-  reader.ignore("version");
-  result.study.visit(reader);
-  reader.finish();
-  faults.add(reader.faults());
+  result.effective_yaml = "version: 1\n" + read_options(tree, result.study, faults);
   const fs::path folder = fs::absolute(result.file).parent_path();
   for (Sequence& sequence : result.study.sequences) {
     resolve(sequence.scene, folder);
@@ -60,22 +71,14 @@ StudyFile load_study(const std::string& name_or_file, Registry& registry) {
   for (Variant& variant : result.study.variants) resolve(variant.pipeline, folder);
   const LateCalls late = watch_loading();
   check_study(tree, result.study, registry, std::move(faults));
-  result.effective_yaml = "version: 1\n" + print_yaml(reader.record());
   return result;
 }
 
-Study recorded_study(const fs::path& file) {
+Study read_study(const fs::path& file) {
   FaultList faults;
-  ConfigNode tree = load_config_file(file, "studies", faults);
-  faults.throw_if_any();
-  remove_nulls(tree);
-  check_version(tree, faults);
-  YamlOptionReader reader(&tree, "study");
-  reader.ignore("version");
+  const ConfigNode tree = load_tree(file, faults);
   Study study;
-  study.visit(reader);
-  reader.finish();
-  faults.add(reader.faults());
+  read_options(tree, study, faults);
   faults.throw_if_any();
   return study;
 }

@@ -28,33 +28,61 @@ std::vector<fs::directory_entry> files_below(const fs::path& folder) {
   return files;
 }
 
-void add_file(Fingerprint& fingerprint, const fs::path& file) {
-  std::error_code ignored;  // a file that cannot be seen is the same again next time
-  fingerprint.add(file.string())
-      .add(std::to_string(fs::file_size(file, ignored)))
-      .add(std::to_string(fs::last_write_time(file, ignored).time_since_epoch().count()));
-}
+class PipelinePrinter {
+ public:
+  PipelinePrinter(const fs::path& recording, const std::vector<fs::path>& folders,
+                  FileContents& contents)
+      : recording_(recording.string()), folders_(folders), contents_(contents) {}
 
-/// The paths of an effective pipeline are absolute; a network that is not there is found by name.
-void add_named(Fingerprint& fingerprint, const fs::path& named,
-               const std::vector<fs::path>& folders) {
-  std::error_code ignored;
-  if (!named.is_absolute()) return;
-  if (fs::is_regular_file(named, ignored)) return add_file(fingerprint, named);
-  if (fs::is_directory(named, ignored)) {
-    for (const fs::directory_entry& file : files_below(named)) add_file(fingerprint, file.path());
-    return;
+  /// Keys and values in the order of the file; comments do not count.
+  void add(const YAML::Node& node) {
+    if (node.IsScalar()) return add_value(node.Scalar());
+    for (const auto& child : node) {
+      if (node.IsMap()) fingerprint_.add(child.first.Scalar());
+      add(node.IsMap() ? child.second : YAML::Node(child));
+    }
+    fingerprint_.add("");  // an end
   }
-  for (const fs::path& folder : folders)
-    if (fs::is_regular_file(folder / named.filename(), ignored))
-      add_file(fingerprint, folder / named.filename());
-}
 
-void collect_scalars(const YAML::Node& node, std::vector<std::string>& scalars) {
-  if (node.IsScalar()) scalars.push_back(node.Scalar());
-  for (const auto& child : node)
-    collect_scalars(node.IsMap() ? child.second : YAML::Node(child), scalars);
-}
+  std::string text() const { return fingerprint_.text(); }
+
+ private:
+  /// The paths of an effective pipeline are absolute.
+  void add_value(const std::string& value) {
+    const fs::path path = value;
+    if (!path.is_absolute())
+      fingerprint_.add(value);
+    else if (value != recording_)
+      add_path(path);
+  }
+
+  void add_path(const fs::path& path) {
+    std::error_code ignored;
+    fingerprint_.add(path.filename().string());
+    if (fs::is_directory(path, ignored)) {
+      for (const fs::directory_entry& file : files_below(path))
+        fingerprint_.add(fs::relative(file.path(), path).string())
+            .add(contents_.fingerprint(file.path()));
+    } else if (fs::is_regular_file(path, ignored)) {
+      fingerprint_.add(contents_.fingerprint(path));
+    } else if (const auto found = find(path.filename()); !found.empty()) {
+      fingerprint_.add(contents_.fingerprint(found));
+    }
+  }
+
+  /// A network that is not where the pipeline says, by its name.
+  fs::path find(const fs::path& name) const {
+    std::error_code ignored;
+    for (const fs::path& folder : folders_)
+      if (fs::is_regular_file(folder / name, ignored)) return folder / name;
+    return {};
+  }
+
+  const std::string recording_;
+  const std::vector<fs::path>& folders_;
+  FileContents& contents_;
+  Fingerprint fingerprint_;
+};
 
 }  // namespace
 
@@ -85,24 +113,33 @@ std::string recording_fingerprint(const fs::path& recording) {
   }
 }
 
-std::string input_fingerprint(const std::string& effective_pipeline, const fs::path& recording,
-                              const std::vector<fs::path>& folders) {
-  std::vector<std::string> scalars;
-  collect_scalars(YAML::Load(effective_pipeline), scalars);
-  Fingerprint fingerprint;
-  for (const std::string& scalar : scalars)
-    if (scalar != recording.string()) add_named(fingerprint, scalar, folders);
-  return fingerprint.text();
+std::string FileContents::fingerprint(const fs::path& file) {
+  std::error_code ignored;
+  const std::uintmax_t size = fs::file_size(file, ignored);
+  const fs::file_time_type changed = fs::last_write_time(file, ignored);
+  const auto known = known_.find(file);
+  if (known != known_.end() && known->second.size == size && known->second.changed == changed)
+    return known->second.fingerprint;
+  std::string text = Fingerprint().add(read_text(file)).text();
+  known_.insert_or_assign(file, Known{size, changed, text});
+  return text;
 }
 
-std::string cell_fingerprint(const std::string& effective_pipeline, const std::string& inputs,
-                             int seed) {
-  return Fingerprint().add(effective_pipeline).add(inputs).add(std::to_string(seed)).text();
+std::string pipeline_fingerprint(const std::string& effective_pipeline, const fs::path& recording,
+                                 const std::vector<fs::path>& folders, FileContents& contents) {
+  PipelinePrinter printer(recording, folders, contents);
+  printer.add(YAML::Load(effective_pipeline));
+  return printer.text();
 }
 
-std::string program_fingerprint(const std::vector<fs::path>& files) {
+std::string cell_fingerprint(const std::string& pipeline, const std::string& recording, int seed) {
+  return Fingerprint().add(pipeline).add(recording).add(std::to_string(seed)).text();
+}
+
+std::string program_fingerprint(const std::vector<fs::path>& files, FileContents& contents) {
   Fingerprint fingerprint;
-  for (const fs::path& file : files) add_file(fingerprint, file);
+  for (const fs::path& file : files)
+    fingerprint.add(file.filename().string()).add(contents.fingerprint(file));
   return fingerprint.text();
 }
 

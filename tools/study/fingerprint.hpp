@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -23,17 +24,36 @@ class Fingerprint {
 /// Images are not read. Throws Error(kData) when the folder cannot be read.
 std::string recording_fingerprint(const std::filesystem::path& recording);
 
-/// Of the files and folders that a pipeline names besides its recording, such as networks and
-/// labels: their sizes and times of change. Networks are also looked for in `folders`, by name.
-std::string input_fingerprint(const std::string& effective_pipeline,
-                              const std::filesystem::path& recording,
-                              const std::vector<std::filesystem::path>& folders);
+/// What is in files, whatever they are called and wherever they lie. Each is read once, and again
+/// when its size or time of change has become another. For one thread.
+class FileContents {
+ public:
+  /// Also of a file that cannot be read: as if it were empty.
+  std::string fingerprint(const std::filesystem::path& file);
 
-/// Of a run: the complete pipeline, the fingerprints of what it reads, and the seed.
-std::string cell_fingerprint(const std::string& effective_pipeline, const std::string& inputs,
-                             int seed);
+ private:
+  struct Known {
+    std::uintmax_t size;
+    std::filesystem::file_time_type changed;
+    std::string fingerprint;
+  };
+  std::map<std::filesystem::path, Known> known_;
+};
 
-/// Of the program, its libraries and plugins: their sizes and times of change.
-std::string program_fingerprint(const std::vector<std::filesystem::path>& files);
+/// Of a pipeline with every option, and of the files and folders that it names besides its
+/// recording, such as networks and labels: these count by name and content, not by the folder that
+/// holds them, so that another installation of the same version has the same. Networks are also
+/// looked for in `folders`, by name.
+std::string pipeline_fingerprint(const std::string& effective_pipeline,
+                                 const std::filesystem::path& recording,
+                                 const std::vector<std::filesystem::path>& folders,
+                                 FileContents& contents);
+
+/// Of a run: the fingerprints of its pipeline and its recording, and the seed.
+std::string cell_fingerprint(const std::string& pipeline, const std::string& recording, int seed);
+
+/// Of the program, its libraries and plugins: their names and contents.
+std::string program_fingerprint(const std::vector<std::filesystem::path>& files,
+                                FileContents& contents);
 
 }  // namespace stillpoint::study

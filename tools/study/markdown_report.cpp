@@ -8,6 +8,7 @@
 #include "stillpoint/support/did_you_mean.hpp"
 #include "study/markdown_table.hpp"
 #include "study/paired_comparison.hpp"
+#include "study/provenance.hpp"
 
 namespace stillpoint::study {
 namespace {
@@ -23,10 +24,22 @@ std::string heading(const std::string& title, const std::string& unit) {
 /// The text of one sequence with one variant.
 using CellText = std::function<std::string(std::size_t sequence, std::size_t variant)>;
 
-/// Sequences × variants. Without rows in which there is nothing; empty when that leaves none.
-std::string matrix(const Study& study, const CellText& text_of) {
+std::string published_name(const Published& system) { return system.name + " (published)"; }
+
+std::string published_text(const Published& system, const std::string& recording, MetricId metric) {
+  const auto value = system.find(recording, metric);
+  return value ? fixed(*value, metrics()[metric].digits) : kNothing;
+}
+
+/// Sequences × variants, and what others have published of `metric`. Without rows in which there is
+/// nothing; empty when that leaves none.
+std::string matrix(const Study& study, const CellText& text_of,
+                   const std::optional<MetricId>& metric = {}) {
   std::vector<std::string> header = {"sequence"};
   for (const Variant& variant : study.variants) header.push_back(variant.name);
+  std::vector<const Published*> systems;
+  if (metric) systems = published_with(study, *metric, *metric + 1);
+  for (const Published* system : systems) header.push_back(published_name(*system));
   std::vector<std::vector<std::string>> rows;
   for (std::size_t sequence = 0; sequence < study.sequences.size(); ++sequence) {
     std::vector<std::string> row = {study.sequences[sequence].name};
@@ -35,6 +48,8 @@ std::string matrix(const Study& study, const CellText& text_of) {
       row.push_back(text_of(sequence, variant));
       empty = empty && row.back() == kNothing;
     }
+    for (const Published* system : systems)
+      row.push_back(published_text(*system, original_of(study.sequences[sequence]), *metric));
     if (!empty) rows.push_back(std::move(row));
   }
   return rows.empty() ? "" : markdown_table(header, rows);
@@ -85,10 +100,90 @@ std::string metric_section(const StudyResults& results, MetricId metric) {
   if (!all) return {};
   const Metric& m = metrics()[metric];
   if (all->min == 0.0 && all->max == 0.0) return heading(m.title, m.unit) + "0 in every run.\n";
-  return heading(m.title, m.unit) +
-         matrix(results.study, [&](std::size_t sequence, std::size_t variant) {
-           return metric_text(results, sequence, variant, metric);
-         });
+  return heading(m.title, m.unit) + matrix(
+                                        results.study,
+                                        [&](std::size_t sequence, std::size_t variant) {
+                                          return metric_text(results, sequence, variant, metric);
+                                        },
+                                        metric);
+}
+
+/// Below the first table that shows them.
+std::string published_note(const Study& study) {
+  if (study.published.empty()) return {};
+  std::string text = "\nPublished, not measured here";
+  if (std::ranges::any_of(study.sequences, [](const Sequence& s) { return !s.scene.empty(); }))
+    text += ", on the original recordings, of which simulated ones are only twins";
+  text += ":\n\n";
+  for (const Published& system : study.published)
+    text += "* " + system.name + ": " + system.source + "\n";
+  return text;
+}
+
+/// The rows of one sequence: RMSE, mean, median and S.D. of each kind of error.
+void add_error_rows(const StudyResults& results, std::size_t sequence,
+                    std::vector<std::vector<std::string>>& rows) {
+  const Study& study = results.study;
+  const std::string& name = study.sequences[sequence].name;
+  const auto add = [&](const std::string& system, const auto& text_of) {
+    std::vector<std::string> row = {name, system};
+    for (const ErrorFigures& figures : error_figures())
+      for (const MetricId metric : figures.all()) row.push_back(text_of(metric));
+    if (std::any_of(row.begin() + 2, row.end(), [](const auto& t) { return t != kNothing; }))
+      rows.push_back(std::move(row));
+  };
+  for (std::size_t variant = 0; variant < study.variants.size(); ++variant)
+    add(study.variants[variant].name, [&](MetricId metric) -> std::string {
+      const auto spread = results.spread(sequence, variant, metric);
+      return spread ? fixed(spread->median, metrics()[metric].digits) : kNothing;
+    });
+  for (const Published& system : study.published)
+    add(published_name(system), [&](MetricId metric) {
+      return published_text(system, original_of(study.sequences[sequence]), metric);
+    });
+}
+
+/// The form of Tables I to III of the DS-SLAM paper.
+std::string error_statistics_section(const StudyResults& results) {
+  if (values_of(results, kAteMean).empty()) return {};
+  std::vector<std::string> header = {"sequence", "variant"};
+  for (const ErrorFigures& figures : error_figures())
+    for (const MetricId metric : figures.all()) {
+      const Metric& m = metrics()[metric];
+      header.push_back(metric == figures.rmse
+                           ? std::string(figures.brief) + ", RMSE (" + m.unit + ")"
+                           : m.brief);
+    }
+  std::vector<std::vector<std::string>> rows;
+  for (std::size_t sequence = 0; sequence < results.study.sequences.size(); ++sequence)
+    add_error_rows(results, sequence, rows);
+  return heading("RMSE, mean, median and standard deviation of the errors", "") +
+         markdown_table(header, rows);
+}
+
+/// The form of Table IV: of all sequences together.
+std::string stage_section(const StudyResults& results) {
+  const Study& study = results.study;
+  std::vector<std::string> header = {"stage"};
+  for (const Variant& variant : study.variants) header.push_back(variant.name);
+  const auto systems = published_with(study, kFirstStage, kMetricCount);
+  for (const Published* system : systems) header.push_back(published_name(*system));
+  std::vector<std::vector<std::string>> rows;
+  for (std::size_t i = kFirstStage; i < kMetricCount; ++i) {
+    const auto metric = static_cast<MetricId>(i);
+    if (values_of(results, metric).empty()) continue;
+    const Metric& m = metrics()[metric];
+    rows.push_back({std::string(m.title) + " (`" + m.brief + "`)"});
+    for (std::size_t variant = 0; variant < study.variants.size(); ++variant) {
+      const auto spread = results.spread(variant, metric);
+      rows.back().push_back(spread ? spread_text(*spread, m.digits) : kNothing);
+    }
+    for (const Published* system : systems)
+      rows.back().push_back(published_text(*system, "", metric));
+  }
+  if (rows.empty()) return {};
+  return heading("Time of each stage, mean of its calls", "ms") + markdown_table(header, rows) +
+         "\nWall clock; all sequences together.\n";
 }
 
 /// Of a study with one sequence: all figures of a variant in a row.
@@ -98,6 +193,7 @@ std::string overview_section(const StudyResults& results) {
   std::vector<MetricId> shown;
   for (std::size_t i = 0; i < kMetricCount; ++i) {
     const auto metric = static_cast<MetricId>(i);
+    if (metrics()[metric].group != Metric::Group::kAlone) continue;
     const std::optional<Spread> all = spread_of(values_of(results, metric));
     if (!all || (all->min == 0.0 && all->max == 0.0)) continue;
     const Metric& m = metrics()[metric];
@@ -162,47 +258,12 @@ std::string comparison_section(const StudyResults& results) {
          "after Holm.\n";
 }
 
-std::string text_of(const Origin& origin) {
-  if (origin.version.empty()) return "a build that has left no record";
-  std::string text = "Stillpoint " + origin.version;
-  if (!origin.commit.empty()) text += ", commit " + origin.commit;
-  return text + "; " + origin.machine;
-}
-
-/// Runs that one build made on one machine.
-struct Batch {
-  std::string made_by;
-  std::string first_date, last_date;
-  std::size_t runs = 0;
-};
-
-std::vector<Batch> batches_of(const StudyResults& results) {
-  std::vector<Batch> batches;
-  for (const std::optional<CellResult>& result : results.results) {
-    if (!result) continue;
-    const std::string made_by = text_of(result->origin), &date = result->origin.date;
-    auto batch = std::ranges::find(batches, made_by, &Batch::made_by);
-    if (batch == batches.end()) batch = batches.insert(batches.end(), {made_by, date, date});
-    batch->first_date = std::min(batch->first_date, date);
-    batch->last_date = std::max(batch->last_date, date);
-    ++batch->runs;
-  }
-  return batches;
-}
-
 /// The command that repeats the runs; which builds made them, where and when.
 std::string origins(const StudyResults& results) {
   std::string text = results.command.empty() ? "" : "\n`" + results.command + "`\n";
-  const std::vector<Batch> batches = batches_of(results);
-  const std::string total = std::to_string(results.results.size() - results.missing());
-  for (const Batch& batch : batches) {
-    text += "\n";
-    if (batches.size() > 1) text += "* " + std::to_string(batch.runs) + " of " + total + " runs: ";
-    text += batch.made_by;
-    if (!batch.first_date.empty()) text += "; " + batch.first_date;
-    if (batch.last_date != batch.first_date) text += " to " + batch.last_date;
-  }
-  return batches.empty() ? text : text + "\n";
+  const std::vector<std::string> lines = provenance(results);
+  for (const std::string& line : lines) text += (lines.size() > 1 ? "\n* " : "\n") + line;
+  return lines.empty() ? text : text + "\n";
 }
 
 std::string introduction(const StudyResults& results) {
@@ -243,11 +304,15 @@ std::string remarks_section(const StudyResults& results) {
 }  // namespace
 
 std::string markdown_report(const StudyResults& results, const std::string& title) {
-  std::string text = "# " + title + "\n\n" + introduction(results);
-  text += overview_section(results) + metric_section(results, kAte);
+  std::string text = "# " + title + "\n\n";
+  if (!results.study.question.empty()) text += results.study.question + "\n\n";
+  text += introduction(results) + overview_section(results) + metric_section(results, kAte);
+  text += published_note(results.study);
   text += comparison_section(results) + improvement_section(results) + penalty_section(results);
   for (std::size_t metric = kAte + 1; metric < kMetricCount; ++metric)
-    text += metric_section(results, static_cast<MetricId>(metric));
+    if (metrics()[metric].group == Metric::Group::kAlone)
+      text += metric_section(results, static_cast<MetricId>(metric));
+  text += stage_section(results) + error_statistics_section(results);
   return text + variants_section(results.study) + remarks_section(results);
 }
 

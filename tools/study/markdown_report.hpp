@@ -1,4 +1,4 @@
-// results.md: a table per metric, sequences × variants.
+// results.md: the tables of a study.
 #pragma once
 
 #include <string>
@@ -7,9 +7,10 @@
 
 namespace stillpoint::study {
 
-/// Medians with (smallest–largest) of the repeats; behind an error the coverage where it is not
-/// complete, and how many of the repeats gave the figure when not all did. Then what the variants
-/// are, and the runs that failed. `title` heads it.
+/// A table per metric, sequences × variants and what others have published: medians with
+/// (smallest–largest) of the repeats; behind an error the coverage where it is not complete, and
+/// how many of the repeats gave the figure when not all did. Then the stages and the statistics of
+/// the errors in a table each, what the variants are, and the runs that failed. `title` heads it.
 std::string markdown_report(const StudyResults& results, const std::string& title);
 
 }  // namespace stillpoint::study

@@ -1,6 +1,7 @@
 #include "study/study.hpp"
 
 #include <algorithm>
+#include <filesystem>
 
 namespace stillpoint::study {
 namespace {
@@ -27,6 +28,9 @@ void Sequence::visit(OptionVisitor& v) {
     {.help = "a file, or a name from configs/cameras; empty: the recording's own"});
   v("twin", twin,
     {.help = "sequence that is the same without anything that moves; left out: NAME_empty"});
+  v("original", original,
+    {.help =
+         "public recording that it is, or is the twin of; left out: the scene's name, or name"});
   v.require(dataset.empty() != scene.empty(),
             "needs either 'dataset', the folder of a recording, or 'scene', to be simulated");
   v.require(dataset.empty() || (frames == 0 && set.empty()),
@@ -43,6 +47,7 @@ void Variant::visit(OptionVisitor& v) {
 }
 
 void Study::visit(OptionVisitor& v) {
+  v("question", question, {.help = "that the study answers, in a line"});
   v("sequences", sequences, {.help = "recordings", .required = true});
   v("variants", variants, {.help = "pipelines and changes of them", .required = true});
   v("repeats", repeats, {.min = 1, .max = 1000, .help = "runs of each variant on each sequence"});
@@ -61,7 +66,28 @@ void Study::visit(OptionVisitor& v) {
   v("set", set, {.help = "changes of every pipeline"});
   v("baseline", baseline, {.help = "variant that the others are compared with"});
   v("slurm", slurm, {.help = "what jobs of --executor slurm ask for"});
+  v("published", published, {.help = "figures of others, shown beside"});
   refuse_seed(v, set);
+}
+
+std::string original_of(const Sequence& sequence) {
+  if (!sequence.original.empty()) return sequence.original;
+  return sequence.scene.empty() ? sequence.name
+                                : std::filesystem::path(sequence.scene).stem().string();
+}
+
+std::vector<const Published*> published_with(const Study& study, std::size_t first,
+                                             std::size_t end) {
+  const auto has_any = [&](const Published& system) {
+    for (const Sequence& sequence : study.sequences)
+      for (std::size_t metric = first; metric < end; ++metric)
+        if (system.find(original_of(sequence), static_cast<MetricId>(metric))) return true;
+    return false;
+  };
+  std::vector<const Published*> systems;
+  for (const Published& system : study.published)
+    if (has_any(system)) systems.push_back(&system);
+  return systems;
 }
 
 Sequence at_repeat(const Study& study, const Sequence& sequence, int repeat) {

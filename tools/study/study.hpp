@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "stillpoint/options.hpp"
+#include "study/published.hpp"
 #include "study/slurm_options.hpp"
 
 namespace stillpoint::study {
@@ -18,6 +19,7 @@ struct Sequence {
   std::vector<std::string> set;  ///< `key.sub=value` for the scene
   std::string camera;            ///< a file, or a name from configs/cameras; empty: the recording's
   std::string twin;              ///< the sequence without anything that moves; empty: NAME_empty
+  std::string original;          ///< see original_of
 
   void visit(OptionVisitor& visitor);
 };
@@ -35,6 +37,7 @@ struct Variant {
 struct Study {
   enum class Mode { kPipeline, kInline, kThreaded };
 
+  std::string question;  ///< that it answers, for lists and tables
   std::vector<Sequence> sequences;
   std::vector<Variant> variants;
   int repeats = 1;
@@ -45,9 +48,18 @@ struct Study {
   std::vector<std::string> set;  ///< for all variants
   std::string baseline;          ///< name of a variant; empty: none
   SlurmOptions slurm;            ///< for jobs of a cluster
+  std::vector<Published> published;
 
   void visit(OptionVisitor& visitor);
 };
+
+/// The public recording that the sequence is, or is the twin of, by which published figures are
+/// found: `original`, or else the name of the scene, or else the sequence's own.
+std::string original_of(const Sequence& sequence);
+
+/// The systems of `published` that have one of the metrics [first, end) of one of the recordings.
+std::vector<const Published*> published_with(const Study& study, std::size_t first,
+                                             std::size_t end);
 
 /// The sequence as a repeat runs on it: a scene with noise of its own has its own name and seed.
 Sequence at_repeat(const Study& study, const Sequence& sequence, int repeat);

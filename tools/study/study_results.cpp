@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
+
+#include "evaluation/format.hpp"
 
 namespace stillpoint::study {
 namespace {
@@ -56,6 +59,14 @@ std::optional<Spread> StudyResults::spread(std::size_t sequence, std::size_t var
   return spread_of(std::move(values));
 }
 
+std::optional<Spread> StudyResults::spread(std::size_t variant, MetricId metric) const {
+  std::vector<double> values;
+  for (std::size_t i = 0; i < cells.size(); ++i)
+    if (cells[i].variant == variant && results[i] && results[i]->values[metric])
+      values.push_back(*results[i]->values[metric]);
+  return spread_of(std::move(values));
+}
+
 const CellResult* StudyResults::find(const Cell& cell) const {
   const auto found = std::ranges::lower_bound(cells, cell);
   if (found == cells.end() || *found != cell) return nullptr;
@@ -94,6 +105,32 @@ std::optional<Spread> improvement_percent(const StudyResults& results, std::size
       improvements.push_back(100.0 * (1.0 - *own->values[kAte] / *other->values[kAte]));
   }
   return spread_of(std::move(improvements));
+}
+
+std::vector<std::size_t> best_variants(const StudyResults& results, std::size_t sequence,
+                                       MetricId metric) {
+  const std::size_t count = results.study.variants.size();
+  const auto coverage = [&](std::size_t variant) {
+    const auto spread = results.spread(sequence, variant, kCoverage);
+    return spread ? spread->median : 0.0;
+  };
+  double most = 0.0;
+  for (std::size_t variant = 0; variant < count; ++variant)
+    most = std::max(most, coverage(variant));
+  std::vector<std::pair<double, std::size_t>> comparable;
+  for (std::size_t variant = 0; variant < count; ++variant)
+    if (const auto spread = results.spread(sequence, variant, metric);
+        spread && most - coverage(variant) <= kSameCoveragePercent)
+      comparable.emplace_back(spread->median, variant);
+  std::vector<std::size_t> best;
+  if (comparable.size() < 2) return best;
+  const auto shown = [&](double value) {
+    return evaluation::fixed(value, metrics()[metric].digits);
+  };
+  const std::string smallest = shown(std::ranges::min(comparable).first);
+  for (const auto& [value, variant] : comparable)
+    if (shown(value) == smallest) best.push_back(variant);
+  return best;
 }
 
 }  // namespace stillpoint::study

@@ -1,0 +1,50 @@
+#include "study/claim.hpp"
+
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "stillpoint/error.hpp"
+#include "study/text_file.hpp"
+
+namespace stillpoint::study {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+/// The study file that has claimed the folder; empty: none has.
+fs::path claimed_by(const fs::path& claim) {
+  const std::string text = read_text(claim);
+  if (text.empty()) return {};
+  try {
+    return Json::parse(text).at("file").get<std::string>();
+  } catch (const Json::exception&) {
+    throw Error(Fault::kUsage, "does not say whose folder this is", claim.string(),
+                "remove it if the study in the folder is to go on, or choose another folder with "
+                "-o");
+  }
+}
+
+bool is_same_study(const fs::path& first, const fs::path& second) {
+  if (first.stem() != second.stem()) return false;
+  std::error_code error;
+  return first == second || !fs::exists(first, error) || read_text(first) == read_text(second);
+}
+
+}  // namespace
+
+void claim_folder(const fs::path& folder, const fs::path& study_file) {
+  const fs::path claim = folder / "study.json";
+  const fs::path file = fs::absolute(study_file).lexically_normal();
+  const fs::path owner = claimed_by(claim);
+  if (owner == file) return;
+  if (!owner.empty() && !is_same_study(owner, file))
+    throw Error(Fault::kUsage,
+                "holds the study '" + owner.stem().string() + "' (" + owner.string() + "), not '" +
+                    file.stem().string() + "' (" + file.string() + ")",
+                folder.string(), "choose another folder with -o");
+  const Json json = {{"study", file.stem().string()}, {"file", file.string()}};
+  write_text(claim, json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
+}
+
+}  // namespace stillpoint::study

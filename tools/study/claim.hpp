@@ -1,0 +1,14 @@
+// One folder, one study: results of two in one folder would replace each other.
+#pragma once
+
+#include <filesystem>
+
+namespace stillpoint::study {
+
+/// Writes `folder`/study.json, which says whose folder it is. Another study is one of another name,
+/// or of the same name from a file with other content, while the first file is still there: a
+/// study may be edited, moved and read from another installation. Throws Error(kUsage) that names
+/// both when the folder is another's.
+void claim_folder(const std::filesystem::path& folder, const std::filesystem::path& study_file);
+
+}  // namespace stillpoint::study
