@@ -107,6 +107,8 @@ struct FakeOutput final : Output {
 
 inline constexpr PluginEntry kEntries[] = {
     provide<Source, FakeSource>("tum_rgbd", "a recording"),
+    provide<Source, FakeSource>("bag", "a bag"),
+    provide<Source, FakeSource>("own", "another recording"),
     provide<Source, PathlessSource>("simulation", "a made-up world"),
     provide<Segmenter, FakeSegmenter>("opencv_dnn", "a network"),
     provide<MovingChecker, FakeChecker>("lk_epipolar", "optical flow"),

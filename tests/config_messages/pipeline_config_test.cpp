@@ -207,6 +207,30 @@ TEST_F(PipelineConfigTest, CameraPrecedence) {
   EXPECT_EQ(load({.pipeline = "elsewhere.yaml", .dataset = "data"}).camera->fx, 200);
 }
 
+TEST_F(PipelineConfigTest, TheDatasetChoosesBetweenRecordingsAndBags) {
+  fs::create_directories("recording");
+  fs::create_directories("split");
+  write("recording/rgb.txt", "");
+  write("split/part_0.mcap", "");
+  write("folder.yaml", "version: 1\nsource: {type: tum_rgbd, path: data, max_difference: 0.5}\n");
+  write("bag.yaml", "version: 1\nsource: {type: bag, path: data.bag}\n");
+  write("own.yaml", "version: 1\nsource: {type: own, path: data}\n");
+  const auto type_of = [&](const char* pipeline, const char* dataset) {
+    return load({.pipeline = pipeline, .dataset = dataset}).source->type();
+  };
+  for (const char* bag : {"a.bag", "a.mcap", "a.db3", "a.bag.active", "split"}) {
+    EXPECT_EQ(type_of("folder.yaml", bag), "bag") << bag;
+    EXPECT_EQ(type_of("bag.yaml", bag), "bag") << bag;
+    EXPECT_EQ(type_of("own.yaml", bag), "own") << bag;
+  }
+  EXPECT_EQ(type_of("folder.yaml", "recording"), "tum_rgbd");
+  EXPECT_EQ(type_of("bag.yaml", "recording"), "tum_rgbd");
+  const PipelineConfig config = load({.pipeline = "folder.yaml",
+                                      .dataset = "a.bag",
+                                      .assignments = {"source.max_difference=0.1"}});
+  EXPECT_EQ(config.recording, fs::absolute("a.bag"));
+}
+
 TEST_F(PipelineConfigTest, NamesAreFoundInTheConfigFolders) {
   fs::create_directories("configs/pipelines");
   fs::create_directories("configs/cameras");

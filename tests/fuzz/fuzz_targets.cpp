@@ -282,18 +282,22 @@ Bytes small_bag(const BagStyle& style) {
   return bytes_of(file);
 }
 
+/// As what it is, and as what it is not.
 void use_message(bag::ByteSpan message, Serialisation kind) {
-  for (const bool compressed_one : {false, true}) {
+  const auto use_image = [&](bool compressed_one) {
+    const bag::ImageMessage image = bag::read_image(message, kind, compressed_one);
+    image.description.kind() == bag::ImageKind::kDepth ? bag::depth_pixels(image)
+                                                       : bag::color_pixels(image);
+  };
+  const std::function<void()> uses[] = {
+      [&] { use_image(false); }, [&] { use_image(true); },
+      [&] { bag::camera_model(bag::read_camera_info(message, kind), false, "camera"); }};
+  for (const auto& use : uses) {
     try {
-      const bag::ImageMessage image = bag::read_image(message, kind, compressed_one);
-      if (image.description.kind() == bag::ImageKind::kDepth)
-        bag::depth_pixels(image);
-      else
-        bag::color_pixels(image);
+      use();
     } catch (const Error&) {
     }
   }
-  bag::camera_model(bag::read_camera_info(message, kind), false, "camera");
 }
 
 void use_bag(const fs::path& file) {

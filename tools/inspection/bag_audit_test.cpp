@@ -1,0 +1,102 @@
+#include "inspection/bag_audit.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <opencv2/core.hpp>
+
+#include "support/bag_writer.hpp"
+#include "support/recording_writer.hpp"
+
+namespace stillpoint::inspection {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::Contains;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+class BagAuditTest : public ::testing::Test {
+ protected:
+  void info() {
+    writer_->add("/color/camera_info", "sensor_msgs/CameraInfo", stamp(0),
+                 stillpoint::testing::camera_info_message(kind_));
+  }
+  void pair(int i, const std::string& depth_frame = "c") {
+    image("/color/image", "c", stamp(i), CV_8UC3, "rgb8");
+    image("/depth/image", depth_frame, stamp(i) + 4'000'000, CV_16UC1, "16UC1");
+  }
+  void image(const std::string& topic, const std::string& frame, std::int64_t time, int type,
+             const std::string& encoding) {
+    writer_->add(topic, "sensor_msgs/Image", time,
+                 stillpoint::testing::image_message(kind_, time, frame,
+                                                    cv::Mat::zeros(48, 64, type), encoding));
+  }
+  BagAudit audit(const BagAuditOptions& options = {}) {
+    writer_->finish();
+    return audit_bag(file_, options);
+  }
+  static std::int64_t stamp(int i) { return 1'000'000'000 + 100'000'000LL * i; }
+
+  stillpoint::testing::TemporaryFolder folder_;
+  std::filesystem::path file_ = folder_.path() / "a.mcap";
+  std::unique_ptr<stillpoint::testing::BagWriter> writer_ =
+      stillpoint::testing::make_bag_writer(file_, {"mcap", "zstd"});
+  bag::Serialisation kind_ = writer_->serialisation();
+};
+
+TEST_F(BagAuditTest, CountsASoundBag) {
+  info();
+  for (int i = 0; i < 20; ++i) pair(i);
+  writer_->add("/imu", "sensor_msgs/Imu", stamp(3), {0, 1, 0, 0});
+  const BagAudit result = audit();
+  ASSERT_EQ(result.topics.size(), 4U);
+  EXPECT_EQ(result.topics[1].topic.name, "/color/image");
+  EXPECT_EQ(result.topics[1].messages.images, 20U);
+  EXPECT_EQ(result.topics[1].images, "64 x 48, rgb8");
+  EXPECT_EQ(result.choice.value().depth.name, "/depth/image");
+  EXPECT_EQ(result.pairs.images, 20U);
+  EXPECT_NEAR(result.mean_difference, 0.004, 1e-9);
+  EXPECT_EQ(result.camera.value().fx, 50);
+  EXPECT_THAT(result.warnings, IsEmpty());
+  EXPECT_THAT(report_table(result),
+              AllOf(HasSubstr("format            MCAP"), HasSubstr("/imu"),
+                    HasSubstr("/color/image: 20 images in 1.90 s, 10.0 Hz, no gaps"),
+                    HasSubstr("fx 50.0, fy 51.0"), HasSubstr("No problems found.")));
+  const auto json = report_json(result);
+  EXPECT_EQ(json["color"]["topic"], "/color/image");
+  EXPECT_EQ(json["pairs"], 20);
+  EXPECT_EQ(json["topics"].size(), 4U);
+  EXPECT_EQ(json["camera"]["width"], 64);
+}
+
+TEST_F(BagAuditTest, SaysWhatIsWrong) {
+  for (int i = 0; i < 20; ++i)
+    if (i < 8 || i > 15) pair(i, "d");
+  for (int i = 8; i < 10; ++i) image("/color/image", "c", stamp(i), CV_8UC3, "rgb8");
+  EXPECT_THAT(audit().warnings, ElementsAre(HasSubstr("has no CameraInfo of /color/image"),
+                                            HasSubstr("is in the frame 'd', colour in 'c'"),
+                                            HasSubstr("2 of 14 colour images have no depth image"),
+                                            HasSubstr("no frames for 0.90 s from 1.700 s")));
+}
+
+TEST_F(BagAuditTest, TellsTheTopicsAlsoWithoutAChoice) {
+  image("/color/image", "c", stamp(0), CV_8UC3, "rgb8");
+  const BagAudit result = audit();
+  EXPECT_FALSE(result.choice.has_value());
+  EXPECT_THAT(result.warnings, ElementsAre(HasSubstr("there is no topic with depth images")));
+  EXPECT_THAT(report_table(result), HasSubstr("64 x 48, rgb8"));
+  EXPECT_TRUE(report_json(result)["camera"].is_null());
+}
+
+TEST_F(BagAuditTest, TellsDamage) {
+  info();
+  for (int i = 0; i < 20; ++i) pair(i);
+  writer_->finish();
+  stillpoint::testing::truncate_file(file_, 0.6);
+  EXPECT_THAT(audit_bag(file_, {}).warnings, Contains(HasSubstr("cut off")));
+}
+
+}  // namespace
+}  // namespace stillpoint::inspection
