@@ -36,6 +36,9 @@ struct FrameReport {
   TrackResult result;
   /// Of the calls that ended since the last report: of this frame, and on other threads.
   std::vector<StageTime> times;
+  /// A snapshot of when the frame had been tracked. Never null in a run.
+  std::shared_ptr<const SparseMap> map;
+  int loops_closed = 0;  ///< since the run began
 };
 using FrameReportPtr = std::shared_ptr<const FrameReport>;
 
@@ -75,7 +78,7 @@ struct RunSummary {
 class STILLPOINT_EXPORT Output {
  public:
   static constexpr const char* kKind = "output";
-  static constexpr std::uint32_t kApi = 1;  ///< see kPluginApi
+  static constexpr std::uint32_t kApi = 2;  ///< see kPluginApi
   virtual ~Output();
 
   /// In order of the frames. Threaded, tracking is up to eight frames ahead and then waits; with
