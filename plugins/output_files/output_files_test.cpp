@@ -6,6 +6,7 @@
 #include <opencv2/imgcodecs.hpp>
 #include <sstream>
 
+#include "output_files/frames_output.hpp"
 #include "output_files/image_output.hpp"
 #include "output_files/keyframes_output.hpp"
 #include "output_files/summary_output.hpp"
@@ -134,6 +135,25 @@ TEST_F(OutputFiles, TimingsAreStreamedAndComplete) {
   EXPECT_THAT(lines("timings.csv"),
               ElementsAre("frame,stage,wall_ms,cpu_ms", "60,track,10.0000,8.0000",
                           "48,map_refine,50.0000,49.0000", "59,loop,1.0000,0.5000"));
+}
+
+TEST_F(OutputFiles, FramesSayWhatTrackingHadAndWhatItLeftOut) {
+  Report report;
+  FramesOutput output({}, context);
+  output.frame(report());  // no weights: all of the image is used
+  report.frame.index = 61;
+  report.frame.time = 1.533333;
+  report.result = {.state = TrackState::kTracking, .features = 900, .matches = 200, .inliers = 150};
+  report.moving = {.points = {{{1, 1}, {2, 2}, 3.0F, true}, {{5, 5}, {5, 5}, 0.0F, false}},
+                   .reliable = true};
+  report.weights.track = cv::Mat(120, 160, CV_8UC1, cv::Scalar(255));
+  report.weights.track.colRange(0, 40) = 0;
+  output.frame(report());
+  output.finish(summary());
+  EXPECT_THAT(
+      lines("frames.csv"),
+      ElementsAre("frame,time,state,features,matches,inliers,moving_points,excluded_percent",
+                  "60,1.500000,waiting,0,0,0,,0.00", "61,1.533333,tracking,900,200,150,1,25.00"));
 }
 
 TEST_F(OutputFiles, UnfinishedFilesLeaveNothingBehind) {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 #include <numeric>
+#include <utility>
 #include <vector>
 
 #include "evaluation/association.hpp"
@@ -38,6 +39,7 @@ std::optional<RelativeError> relative_error(const Trajectory& reference, const T
   const std::vector<double> estimate_times = times_of(estimate);
   const double max_difference = kReferenceIntervals * median_interval(reference);
   std::vector<double> translations, rotations;
+  std::vector<MotionError> motions;
   for (const auto& [i, j] : intervals(estimate_times, delta)) {
     const double from_time = estimate_times[i] + offset, to_time = estimate_times[j] + offset;
     const StampedPose& from = reference.poses[closest(reference_times, from_time)];
@@ -49,9 +51,11 @@ std::optional<RelativeError> relative_error(const Trajectory& reference, const T
                        earlier_from_later(from, to);
     translations.push_back(error.translation().norm());
     rotations.push_back(rotation_angle(error) * 180.0 / std::numbers::pi);
+    motions.push_back({from_time, translations.back(), rotations.back()});
   }
   if (translations.size() < 2) return std::nullopt;
-  return RelativeError{translations.size(), statistics_of(translations), statistics_of(rotations)};
+  return RelativeError{translations.size(), statistics_of(translations), statistics_of(rotations),
+                       std::move(motions)};
 }
 
 }  // namespace stillpoint::evaluation

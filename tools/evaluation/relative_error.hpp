@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <optional>
+#include <vector>
 
 #include "evaluation/statistics.hpp"
 #include "evaluation/trajectory.hpp"
@@ -17,10 +18,18 @@ struct Delta {
   DeltaUnit unit = DeltaUnit::kSeconds;
 };
 
+/// Of the motion that begins at `time`, on the reference's clock.
+struct MotionError {
+  double time = 0;  ///< seconds
+  double translation_m = 0;
+  double rotation_deg = 0;
+};
+
 struct RelativeError {
   std::size_t pairs = 0;
   Statistics translation_m;
   Statistics rotation_deg;
+  std::vector<MotionError> per_pair;  ///< by rising time
 };
 
 /// As the benchmark's evaluate_rpe.py with --fixed_delta: every estimated pose is paired with the

@@ -22,6 +22,7 @@ void add_plugins(CLI::App& app);
 /// Below `plugins`.
 void add_plugins_check(CLI::App& plugins);
 void add_plugins_new(CLI::App& plugins);
+void add_report(CLI::App& app);
 void add_run(CLI::App& app);
 void add_simulate(CLI::App& app);
 

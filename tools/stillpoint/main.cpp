@@ -23,7 +23,8 @@ using stillpoint::Fault;
 constexpr void (*kCommands[])(CLI::App&) = {
     stillpoint::add_ablate,   stillpoint::add_check,   stillpoint::add_compare,
     stillpoint::add_evaluate, stillpoint::add_inspect, stillpoint::add_map,
-    stillpoint::add_plugins,  stillpoint::add_run,     stillpoint::add_simulate,
+    stillpoint::add_plugins,  stillpoint::add_report,  stillpoint::add_run,
+    stillpoint::add_simulate,
 };
 
 constexpr const char* kExitCodes =

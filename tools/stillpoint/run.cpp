@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "commands.hpp"
+#include "commit.hpp"
 #include "console.hpp"
 #include "interrupt.hpp"
 #include "map_saver.hpp"
@@ -20,6 +21,7 @@
 #include "stillpoint/engine/make_stages.hpp"
 #include "stillpoint/runtime/stage_error.hpp"
 #include "stillpoint/runtime/stage_guard.hpp"
+#include "study/origin.hpp"
 
 namespace stillpoint {
 namespace {
@@ -111,6 +113,9 @@ void run(const RunArguments& arguments) {
   RunFolder folder(
       arguments.output.empty() ? fs::path("out") / config.file.stem() : arguments.output, console);
   folder.log(LogLevel::kInfo, "stillpoint " STILLPOINT_VERSION ", " + config.file.string());
+  folder.log(LogLevel::kInfo,
+             "by " + origin_text(study::origin_of(
+                         {.version = STILLPOINT_VERSION, .commit = built_from_commit()})));
   loading.reset();
   const LateCalls late(config.runtime.stage_timeout, [&folder](const std::string& text) {
     folder.log(LogLevel::kWarning, text + "; Ctrl-C stops the run");

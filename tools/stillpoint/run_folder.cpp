@@ -19,7 +19,8 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kResults[] = {"pipeline.yaml", "log.txt",     "trajectory.txt",
-                                    "keyframes.txt", "timings.csv", "summary.json"};
+                                    "keyframes.txt", "timings.csv", "frames.csv",
+                                    "summary.json"};
 constexpr const char* kMaps[] = {"map.ot", "map.bt", "map.ply", "map.pgm", "map.yaml", "cloud.ply"};
 
 /// "000042.jpg"

@@ -64,6 +64,22 @@ StudyFile load_study(const std::string& name_or_file, Registry& registry) {
   return result;
 }
 
+Study recorded_study(const fs::path& file) {
+  FaultList faults;
+  ConfigNode tree = load_config_file(file, "studies", faults);
+  faults.throw_if_any();
+  remove_nulls(tree);
+  check_version(tree, faults);
+  YamlOptionReader reader(&tree, "study");
+  reader.ignore("version");
+  Study study;
+  study.visit(reader);
+  reader.finish();
+  faults.add(reader.faults());
+  faults.throw_if_any();
+  return study;
+}
+
 PipelineRequest request_of(const Study& study, const Sequence& sequence, const Variant& variant,
                            const fs::path& recording) {
   PipelineRequest request{.pipeline = variant.pipeline,

@@ -19,6 +19,10 @@ struct StudyFile {
 /// every fault of the study, its pipelines and its scenes, or Error when there is no such file.
 StudyFile load_study(const std::string& name_or_file, Registry& registry);
 
+/// The study that `ablate` has recorded as study.yaml; its pipelines, scenes and recordings are not
+/// looked at. Throws ConfigError with every fault.
+study::Study recorded_study(const std::filesystem::path& file);
+
 /// What `stillpoint run` is told for a variant on a sequence whose recording lies in `recording`;
 /// the seed is missing.
 PipelineRequest request_of(const study::Study& study, const study::Sequence& sequence,

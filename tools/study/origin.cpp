@@ -36,6 +36,13 @@ std::string today() {
 
 }  // namespace
 
+std::string origin_text(const Origin& origin) {
+  if (origin.version.empty()) return "a build that has left no record";
+  std::string text = "Stillpoint " + origin.version;
+  if (!origin.commit.empty()) text += ", commit " + origin.commit;
+  return text + "; " + origin.machine + "; " + origin.date;
+}
+
 Origin origin_of(const Program& program) {
   return {
       .version = program.version, .commit = program.commit, .machine = machine(), .date = today()};

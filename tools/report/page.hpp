@@ -1,0 +1,24 @@
+// The page: a template with everything that it shows inside.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "report/report_data.hpp"
+
+namespace stillpoint::report {
+
+/// How much of a report's runs goes into its page, so that it stays below 20 MB.
+struct PageLimits {
+  std::size_t points = 2000;              ///< of a series; with many runs fewer
+  std::size_t voxels = 250'000;           ///< of a map
+  std::size_t map_bytes = 6'000'000;      ///< of all maps; what comes after is left out
+  std::size_t picture_bytes = 4'000'000;  ///< of all pictures, likewise
+};
+
+/// `page` is the built template; `written_by` names the program. What is left out is said in the
+/// page. Throws Error(kUsage) when the template cannot be used.
+std::string filled_page(const std::filesystem::path& page, const ReportData& data,
+                        const std::string& written_by, const PageLimits& limits = {});
+
+}  // namespace stillpoint::report

@@ -1,0 +1,20 @@
+// Everything a report shows, from folders of runs or of a study.
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "report/report_data.hpp"
+#include "study/study.hpp"
+
+namespace stillpoint::report {
+
+/// Of one or more run folders. Throws Error(kUsage) for one that holds no run.
+ReportData read_runs(const std::vector<std::filesystem::path>& folders);
+
+/// Of a study's folder, whose runs may be missing, unfinished or made by another version: notes say
+/// so. Every run that has left something is in it; the pipeline of each is compared with that of
+/// the baseline, or of the first variant.
+ReportData read_study(const std::filesystem::path& folder, const study::Study& study);
+
+}  // namespace stillpoint::report

@@ -1,0 +1,109 @@
+#include "report/run_tables.hpp"
+
+#include <algorithm>
+#include <functional>
+#include <map>
+
+#include "evaluation/format.hpp"
+
+namespace stillpoint::report {
+namespace {
+
+using evaluation::fixed;
+
+enum class Better { kSmaller, kLarger, kNeither };
+
+struct Column {
+  const char* title;
+  int digits;
+  Better better;
+  bool is_error;  ///< means little without the coverage
+  std::function<std::optional<double>(const RunData&)> figure;
+};
+
+std::optional<double> percent(const std::optional<double>& share) {
+  return share ? std::optional(100.0 * *share) : std::nullopt;
+}
+
+/// A figure of the evaluation, where there is one.
+template <class Figure>
+auto of_evaluation(Figure figure) {
+  return [figure](const RunData& run) -> std::optional<double> {
+    return run.evaluation ? figure(*run.evaluation) : std::nullopt;
+  };
+}
+
+const std::vector<Column>& columns() {
+  using Evaluation = evaluation::Evaluation;
+  using Figure = std::optional<double>;
+  static const std::vector<Column> kColumns = {
+      {"ATE RMSE (m)", 4, Better::kSmaller, true,
+       of_evaluation([](const Evaluation& e) -> Figure { return e.rigid.metres.rmse; })},
+      {"ATE median (m)", 4, Better::kSmaller, true,
+       of_evaluation([](const Evaluation& e) -> Figure { return e.rigid.metres.median; })},
+      {"ATE max (m)", 4, Better::kSmaller, true,
+       of_evaluation([](const Evaluation& e) -> Figure { return e.rigid.metres.max; })},
+      {"RPE 1 s (m)", 4, Better::kSmaller, true, of_evaluation([](const Evaluation& e) -> Figure {
+         return e.relative ? Figure(e.relative->translation_m.rmse) : std::nullopt;
+       })},
+      {"RPE 1 s (deg)", 3, Better::kSmaller, true, of_evaluation([](const Evaluation& e) -> Figure {
+         return e.relative ? Figure(e.relative->rotation_deg.rmse) : std::nullopt;
+       })},
+      {"coverage (%)", 1, Better::kLarger, false,
+       [](const RunData& run) { return percent(run.coverage); }},
+      {"lost", 0, Better::kSmaller, false, [](const RunData& run) { return run.times_lost; }},
+      {"loops", 0, Better::kNeither, false, [](const RunData& run) { return run.loops_closed; }},
+      {"speed (frames/s)", 1, Better::kLarger, false,
+       [](const RunData& run) { return run.frames_per_second; }},
+      {"CPU (ms/frame)", 1, Better::kSmaller, false,
+       [](const RunData& run) { return run.cpu_ms_per_frame; }},
+      {"memory (MiB)", 0, Better::kSmaller, false,
+       [](const RunData& run) { return run.peak_memory_mib; }}};
+  return kColumns;
+}
+
+/// In which rows of one recording the column has its best figure; none when all are the same.
+void mark_best(std::span<const RunData> runs, const std::vector<std::size_t>& rows,
+               std::size_t place, Table& table) {
+  const Column& column = columns()[place - 1];
+  double most = 0.0;
+  for (const std::size_t row : rows) most = std::max(most, runs[row].coverage.value_or(0.0));
+  std::vector<TableCell*> eligible;
+  for (const std::size_t row : rows) {
+    const bool covers = 100.0 * (most - runs[row].coverage.value_or(0.0)) <= kSameCoverage;
+    TableCell& cell = table.rows[row][place];
+    if (cell.value && (covers || !column.is_error)) eligible.push_back(&cell);
+  }
+  if (column.better == Better::kNeither || eligible.size() < 2) return;
+  const auto [smallest, largest] =
+      std::ranges::minmax(eligible, {}, [](const TableCell* cell) { return *cell->value; });
+  if (*smallest->value == *largest->value) return;
+  (column.better == Better::kSmaller ? smallest : largest)->best = true;
+}
+
+}  // namespace
+
+Table run_table(std::span<const RunData> runs) {
+  Table table{.title = "Runs",
+              .note = runs.size() > 1 ? "Bold: the best of its recording; of errors, among runs "
+                                        "that cover as much as the one that covers most, up to 1 %."
+                                      : "",
+              .header = {"run"}};
+  for (const Column& column : columns()) table.header.emplace_back(column.title);
+  std::map<std::string, std::vector<std::size_t>> by_recording;
+  for (const RunData& run : runs) {
+    by_recording[run.recording].push_back(table.rows.size());
+    std::vector<TableCell>& row = table.rows.emplace_back();
+    row.push_back({.text = run.name});
+    for (const Column& column : columns()) {
+      const std::optional<double> value = column.figure(run);
+      row.push_back({.text = value ? fixed(*value, column.digits) : "–", .value = value});
+    }
+  }
+  for (const auto& [recording, rows] : by_recording)
+    for (std::size_t place = 1; place < table.header.size(); ++place)
+      mark_best(runs, rows, place, table);
+  return table;
+}
+
+}  // namespace stillpoint::report

@@ -1,0 +1,17 @@
+// The table of single runs.
+#pragma once
+
+#include <span>
+
+#include "report/report_data.hpp"
+
+namespace stillpoint::report {
+
+/// A run per row: errors, coverage, speed, memory. The best of a column is marked among runs of one
+/// recording, errors only among those that cover as much of it as the one that covers most.
+Table run_table(std::span<const RunData> runs);
+
+/// Figures whose difference is below this many per cent of the frames cover the same.
+inline constexpr double kSameCoverage = 1.0;
+
+}  // namespace stillpoint::report

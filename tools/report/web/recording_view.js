@@ -1,0 +1,51 @@
+// The runs on one recording beside each other.
+import {run as loadRun, scaled} from './data.js';
+import {el, figure} from './dom.js';
+import {pathPlot} from './paths.js';
+import {planar} from './run_view.js';
+import {seriesChart} from './series.js';
+import {kind} from './theme.js';
+
+/** Of each variant its first run; single runs are their own variant. */
+export function representatives(report, recording) {
+  const seen = new Set(), list = [];
+  report.runs.forEach((run, index) => {
+    if (run.recording !== recording) return;
+    const variant = run.name.split('/').length === 3 ? run.name.split('/')[1] : run.name;
+    if (seen.has(variant)) return;
+    seen.add(variant);
+    list.push({variant, index});
+  });
+  return list;
+}
+
+const most = 8;  // lines that a picture can hold
+
+/** Values of `y` at the times `all`; nothing in between. */
+function at(all, t, y) {
+  const values = new Map(t.map((seconds, i) => [seconds, y[i]]));
+  return all.map(seconds => values.get(seconds) ?? null);
+}
+
+function errorsOf(runs) {
+  const all = [...new Set(runs.flatMap(r => r.run.trace.t))].sort((a, b) => a - b);
+  return [scaled(all, 1e-3), ...runs.map(r => scaled(at(all, r.run.trace.t, r.run.trace.e), 0.1))];
+}
+
+export async function recordingView(report, recording) {
+  const chosen = representatives(report, recording).slice(0, most);
+  const runs = (await Promise.all(chosen.map(async c => ({...c, run: await loadRun(c.index)}))))
+    .filter(r => r.run.trace.truth && r.run.trace.t.length);
+  if (!runs.length) return el('p', {class: 'quiet'}, 'No run on this recording can be compared with a truth.');
+  const truth = runs.reduce((a, b) => b.run.trace.t.length > a.run.trace.t.length ? b : a).run.trace;
+  const lines = (a, b) => [planar(truth, 'truth', a, b), ...runs.map((r, i) => (
+    {...planar(r.run.trace, 'estimate', a, b), error: undefined, colour: kind(i)}))];
+  const legend = el('div', {class: 'legend'}, ...runs.map((r, i) => el('span', {},
+    el('i', {style: `background:${kind(i)}`}), `${r.variant}: ATE ${(1000 * r.run.errors.ate_m[0]).toFixed(1)} mm`)),
+    el('span', {}, el('i', {class: 'truth-key'}), 'truth'));
+  return el('div', {}, legend, el('div', {class: 'pair'},
+    figure('From above', pathPlot(lines(0, 1), true, 'x [m]', 'y [m]')),
+    figure('From the side', pathPlot(lines(0, 2), true, 'x [m]', 'z [m]'))),
+    figure('Absolute trajectory error', seriesChart(errorsOf(runs), runs.map((r, i) => (
+      {label: r.variant, colour: kind(i), spanGaps: true})), {height: 220, xName: 'time [s]', yName: '[mm]', spanGaps: true})));
+}

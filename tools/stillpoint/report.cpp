@@ -1,0 +1,113 @@
+// stillpoint report: a page and tables of runs or of a study.
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "commands.hpp"
+#include "commit.hpp"
+#include "evaluation/format.hpp"
+#include "report/page.hpp"
+#include "report/report_reader.hpp"
+#include "report/run_reader.hpp"
+#include "report/table_files.hpp"
+#include "stillpoint/engine/install_layout.hpp"
+#include "stillpoint/error.hpp"
+#include "study/text_file.hpp"
+#include "study_file.hpp"
+
+namespace stillpoint {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct ReportArguments {
+  std::vector<fs::path> folders;
+  fs::path output;
+  std::string base;
+};
+
+fs::path page_file() { return installation_folder() / "share/stillpoint/report.html"; }
+
+/// Every option of a pipeline as a run of that recording has it.
+std::string effective_yaml(const std::string& pipeline, const fs::path& recording) {
+  const LateCalls late = watch_loading();
+  Registry registry;
+  PipelineRequest request{.pipeline = pipeline};
+  if (!recording.empty()) request.dataset = recording.string();
+  return load_pipeline(request, registry).effective_yaml;
+}
+
+/// A lone run is compared with the file that it was made from, where that can still be read.
+void compare_with_its_file(report::RunData& run) {
+  if (run.pipeline.empty()) return;
+  try {
+    compare_options(run, run.pipeline.stem().string(),
+                    effective_yaml(run.pipeline.string(), run.truth.parent_path()));
+  } catch (const Error&) {  // the file is gone, or no longer fits: nothing to compare with
+  }
+}
+
+report::ReportData read(const ReportArguments& arguments) {
+  const fs::path& first = arguments.folders.front();
+  const fs::path study = first / "study.yaml";
+  const bool is_study = fs::exists(study);
+  if (is_study && arguments.folders.size() > 1)
+    throw Error(Fault::kUsage, "a report is of one study, or of runs", first.string(),
+                "give it alone");
+  report::ReportData data = is_study ? report::read_study(first, recorded_study(study))
+                                     : report::read_runs(arguments.folders);
+  if (!arguments.base.empty()) {
+    for (report::RunData& run : data.runs)
+      compare_options(run, arguments.base, effective_yaml(arguments.base, run.truth.parent_path()));
+  } else if (data.runs.size() == 1) {
+    compare_with_its_file(data.runs.front());
+  }
+  return data;
+}
+
+void write_report(const ReportArguments& arguments) {
+  using study::write_text;
+  const bool alone = arguments.folders.size() == 1;
+  const fs::path page = !arguments.output.empty() ? arguments.output
+                        : alone                   ? arguments.folders.front() / "report.html"
+                                                  : fs::path("report.html");
+  const report::ReportData data = read(arguments);
+  const study::Origin here =
+      study::origin_of({.version = STILLPOINT_VERSION, .commit = built_from_commit()});
+  const std::string html =
+      filled_page(page_file(), data, "Stillpoint " STILLPOINT_VERSION ", " + here.date);
+  const fs::path folder = page.parent_path();
+  write_text(page, html);
+  write_text(folder / "tables.tex", latex_tables(data.tables));
+  write_text(folder / "tables.csv", csv_tables(data.tables));
+  for (const std::string& note : data.notes) std::cerr << "note: " << note << '\n';
+  std::cout << page.string() << " (" << evaluation::fixed(static_cast<double>(html.size()) / 1e6, 1)
+            << " MB), tables.tex, tables.csv\n";
+}
+
+}  // namespace
+
+void add_report(CLI::App& app) {
+  auto arguments = std::make_shared<ReportArguments>();
+  CLI::App* command =
+      app.add_subcommand("report", "Write a page with figures and tables, of runs or of a study");
+  command->add_option("folders", arguments->folders, "Run folders, or the folder of a study")
+      ->type_name("DIR")
+      ->required()
+      ->check(CLI::ExistingDirectory);
+  command
+      ->add_option("-o,--output", arguments->output,
+                   "The page; tables.tex and tables.csv lie beside it. Default: report.html in the "
+                   "folder, or here when there are several")
+      ->type_name("FILE");
+  command
+      ->add_option("--base", arguments->base,
+                   "Pipeline with whose options those of each run are compared. Default: the file "
+                   "that was run; of several runs, the first one; of a study, the baseline")
+      ->type_name("PIPELINE");
+  command->callback([arguments] { write_report(*arguments); });
+}
+
+}  // namespace stillpoint
