@@ -14,12 +14,22 @@ const TOAST = 6000;           // ms
 
 const byId = (id) => document.getElementById(id);
 const image = new ImagePanel();
-const map = new MapPanel();
+const map = mapPanel();
 const charts = new ChartPanel();
 let run = new Run();
 let chartsDrawn = 0;
 let toastEnd = 0;
 const arrivals = [];  // {at, frames}, of the last seconds
+
+/** Browsers without WebGL show the rest. */
+function mapPanel() {
+  try {
+    return new MapPanel();
+  } catch (error) {
+    byId('map').textContent = 'This browser draws no 3-D (WebGL), so there is no map.';
+    return {show() {}, reset() {}};
+  }
+}
 
 function connect() {
   const scheme = location.protocol === 'https:' ? 'wss:' : 'ws:';
