@@ -7,6 +7,7 @@
 #include <opencv2/imgcodecs.hpp>
 #include <utility>
 
+#include "output_files/panels.hpp"
 #include "stillpoint/support/atomic_file.hpp"
 
 namespace stillpoint::output_files {
@@ -43,7 +44,8 @@ void ImageOutput::frame(const FrameReport& report) {
   if (report.frame->index % static_cast<std::uint32_t>(options_.every) != 0) return;
   const char* extension = options_.format == Options::Format::kPng ? ".png" : ".jpg";
   std::vector<unsigned char> bytes;
-  cv::imencode(extension, annotated(report, options_.parts), bytes);
+  cv::imencode(extension, options_.panels ? panels_of(report) : annotated(report, options_.parts),
+               bytes);
   std::array<char, 32> name{};
   std::snprintf(name.data(), name.size(), "%06u%s", report.frame->index, extension);
   AtomicFile file(folder_ / name.data());

@@ -15,6 +15,7 @@ class ImageOutput final : public Output {
     int every = 30;
     Format format = Format::kJpeg;
     AnnotationParts parts;
+    bool panels = false;
     std::string folder = "images";
 
     void visit(OptionVisitor& v) {
@@ -29,6 +30,9 @@ class ImageOutput final : public Output {
       v("evidence", parts.evidence,
         {.help = "of the map check: free-space violations purple, static surfaces light blue"});
       v("text", parts.text, {.help = "a line with the state of tracking"});
+      v("panels", panels,
+        {.help = "four pictures in one, whatever the parts: features, moving points, labels with "
+                 "what was decided, and what tracking uses"});
       v("folder", folder, {.help = "name of the folder in the run folder"});
     }
   };

@@ -9,6 +9,7 @@
 #include "output_files/frames_output.hpp"
 #include "output_files/image_output.hpp"
 #include "output_files/keyframes_output.hpp"
+#include "output_files/panels.hpp"
 #include "output_files/summary_output.hpp"
 #include "output_files/timings_output.hpp"
 #include "output_files/trajectory_output.hpp"
@@ -249,9 +250,27 @@ TEST(Annotation, DrawsEachPartAndLeavesTheFrameAlone) {
   EXPECT_EQ(cv::norm(before, report.frame.bgr), 0.0);
 }
 
+TEST(Panels, ShowWhatIsUsedBesideTheLabels) {
+  Report report;
+  report.segmentation.labels = cv::Mat::zeros(120, 160, CV_8UC1);
+  report.segmentation.labels(cv::Rect(10, 40, 40, 40)) = 15;
+  report.segmentation.objects = {{.label = 15, .box = {10, 40, 40, 40}}};
+  report.weights.track = cv::Mat(120, 160, CV_8UC1, cv::Scalar(255));
+  report.weights.track(cv::Rect(10, 40, 40, 40)) = 0;
+  report.weights.object_moves = {true};
+  const cv::Mat picture = panels_of(report());
+  ASSERT_EQ(picture.size(), cv::Size(320, 240));
+  const auto pixel = [&](int x, int y) { return picture.at<cv::Vec3b>(y, x); };
+  EXPECT_EQ(pixel(20, 70), cv::Vec3b(90, 90, 90));            // features: no mask
+  EXPECT_GT(pixel(14, 120 + 70)[2], pixel(14, 120 + 70)[0]);  // labels: not used, red
+  EXPECT_LT(pixel(160 + 20, 120 + 70)[0], 20);                // used: dark where it is not
+  EXPECT_EQ(pixel(160 + 100, 120 + 70), cv::Vec3b(90, 90, 90));
+}
+
 TEST(Annotation, TakesFramesWithoutAnythingAndOnePixelImages) {
   Report report;
   EXPECT_FALSE(annotated(report(), {}).empty());
+  EXPECT_FALSE(panels_of(report()).empty());
   report.frame.bgr = cv::Mat(1, 1, CV_8UC3, cv::Scalar(0));
   EXPECT_EQ(annotated(report(), {}).size(), cv::Size(1, 1));
 }

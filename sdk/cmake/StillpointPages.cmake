@@ -1,6 +1,25 @@
 # Pages for browsers: sources bundled into one HTML file, with modules of the npm registry in the versions of
-# tools/report/web/package-lock.json, which all pages share.
+# tools/report/web/package-lock.json, which all pages share. STILLPOINT_CAN_BUILD_PAGES says whether that is possible.
 option(STILLPOINT_WITH_PAGES "Build the pages of reports and of the live view, with npm and esbuild" ON)
+
+set(STILLPOINT_WEB ${PROJECT_SOURCE_DIR}/tools/report/web)
+set(STILLPOINT_NODE_MODULES ${PROJECT_BINARY_DIR}/web/node_modules)
+
+# When configuring, so that a machine without a network builds everything else.
+function(stillpoint_fetch_node_modules)
+  set(list ${STILLPOINT_WEB}/package-lock.json)
+  set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${STILLPOINT_WEB}/package.json ${list})
+  if(NOT ${list} IS_NEWER_THAN ${STILLPOINT_NODE_MODULES}/.package-lock.json)
+    return()
+  endif()
+  file(COPY ${STILLPOINT_WEB}/package.json ${list} DESTINATION ${PROJECT_BINARY_DIR}/web)
+  execute_process(COMMAND ${NPM} ci --ignore-scripts --no-audit --no-fund --prefer-offline --loglevel=error
+    WORKING_DIRECTORY ${PROJECT_BINARY_DIR}/web RESULT_VARIABLE result ERROR_VARIABLE output)
+  if(NOT result EQUAL 0)
+    message(WARNING "Reports and the live view will have no page: their modules cannot be fetched:\n${output}")
+    file(REMOVE_RECURSE ${STILLPOINT_NODE_MODULES})
+  endif()
+endfunction()
 
 set(STILLPOINT_CAN_BUILD_PAGES OFF)
 if(STILLPOINT_WITH_PAGES)
@@ -8,24 +27,13 @@ if(STILLPOINT_WITH_PAGES)
   find_program(NPM npm)
   find_program(ESBUILD esbuild)
   if(NODE AND NPM AND ESBUILD)
-    set(STILLPOINT_CAN_BUILD_PAGES ON)
+    stillpoint_fetch_node_modules()
+    if(EXISTS ${STILLPOINT_NODE_MODULES})
+      set(STILLPOINT_CAN_BUILD_PAGES ON)
+    endif()
   else()
     message(WARNING "Without npm and esbuild, reports and the live view have no page; tools/setup installs them")
   endif()
-endif()
-
-set(STILLPOINT_WEB ${PROJECT_SOURCE_DIR}/tools/report/web)
-set(STILLPOINT_NODE_MODULES ${PROJECT_BINARY_DIR}/web/node_modules)
-if(STILLPOINT_CAN_BUILD_PAGES)
-  add_custom_command(OUTPUT ${STILLPOINT_NODE_MODULES}/.package-lock.json
-    COMMAND ${CMAKE_COMMAND} -E copy ${STILLPOINT_WEB}/package.json ${STILLPOINT_WEB}/package-lock.json
-      ${PROJECT_BINARY_DIR}/web
-    COMMAND ${CMAKE_COMMAND} -E chdir ${PROJECT_BINARY_DIR}/web
-      ${NPM} ci --ignore-scripts --no-audit --no-fund --prefer-offline --loglevel=error
-    DEPENDS ${STILLPOINT_WEB}/package.json ${STILLPOINT_WEB}/package-lock.json
-    COMMENT "npm ci: modules of the pages" VERBATIM)
-  add_custom_target(stillpoint_node_modules DEPENDS ${STILLPOINT_NODE_MODULES}/.package-lock.json)
-  file(MAKE_DIRECTORY ${PROJECT_BINARY_DIR}/web)
 endif()
 
 # stillpoint_add_page(TARGET PAGE): from page.html, main.js and what it imports, all in the current folder.
@@ -37,8 +45,7 @@ function(stillpoint_add_page target page)
       ${ESBUILD} ${CMAKE_CURRENT_SOURCE_DIR}/main.js --bundle --minify --format=iife --target=es2022
       --charset=utf8 --legal-comments=inline --log-level=warning --outfile=${bundle}.js
     COMMAND ${NODE} ${STILLPOINT_WEB}/assemble.js ${CMAKE_CURRENT_SOURCE_DIR}/page.html ${bundle} ${page}
-    DEPENDS ${sources} ${STILLPOINT_WEB}/assemble.js stillpoint_node_modules
-      ${STILLPOINT_NODE_MODULES}/.package-lock.json
+    DEPENDS ${sources} ${STILLPOINT_WEB}/assemble.js ${STILLPOINT_NODE_MODULES}/.package-lock.json
     COMMENT "Page: ${target}" VERBATIM)
   add_custom_target(${target} ALL DEPENDS ${page})
 endfunction()

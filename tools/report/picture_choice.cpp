@@ -61,9 +61,11 @@ std::vector<std::pair<std::uint32_t, std::string>> worst_moments(const RunData& 
   if (excluded->excluded > 0.0)
     moments.emplace_back(excluded->frame,
                          "most excluded: " + fixed(100 * excluded->excluded, 1) + " %");
-  const auto tracked = [](const FrameRow& r) { return r.tracked ? r.inliers : 1 << 30; };
+  const auto tracked = [](const FrameRow& r) {
+    return r.tracked && r.matches > 0 ? r.inliers : 1 << 30;
+  };
   const auto fewest = std::ranges::min_element(run.frame_rows, {}, tracked);
-  if (fewest->tracked)
+  if (fewest->tracked && fewest->matches > 0)
     moments.emplace_back(fewest->frame, "fewest inliers: " + std::to_string(fewest->inliers));
   return moments;
 }

@@ -5,6 +5,7 @@
 #include <map>
 
 #include "evaluation/format.hpp"
+#include "report/best_marks.hpp"
 
 namespace stillpoint::report {
 namespace {
@@ -62,9 +63,9 @@ const std::vector<Column>& columns() {
   return kColumns;
 }
 
-/// In which rows of one recording the column has its best figure; none when all are the same.
-void mark_best(std::span<const RunData> runs, const std::vector<std::size_t>& rows,
-               std::size_t place, Table& table) {
+/// In which rows of one recording the column has its best figure.
+void mark_best_of_column(std::span<const RunData> runs, const std::vector<std::size_t>& rows,
+                         std::size_t place, Table& table) {
   const Column& column = columns()[place - 1];
   double most = 0.0;
   for (const std::size_t row : rows) most = std::max(most, runs[row].coverage.value_or(0.0));
@@ -74,11 +75,8 @@ void mark_best(std::span<const RunData> runs, const std::vector<std::size_t>& ro
     TableCell& cell = table.rows[row][place];
     if (cell.value && (covers || !column.is_error)) eligible.push_back(&cell);
   }
-  if (column.better == Better::kNeither || eligible.size() < 2) return;
-  const auto [smallest, largest] =
-      std::ranges::minmax(eligible, {}, [](const TableCell* cell) { return *cell->value; });
-  if (*smallest->value == *largest->value) return;
-  (column.better == Better::kSmaller ? smallest : largest)->best = true;
+  if (column.better != Better::kNeither)
+    mark_best(eligible, column.better == Better::kLarger, column.digits);
 }
 
 }  // namespace
@@ -102,7 +100,7 @@ Table run_table(std::span<const RunData> runs) {
   }
   for (const auto& [recording, rows] : by_recording)
     for (std::size_t place = 1; place < table.header.size(); ++place)
-      mark_best(runs, rows, place, table);
+      mark_best_of_column(runs, rows, place, table);
   return table;
 }
 

@@ -11,7 +11,4 @@ namespace stillpoint::report {
 /// recording, errors only among those that cover as much of it as the one that covers most.
 Table run_table(std::span<const RunData> runs);
 
-/// Figures whose difference is below this many per cent of the frames cover the same.
-inline constexpr double kSameCoverage = 1.0;
-
 }  // namespace stillpoint::report

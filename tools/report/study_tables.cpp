@@ -4,7 +4,7 @@
 #include <string>
 
 #include "evaluation/format.hpp"
-#include "report/run_tables.hpp"
+#include "report/best_marks.hpp"
 #include "study/paired_comparison.hpp"
 
 namespace stillpoint::report {
@@ -47,9 +47,9 @@ TableCell cell_of(const StudyResults& results, std::size_t sequence, std::size_t
   return cell;
 }
 
-/// The best of a row; none when there is nothing to choose from.
-void mark_best_of(const StudyResults& results, std::size_t sequence, MetricId metric,
-                  std::vector<TableCell>& row) {
+/// Marks the best of a row.
+void mark_best_of_row(const StudyResults& results, std::size_t sequence, MetricId metric,
+                      std::vector<TableCell>& row) {
   if (metric == study::kScale) return;
   const auto coverage = [&](std::size_t variant) {
     const auto spread = results.spread(sequence, variant, study::kCoverage);
@@ -61,12 +61,8 @@ void mark_best_of(const StudyResults& results, std::size_t sequence, MetricId me
   for (std::size_t v = 0; v + 1 < row.size(); ++v)
     if (row[v + 1].value && (!is_error_of_poses(metric) || most - coverage(v) <= kSameCoverage))
       eligible.push_back(&row[v + 1]);
-  if (eligible.size() < 2) return;
-  const auto [smallest, largest] =
-      std::ranges::minmax(eligible, {}, [](const TableCell* cell) { return *cell->value; });
-  if (*smallest->value == *largest->value) return;
   const bool larger_is_better = metric == study::kCoverage || metric == study::kSpeed;
-  (larger_is_better ? largest : smallest)->best = true;
+  mark_best(eligible, larger_is_better, study::metrics()[metric].digits);
 }
 
 Table matrix_of(const StudyResults& results, MetricId metric,
@@ -83,7 +79,7 @@ Table matrix_of(const StudyResults& results, MetricId metric,
       empty = empty && !row.back().value;
       all_zero = all_zero && row.back().value.value_or(0.0) == 0.0;
     }
-    mark_best_of(results, sequence, metric, row);
+    mark_best_of_row(results, sequence, metric, row);
     table.rows.push_back(std::move(row));
   }
   if (empty || all_zero) table.rows.clear();

@@ -26,8 +26,8 @@ export function figure(caption, ...children) {
 /** Buttons of which one is chosen. */
 export function choice(names, chosen, choose) {
   const buttons = names.map((name, i) => el('button', {
-    type: 'button', 'aria-pressed': i === chosen, onclick: () => {
-      buttons.forEach((b, k) => b.setAttribute('aria-pressed', k === i));
+    type: 'button', 'aria-pressed': String(i === chosen), onclick: () => {
+      buttons.forEach((b, k) => b.setAttribute('aria-pressed', String(k === i)));
       choose(i);
     }}, name));
   return el('div', {class: 'choice', role: 'group'}, ...buttons);

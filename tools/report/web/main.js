@@ -45,6 +45,7 @@ function overview(report, open) {
     const index = report.runs.findIndex(run => run.name === name);
     return index < 0 ? null : () => open(index);
   };
+  if (report.runs.length === 1 && report.tables.length === 1) return notes(report);  // the run says it all
   const [first, ...rest] = report.tables;
   const parts = [notes(report), titledTable(first, opener)];
   const compared = rest.filter(t => t.title.startsWith('Compared with'));

@@ -58,7 +58,7 @@ function cameraFor(map, data, element) {
   const up = new Vector3(...map.up);
   // The first camera looks along z: from behind it.
   const ahead = new Vector3(0, 0, 1).addScaledVector(up, -up.z).normalize();
-  camera.position.copy(centre).addScaledVector(ahead, -1.35 * radius).addScaledVector(up, 1.0 * radius);
+  camera.position.copy(centre).addScaledVector(ahead, -1.25 * radius).addScaledVector(up, 0.85 * radius);
   const controls = new OrbitControls(camera, element);
   controls.target.copy(centre);
   controls.update();
@@ -121,7 +121,7 @@ export async function mapView(map, path) {
     draw();
   };
   controls.addEventListener('change', draw);
-  new ResizeObserver(draw).observe(canvas);
+  new ResizeObserver(() => requestAnimationFrame(draw)).observe(canvas);
   redrawn(canvas, draw);
   show(0);
   const cubes = map.shown < map.occupied

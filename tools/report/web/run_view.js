@@ -74,9 +74,8 @@ function timeFigures(run) {
   return [legend, el('div', {class: 'pair'}, ...parts)];
 }
 
-const facts = [['coverage', v => `${(100 * v).toFixed(1)} %`, 'coverage'],
-  ['times_lost', v => v, 'times lost'], ['loops', v => v, 'loops closed'], ['frames', v => v, 'frames'],
-  ['keyframes', v => v, 'key frames'], ['landmarks', v => v.toLocaleString('en'), 'landmarks'],
+const facts = [['coverage', v => `${(100 * v).toFixed(1)} %`, 'coverage'], ['frames', v => v, 'frames'],
+  ['times_lost', v => v, 'times lost'], ['loops', v => v, 'loops closed'], ['keyframes', v => v, 'key frames'],
   ['speed', v => v.toFixed(1), 'frames/s'], ['cpu', v => `${v.toFixed(1)} ms`, 'CPU per frame'],
   ['memory', v => `${v.toFixed(0)} MiB`, 'peak memory']];
 
@@ -84,8 +83,8 @@ function headline(run) {
   const tiles = [];
   const tile = (value, label) => tiles.push(el('div', {class: 'tile'}, el('b', {}, String(value)), label));
   if (run.errors) {
-    tile(`${(1000 * run.errors.ate_m[0]).toFixed(1)} mm`, 'ATE, RMSE');
-    if (run.errors.rpe_m) tile(`${(1000 * run.errors.rpe_m[0]).toFixed(1)} mm`, 'RPE over 1 s, RMSE');
+    tile(`${(1000 * run.errors.ate_m[0]).toFixed(1)} mm`, 'ATE');
+    if (run.errors.rpe_m) tile(`${(1000 * run.errors.rpe_m[0]).toFixed(1)} mm`, 'RPE over 1 s');
   }
   for (const [key, text, label] of facts)
     if (run.facts[key] !== null) tile(text(run.facts[key]), label);

@@ -38,7 +38,7 @@ export function seriesChart(data, series, options) {
   const box = el('div', {class: 'chart'});
   let chart = null;
   const axis = (scale, label, side, grid) => ({scale, label, side, stroke: css('--ink'), labelSize: 18,
-    size: side === undefined ? 34 : 58, labelFont: '12px system-ui', font: '12px system-ui',
+    size: side === 2 ? 32 : 52, labelFont: '12px system-ui', font: '12px system-ui',
     grid: {show: grid, stroke: css('--grid'), width: 1}, ticks: {stroke: css('--grid'), size: 4}});
   const draw = () => {
     chart?.destroy();
@@ -48,7 +48,7 @@ export function seriesChart(data, series, options) {
                y2: {range: (_, __, max) => [0, max > 0 ? 1.08 * max : 1]}},
       cursor: {sync: options.sync ? {key: options.sync} : undefined, drag: {x: true, y: false}},
       legend: {live: true},
-      axes: [axis('x', options.xName, undefined, true), axis('y', options.yName, 3, true),
+      axes: [axis('x', options.xName, 2, true), axis('y', options.yName, 3, true),
              ...(options.y2Name ? [axis('y2', options.y2Name, 1, false)] : [])],
       series: [{label: options.xName, value: (_, v) => v?.toFixed(2) ?? '–'},
         ...series.map(s => ({label: s.label, stroke: s.colour, fill: s.fill, width: s.width ?? 1.5,
@@ -58,11 +58,12 @@ export function seriesChart(data, series, options) {
       plugins: [events(options.lost ?? [], options.loops ?? [])],
     }, data, box);
   };
-  new ResizeObserver(() => {
+  const fit = () => {
     if (!chart) draw();
     else if (box.clientWidth && Math.abs(box.clientWidth - chart.width) > 1)
       chart.setSize({width: box.clientWidth, height: options.height ?? 180});
-  }).observe(box);
+  };
+  new ResizeObserver(() => requestAnimationFrame(fit)).observe(box);
   redrawn(box, draw);
   return box;
 }

@@ -1,8 +1,9 @@
 // Colours. Charts ask for them when they are drawn; a change of theme draws them again.
 
 /** Safe for colour blindness (Okabe and Ito, 2008), readable on white and on dark. */
-export const kinds = ['#0072b2', '#d55e00', '#009e73', '#cc79a7', '#e69f00', '#56b4e9', '#8c6bb1',
-                      '#7a7a00', '#b15928', '#4d4d4d'];
+export const kinds = ['#1f86c8', '#d55e00', '#009e73', '#cc79a7', '#e69f00', '#56b4e9', '#8c6bb1',
+                      '#7a7a00', '#b15928', '#6b7785', '#1b9aaa', '#a83c64', '#5a9e3d', '#3f5fb5',
+                      '#c9a400', '#9d6b53', '#7fb3a8'];
 export const kind = i => kinds[i % kinds.length];
 
 const ramp = [[59, 111, 212], [120, 80, 190], [190, 50, 130], [225, 80, 60], [245, 159, 0]];

@@ -1,0 +1,238 @@
+// `stillpoint report` as a user calls it, and its page in a browser.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "report/page_json.hpp"
+#include "report/report_reader.hpp"
+#include "report/run_reader.hpp"
+#include "study/cell_result.hpp"
+#include "support/program.hpp"
+#include "support/simulated_recording.hpp"
+
+namespace stillpoint::testing {
+namespace {
+
+namespace fs = std::filesystem;
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+/// A run with pictures and a dense map, made once for all tests of the process.
+const fs::path& finished_run() {
+  static const TemporaryFolder folder;
+  static const fs::path run = [] {
+    const fs::path path = folder.path() / "a run";
+    const Outcome outcome =
+        call({"run", "stillpoint", "--dataset", recording_with_people().string(), "-o",
+              path.string(), "--quiet", "--images", "--set", "runtime.mode=inline"});
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    return path;
+  }();
+  return run;
+}
+
+bool page_is_built() {
+  return fs::exists(fs::path(STILLPOINT_BINARY_DIR) / "share/stillpoint/report.html");
+}
+
+#define SKIP_WITHOUT_PAGE() \
+  if (!page_is_built()) GTEST_SKIP() << "built without the page: npm or esbuild are missing"
+
+TEST(RunReader, HasAllThatARunHasLeft) {
+  const report::RunData run = report::read_run(finished_run(), "name");
+  EXPECT_THAT(run.notes, IsEmpty());
+  EXPECT_TRUE(run.complete);
+  EXPECT_EQ(run.recording, recording_with_people().filename());
+  EXPECT_THAT(run.made_by, HasSubstr("cores; 20"));
+  ASSERT_TRUE(run.evaluation);
+  EXPECT_LT(run.evaluation->rigid.metres.rmse, 0.02);
+  ASSERT_EQ(run.frame_rows.size(), static_cast<std::size_t>(kSimulatedFrames));
+  EXPECT_EQ(run.trace.size(), run.evaluation->pairs.size());
+  // The moments of all series are those of the recording.
+  EXPECT_NEAR(run.trace.back().seconds, run.frame_rows.back().seconds, 1e-3);
+  EXPECT_GT(run.frame_rows.back().inliers, 100);
+  EXPECT_FALSE(run.stages.empty());
+  EXPECT_FALSE(run.pictures.empty());
+  EXPECT_FALSE(run.octree.empty());
+  double largest = 0.0;
+  for (const report::TracePoint& point : run.trace)
+    largest = std::max(largest, std::abs((point.truth - point.estimate).norm() - point.error_m));
+  EXPECT_LT(largest, 1e-9);
+}
+
+TEST(ReportProgram, WritesPageAndTablesOfARunAndChangesNothingElse) {
+  SKIP_WITHOUT_PAGE();
+  const TemporaryFolder folder;
+  const fs::path page = folder.path() / "new/page.html";
+  const std::string before = text_of(finished_run() / "summary.json");
+  const Outcome outcome = call({"report", finished_run().string(), "-o", page.string()});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, AllOf(HasSubstr("page.html"), HasSubstr("tables.tex, tables.csv")));
+  EXPECT_THAT(text_of(page), AllOf(HasSubstr("id=\"report\">"), HasSubstr("id=\"run-0\">"),
+                                   HasSubstr("id=\"map-0\">"), HasSubstr("id=\"picture-0-0\">")));
+  EXPECT_THAT(text_of(folder.path() / "new/tables.tex"), HasSubstr("\\toprule"));
+  EXPECT_THAT(text_of(folder.path() / "new/tables.csv"), HasSubstr("Runs,a run,ATE RMSE (m),0.0"));
+  EXPECT_EQ(text_of(finished_run() / "summary.json"), before);
+  EXPECT_FALSE(fs::exists(finished_run() / "report.html"));
+}
+
+TEST(ReportProgram, SaysWhatALoneRunDiffersInFromItsFile) {
+  const report::RunData run = report::read_run(finished_run(), "name");
+  EXPECT_EQ(run.pipeline.filename(), "stillpoint.yaml");
+}
+
+TEST(ReportProgram, SeveralRunsAreComparedWithTheFirst) {
+  const TemporaryFolder folder;
+  const fs::path other = folder.path() / "other";
+  fs::copy(finished_run(), other, fs::copy_options::recursive);
+  std::string yaml = text_of(other / "pipeline.yaml");
+  const std::string option = "  interval: 3";
+  yaml.replace(yaml.find(option), option.size(), "  interval: 5");
+  folder.write("other/pipeline.yaml", yaml);
+  const report::ReportData data = report::read_runs({finished_run(), other});
+  ASSERT_EQ(data.runs.size(), 2u);
+  EXPECT_THAT(data.runs[0].changes, IsEmpty());
+  ASSERT_EQ(data.runs[1].changes.size(), 1u);
+  EXPECT_EQ(data.runs[1].changes[0].key, "segmentation.interval");
+  EXPECT_EQ(data.runs[1].changes[0].base, "3");
+  EXPECT_EQ(data.runs[1].base, "a run");
+}
+
+TEST(ReportProgram, DamagedRunsAreShownAsFarAsTheyGo) {
+  SKIP_WITHOUT_PAGE();
+  const TemporaryFolder folder;
+  const fs::path run = folder.path() / "run";
+  fs::copy(finished_run(), run, fs::copy_options::recursive);
+  folder.write("run/summary.json", "{\"frames\": 12");
+  folder.write("run/frames.csv",
+               "frame,time,state,features,matches,inliers,moving_points,"
+               "excluded_percent\n0,1.0,trac");
+  folder.write("run/trajectory.txt", "1000.0 0 0 0 0 0\n");
+  folder.write("run/map/map.ot", "# Octomap OcTree file\n");
+  folder.write("run/images/000000.jpg", "no picture");
+  const Outcome outcome = call({"report", run.string()});
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_THAT(outcome.err, AllOf(HasSubstr("note: summary.json cannot be read"),
+                                 HasSubstr("frames.csv:2: "), HasSubstr("trajectory.txt:1: ")));
+  EXPECT_TRUE(fs::exists(run / "report.html"));
+  EXPECT_EQ(text_of(run / "trajectory.txt"), "1000.0 0 0 0 0 0\n");
+}
+
+TEST(ReportProgram, WhatIsNoRunIsNamed) {
+  const TemporaryFolder folder;
+  Outcome outcome = call({"report", folder.path().string()});
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_THAT(outcome.err, HasSubstr("holds neither a run nor a study"));
+  EXPECT_EQ(call({"report", (folder.path() / "none").string()}).exit_code, 2);
+  EXPECT_TRUE(fs::is_empty(folder.path()));
+  folder.write("study.yaml", "version: 1\nsequences: []\nvariants: []\nspeed: 3\n");
+  outcome = call({"report", folder.path().string()});
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_THAT(outcome.err, HasSubstr("study.yaml:4:1: error: study: unknown key 'speed'"));
+  outcome = call({"report", folder.path().string(), folder.path().string()});
+  EXPECT_THAT(outcome.err, HasSubstr("a report is of one study, or of runs"));
+}
+
+/// Two sequences and two variants; one run is not finished, one has another version's result, and
+/// one has failed.
+void write_study(const TemporaryFolder& folder) {
+  folder.write(
+      "study.yaml",
+      "version: 1\nsequences:\n  - {name: walking, dataset: /none/walking}\n"
+      "  - {name: sitting, dataset: /none/sitting}\nvariants:\n"
+      "  - {name: plain, pipeline: orb_baseline}\n  - {name: better, pipeline: stillpoint}\n"
+      "baseline: plain\n");
+  for (const char* cell :
+       {"walking/plain/0", "walking/better/0", "sitting/plain/0", "sitting/better/0"}) {
+    const fs::path run = folder.path() / "runs" / cell;
+    fs::create_directories(run);
+    study::CellResult result{
+        .fingerprint = "f",
+        .program = "p",
+        .origin = {"1.2.3", "0123456789ab", "a machine, 2 cores", "2026-01-30"}};
+    result.values[study::kAte] = std::string(cell).find("plain") == std::string::npos ? 0.02 : 0.1;
+    result.values[study::kCoverage] = 100.0;
+    study::write_result(run, result);
+  }
+  fs::remove(folder.path() / "runs/sitting/plain/0/result.json");
+  folder.write("runs/walking/better/0/result.json", "{\"format\": 99}");
+  study::CellResult failed{.origin = {"1.2.3", "", "another machine", "2026-02-01"},
+                           .exit_code = 139,
+                           .message = "ended by signal 11"};
+  study::write_result(folder.path() / "runs/sitting/better/0", failed);
+}
+
+TEST(ReportProgram, AnIncompleteStudySaysSo) {
+  SKIP_WITHOUT_PAGE();
+  const TemporaryFolder folder;
+  write_study(folder);
+  const Outcome outcome = call({"report", folder.path().string()});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_THAT(
+      outcome.err,
+      AllOf(HasSubstr("note: Not finished: 2 of 4 runs have no result"),
+            HasSubstr("sitting/plain/0: Not finished"),
+            HasSubstr("walking/better/0: result.json cannot be read: damaged, or written by "
+                      "another version"),
+            HasSubstr("sitting/better/0: Failed with exit code 139: ended by signal 11")));
+  EXPECT_EQ(text_of(folder.path() / "runs/walking/better/0/result.json"), "{\"format\": 99}");
+  const std::string csv = text_of(folder.path() / "tables.csv");
+  EXPECT_THAT(csv, HasSubstr("walking,plain,0.1,0.1000,0\n"));
+}
+
+fs::path browser() {
+  const char* path = std::getenv("PATH");
+  std::istringstream folders(path ? path : "");
+  for (std::string folder; std::getline(folders, folder, ':');)
+    for (const char* name : {"chromium", "chromium-browser", "google-chrome"})
+      if (fs::exists(fs::path(folder) / name)) return fs::path(folder) / name;
+  return {};
+}
+
+/// What probe.js has seen in the page.
+nlohmann::json probed(const fs::path& page, const TemporaryFolder& folder) {
+  std::string text = text_of(page);
+  const std::string script =
+      "<script>" + text_of(fs::path(STILLPOINT_SOURCE_DIR) / "tests/report/probe.js") + "</script>";
+  text.insert(text.rfind("</body>"), script);
+  const fs::path probe = folder.write("probe.html", text), dom = folder.path() / "dom.html";
+  const std::string command =
+      "'" + browser().string() + "' --headless=new --no-sandbox --use-angle=swiftshader " +
+      "--enable-unsafe-swiftshader --window-size=1366,900 --virtual-time-budget=30000 " +
+      "--user-data-dir='" + (folder.path() / "profile").string() + "' --dump-dom 'file://" +
+      probe.string() + "' > '" + dom.string() + "' 2> '" + dom.string() + ".err'";
+  EXPECT_EQ(std::system(command.c_str()), 0) << text_of(dom.string() + ".err");
+  const std::string result = text_of(dom), begin = "<pre id=\"probe\">";
+  const std::size_t from = result.find(begin);
+  if (from == std::string::npos) return {{"ready", "never"}};
+  const std::size_t to = result.find("</pre>", from);
+  return nlohmann::json::parse(result.substr(from + begin.size(), to - from - begin.size()));
+}
+
+TEST(ReportPage, DrawsSortsAndTurnsInABrowser) {
+  SKIP_WITHOUT_PAGE();
+  if (browser().empty()) GTEST_SKIP() << "no chromium in PATH: apt-get install chromium";
+  const TemporaryFolder folder;
+  const fs::path page = folder.path() / "report.html";
+  const Outcome outcome = call({"report", finished_run().string(), "-o", page.string()});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  const nlohmann::json seen = probed(page, folder);
+  ASSERT_EQ(seen["ready"], "yes") << seen;
+  EXPECT_EQ(seen["errors"], nlohmann::json::array());
+  EXPECT_EQ(seen["charts"], 5);  // ATE, RPE, excluded pixels, features, stages
+  EXPECT_GT(seen["lines"], 4);
+  EXPECT_GT(seen["pictures"], 1);
+  const auto rising = seen["rising"].get<std::vector<double>>();
+  EXPECT_TRUE(std::ranges::is_sorted(rising));
+  EXPECT_EQ(std::vector<double>(rising.rbegin(), rising.rend()),
+            seen["falling"].get<std::vector<double>>());
+  EXPECT_EQ(seen["turned"], true);
+  EXPECT_EQ(seen["repainted"], true);
+}
+
+}  // namespace
+}  // namespace stillpoint::testing

@@ -1,0 +1,193 @@
+// The parts of a report: tables that the program has written, options, thinning, packing, maps.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <libdeflate.h>
+
+#include <numeric>
+
+#include "report/frame_log.hpp"
+#include "report/map_voxels.hpp"
+#include "report/option_changes.hpp"
+#include "report/packing.hpp"
+#include "report/page_json.hpp"
+#include "report/picture_choice.hpp"
+#include "report/thinning.hpp"
+#include "semantic_octree/map_files.hpp"
+#include "stillpoint/error.hpp"
+#include "support/recording_writer.hpp"
+
+namespace stillpoint::report {
+namespace {
+
+using stillpoint::testing::TemporaryFolder;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+std::string message_of(const std::function<void()>& function) {
+  try {
+    function();
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+TEST(FrameLog, ReadsFramesAndNamesTheLineThatIsNone) {
+  const TemporaryFolder folder;
+  const std::string header =
+      "frame,time,state,features,matches,inliers,moving_points,excluded_percent\n";
+  folder.write("frames.csv",
+               header + "7,1.5,tracking,900,200,150,3,25.00\n8,1.6,LOST,0,0,0,,0.00\n");
+  const std::vector<FrameRow> rows = read_frames(folder.path() / "frames.csv");
+  ASSERT_EQ(rows.size(), 2u);
+  EXPECT_EQ(rows[0].frame, 7u);
+  EXPECT_TRUE(rows[0].tracked);
+  EXPECT_EQ(rows[0].moving_points, 3);
+  EXPECT_DOUBLE_EQ(rows[0].excluded, 0.25);
+  EXPECT_FALSE(rows[1].tracked);
+  EXPECT_FALSE(rows[1].moving_points);
+  EXPECT_TRUE(read_frames(folder.path() / "none.csv").empty());
+
+  folder.write("frames.csv", header + "7,1.5,tracking,900,many,150,3,25.00\n");
+  EXPECT_THAT(message_of([&] { read_frames(folder.path() / "frames.csv"); }),
+              HasSubstr("frames.csv:2: 'many' is not a number"));
+  folder.write("frames.csv", header + "7,1.5,trac");  // the end of a disk
+  EXPECT_THAT(message_of([&] { read_frames(folder.path() / "frames.csv"); }),
+              HasSubstr("frames.csv:2: there are not as many fields as columns"));
+  folder.write("frames.csv", "frame,time\n");
+  EXPECT_THAT(message_of([&] { read_frames(folder.path() / "frames.csv"); }),
+              HasSubstr("frames.csv:1: the columns are not"));
+}
+
+TEST(FrameLog, AddsUpTheCallsForOneFrame) {
+  const TemporaryFolder folder;
+  folder.write("timings.csv",
+               "frame,stage,wall_ms,cpu_ms\n0,track,10.0,8.0\n0,map_check,1.0,1.0\n"
+               "1,track,20.0,16.0\n0,map_check,2.0,1.5\n");
+  const std::vector<StageTimes> stages = read_stage_times(folder.path() / "timings.csv");
+  ASSERT_EQ(stages.size(), 2u);
+  EXPECT_EQ(stages[0].stage, "map_check");  // as the pipeline calls them
+  EXPECT_EQ(stages[0].calls, 2u);
+  EXPECT_THAT(stages[0].frame, ElementsAre(0u));
+  EXPECT_THAT(stages[0].wall_ms, ElementsAre(3.0F));
+  EXPECT_THAT(stages[1].cpu_ms, ElementsAre(8.0F, 16.0F));
+  EXPECT_DOUBLE_EQ(stages[1].wall.max, 20.0);
+}
+
+TEST(OptionChanges, AreWhatDiffersButTheRecordingAndTheSeed) {
+  const auto changes = option_changes(
+      "source: {path: /a}\ntracker: {type: orb, features: 1000}\nruntime: {seed: 1}\n"
+      "outputs: [{type: trajectory}]\nloop_closer: {type: orb}\n",
+      "source: {path: /b}\ntracker: {type: orb, features: 2000, sizes: [1, 2]}\n"
+      "runtime: {seed: 3}\noutputs: [{type: summary}]\n");
+  std::vector<std::string> texts;
+  for (const OptionChange& change : changes)
+    texts.push_back(change.key + ": " + change.base + " -> " + change.value);
+  EXPECT_THAT(texts,
+              ElementsAre("tracker.features: 1000 -> 2000", "tracker.sizes:  -> [1, 2]",
+                          "outputs[0].type: trajectory -> summary", "loop_closer.type: orb -> "));
+  EXPECT_THAT(message_of([] { option_changes("a: [", "a: 1"); }), HasSubstr("is no YAML"));
+  EXPECT_EQ(recording_of_pipeline("source: {path: /a}"), "/a");
+  EXPECT_EQ(recording_of_pipeline("source: {type: x}"), "");
+  EXPECT_EQ(recording_of_pipeline("source: ["), "");
+}
+
+TEST(Thinning, KeepsPeaks) {
+  std::vector<int> values(1000);
+  std::iota(values.begin(), values.end(), 0);
+  values[501] = 5000;
+  const auto kept = thinned(values.size(), 10, [&](std::size_t i) { return values[i]; });
+  ASSERT_EQ(kept.size(), 10u);
+  EXPECT_EQ(kept[5], 501u);
+  EXPECT_EQ(kept[9], 999u);
+  EXPECT_EQ(thinned(3, 10, [](std::size_t) { return 0; }).size(), 3u);
+}
+
+// RFC 4648, section 10.
+TEST(Packing, Base64IsThatOfTheStandard) {
+  EXPECT_EQ(base64(""), "");
+  EXPECT_EQ(base64("f"), "Zg==");
+  EXPECT_EQ(base64("fo"), "Zm8=");
+  EXPECT_EQ(base64("foobar"), "Zm9vYmFy");
+  EXPECT_EQ(base64("\xff\xfe"), "//4=");
+}
+
+TEST(Packing, WhatIsPackedIsUnpackedAgain) {
+  std::string text;
+  for (int i = 0; i < 10'000; ++i) text += std::to_string(i * i);
+  const std::string packed = gzipped(text);
+  EXPECT_LT(packed.size(), text.size());
+  std::string again(text.size(), ' ');
+  libdeflate_decompressor* decompressor = libdeflate_alloc_decompressor();
+  EXPECT_EQ(libdeflate_gzip_decompress(decompressor, packed.data(), packed.size(), again.data(),
+                                       again.size(), nullptr),
+            LIBDEFLATE_SUCCESS);
+  libdeflate_free_decompressor(decompressor);
+  EXPECT_EQ(again, text);
+}
+
+/// A wall of 20 x 20 voxels of 5 cm, with a red one in a corner.
+std::filesystem::path write_wall(const TemporaryFolder& folder) {
+  semantic_octree::SemanticOctree tree(0.05);
+  for (int x = 0; x < 20; ++x)
+    for (int y = 0; y < 20; ++y) {
+      auto* voxel =
+          tree.updateNode(octomap::point3d(0.025F + 0.05F * static_cast<float>(x),
+                                           0.025F + 0.05F * static_cast<float>(y), 1.025F),
+                          x == 0 && y == 0 ? 3.0F : 1.0F);
+      voxel->setColor(x == 0 && y == 0 ? 255 : 10, 20, 30);
+      voxel->set_classes(semantic_octree::ClassBelief::of(x < 10 ? 0 : 1, 200));
+    }
+  const std::filesystem::path file = folder.path() / "map.ot";
+  semantic_octree::write_octree(
+      tree, semantic_octree::with_colors(ClassNames{"background", "person"}), file);
+  return file;
+}
+
+TEST(MapVoxels, AreThoseOfTheMap) {
+  const TemporaryFolder folder;
+  const MapVoxels voxels = read_voxels(write_wall(folder), 1000);
+  ASSERT_EQ(voxels.size(), 400u);
+  EXPECT_EQ(voxels.occupied, 400u);
+  EXPECT_DOUBLE_EQ(voxels.edge, 0.05);
+  EXPECT_NEAR(voxels.corner.z(), 1.0, 1e-6);
+  EXPECT_EQ(*std::ranges::max_element(voxels.x), 19);
+  EXPECT_EQ(*std::ranges::max_element(voxels.z), 0);
+  EXPECT_EQ(std::ranges::count(voxels.label, 1), 200);
+  EXPECT_EQ(std::ranges::count(voxels.red, 255), 1);
+  EXPECT_EQ(map_bytes(voxels).size(), 11u * 400u);
+}
+
+TEST(MapVoxels, TooManyBecomeLargerCubes) {
+  const TemporaryFolder folder;
+  const MapVoxels voxels = read_voxels(write_wall(folder), 30);
+  EXPECT_DOUBLE_EQ(voxels.edge, 0.2);
+  EXPECT_EQ(voxels.size(), 25u);
+  EXPECT_EQ(voxels.occupied, 400u);
+  EXPECT_EQ(std::ranges::count(voxels.red, 255), 1);  // the most probable looks of its cube
+}
+
+TEST(PictureChoice, HasEvenOnesAndThoseBesideTheWorstMoments) {
+  const TemporaryFolder folder;
+  for (int i = 0; i < 100; i += 10)
+    folder.write("images/0000" + std::string(i < 10 ? "0" : "") + std::to_string(i) + ".jpg", "x");
+  folder.write("images/notes.txt", "x");
+  RunData run{.folder = folder.path()};
+  for (std::uint32_t i = 0; i < 100; ++i)
+    run.frame_rows.push_back({.frame = i,
+                              .seconds = 0.1 * i,
+                              .tracked = true,
+                              .matches = 90,
+                              .inliers = 80 - (i == 20 ? 40 : 0),
+                              .excluded = 0.0});
+  run.trace.push_back({.seconds = 5.2, .error_m = 0.0421});
+  choose_pictures(run);
+  std::vector<std::string> texts;
+  for (const Picture& picture : run.pictures)
+    texts.push_back(std::to_string(picture.frame) + " " + picture.why);
+  EXPECT_THAT(texts, ElementsAre("10 ", "20 fewest inliers: 40", "30 ",
+                                 "50 largest error: 42.1 mm (in frame 52)", "60 ", "80 "));
+}
+
+}  // namespace
+}  // namespace stillpoint::report
