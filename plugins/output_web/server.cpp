@@ -146,7 +146,7 @@ class Server::Loop::Viewer : public std::enable_shared_from_this<Viewer> {
 
   void say_goodbye() {
     if (!open_) return beast::get_lowest_layer(socket_).cancel();
-    send({.map = true, .cloud = true});
+    send({.image = true, .map = true, .cloud = true});
     if (!writing_) close(websocket::close_code::going_away);
   }
 

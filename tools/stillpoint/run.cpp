@@ -34,7 +34,7 @@ struct RunArguments {
   fs::path save_map, load_map;
   bool localise_only = false;
   bool images = false;
-  std::optional<int> view;  // its port
+  int view_port = 0;
   bool quiet = false;
 };
 
@@ -106,7 +106,6 @@ void run(const RunArguments& arguments) {
   Registry registry;
   PipelineRequest request = arguments.request;
   if (arguments.images) request.outputs.emplace_back("images");
-  if (arguments.view) request.outputs.push_back("web.port=" + std::to_string(*arguments.view));
   const PipelineConfig config = load_pipeline(request, registry);
   SparseMap known_map = arguments.load_map.empty() ? SparseMap() : load_map(arguments.load_map);
   std::shared_ptr<MapSaver> saver;
@@ -164,8 +163,8 @@ void add_run(CLI::App& app) {
       ->allow_extra_args(false);
   command->add_flag("--images", arguments->images,
                     "Draw every frame with labels and features: --with images");
-  command->add_flag(
-      "--view{8080}", arguments->view,
+  CLI::Option* view = command->add_flag(
+      "--view{8080}", arguments->view_port,
       "Show the run in a browser, at this port of this machine; 0 takes any that is free");
   command->add_flag("-q,--quiet", arguments->quiet, "Print only warnings and errors");
   command->add_option("--save-map", arguments->save_map, "Keep the sparse map in this file")
@@ -178,7 +177,11 @@ void add_run(CLI::App& app) {
       ->add_flag("--localise-only", arguments->localise_only,
                  "Only localise in the loaded map, without changing it")
       ->needs(load);
-  command->callback([arguments] { run(*arguments); });
+  command->callback([arguments, view] {
+    if (view->count() > 0)
+      arguments->request.outputs.push_back("web.port=" + std::to_string(arguments->view_port));
+    run(*arguments);
+  });
 }
 
 }  // namespace stillpoint

@@ -93,6 +93,7 @@ function toast({frame, moved, shift}) {
 }
 
 function framesPerSecond() {
+  if (run.end) return run.frames.length / run.end.wall_seconds;
   const now = performance.now();
   arrivals.push({at: now, frames: run.frames.length});
   while (arrivals.length > 2 && now - arrivals[0].at > 3000) arrivals.shift();

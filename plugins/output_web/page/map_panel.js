@@ -10,10 +10,11 @@ import {moved} from './run.js';
 const STRONG = 60;       // shared landmarks of an edge that is drawn, unless it closes a loop
 const FAR_APART = 15;    // key frames between the ends of an edge that closes a loop
 const FRUSTUM = 0.08;    // metres
+const FIRST_VIEW = [-0.5, -1.1, -2.6];  // metres, in the camera's frame: behind it, above and to the left
 const LONGEST_GAP = 5;   // frames without a pose that a line bridges
 
 const DARK = {trajectory: 0x4db6ac, truth: 0xb0bec5, keyframe: 0x5c9ded, graph: 0x35506e, loop: 0xff9d2e,
-  camera: 0xff6f61, landmark: 0xdfe6ea, doubtful: 0xd55e00};
+  camera: 0xff6f61, landmark: 0x9fb4c0, doubtful: 0xd55e00};
 const LIGHT = {trajectory: 0x00796b, truth: 0x78909c, keyframe: 0x1f5fae, graph: 0xb3c6dd, loop: 0xc46200,
   camera: 0xc0392b, landmark: 0x37474f, doubtful: 0xd55e00};
 
@@ -65,7 +66,7 @@ export class MapPanel {
     };
     this.cloudGroup = new Group();
     this.world.add(this.cloudGroup);
-    this.landmarks = new Points(new BufferGeometry(), new PointsMaterial({size: 2, sizeAttenuation: false}));
+    this.landmarks = new Points(new BufferGeometry(), new PointsMaterial({size: 1.6, sizeAttenuation: false}));
     this.doubtful = new Points(new BufferGeometry(), new PointsMaterial({size: 3, sizeAttenuation: false}));
     this.world.add(this.landmarks, this.doubtful);
     this.graph = line();
@@ -177,7 +178,7 @@ export class MapPanel {
   addClouds() {
     for (const cloud of this.run.clouds) {
       if (this.clouds.has(cloud.keyframe)) continue;
-      const points = new Points(this.unprojected(cloud), new PointsMaterial({size: 0.025, vertexColors: true}));
+      const points = new Points(this.unprojected(cloud), new PointsMaterial({size: 0.035, vertexColors: true}));
       const entry = {...cloud, points};
       points.matrixAutoUpdate = false;
       this.clouds.set(cloud.keyframe, entry);
@@ -240,8 +241,11 @@ export class MapPanel {
   /** The view goes along with the camera; where one looks from stays one's own choice. */
   followCamera() {
     if (!this.pose) return;
-    const now = new Vector3(...moved(this.pose, [0, 0, 1])).applyEuler(this.world.rotation);
-    if (this.followed && this.follow.checked) {
+    const now = this.inScene([0, 0, 1.5]);
+    if (!this.followed) {
+      this.controls.target.copy(now);
+      this.eye.position.copy(this.inScene(FIRST_VIEW));
+    } else if (this.follow.checked) {
       const step = now.clone().sub(this.followed);
       this.eye.position.add(step);
       this.controls.target.add(step);
@@ -249,6 +253,9 @@ export class MapPanel {
     this.followed = now;
     this.controls.update();
   }
+
+  /** A point in the camera's frame. */
+  inScene(point) { return new Vector3(...moved(this.pose, point)).applyEuler(this.world.rotation); }
 
   lookFromAbove() {
     const distance = Math.max(3, this.eye.position.distanceTo(this.controls.target));
