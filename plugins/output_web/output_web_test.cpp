@@ -1,6 +1,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cstdlib>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <opencv2/imgcodecs.hpp>
@@ -9,6 +10,7 @@
 
 #include "output_web/access.hpp"
 #include "output_web/map_changes.hpp"
+#include "output_web/page.hpp"
 #include "output_web/picture.hpp"
 #include "output_web/request.hpp"
 #include "output_web/test_viewer.hpp"
@@ -437,7 +439,7 @@ TEST_F(LiveView, ClosesOnWhatNoPageOfItsOwnSays) {
   greedy.ask();  // before there is an answer
   EXPECT_FALSE(greedy.next());
   TestViewer large(port(*output));
-  large.send(std::string(1 << 20, 'x'));
+  large.send(std::string(100, 'x'));
   EXPECT_FALSE(large.next());
   EXPECT_EQ(large.close_code(), 1009);  // too big
   EXPECT_TRUE(TestViewer(port(*output)).asked());
@@ -496,6 +498,45 @@ TEST_F(LiveView, HasAsManyViewersAsItMay) {
   ASSERT_TRUE(first.asked());
   EXPECT_THROW(TestViewer{port(*narrow)}, boost::system::system_error);
   EXPECT_THAT(get(port(*narrow), "/"), StartsWith("HTTP/1.1 200"));
+}
+
+/// Empty where there is none.
+fs::path browser() {
+  std::istringstream folders(std::getenv("PATH") ? std::getenv("PATH") : "");
+  for (std::string folder; std::getline(folders, folder, ':');)
+    for (const char* name : {"chromium", "chromium-browser", "google-chrome"})
+      if (fs::exists(fs::path(folder) / name)) return fs::path(folder) / name;
+  return {};
+}
+
+std::string text_of(const fs::path& file) {
+  std::ifstream stream(file);
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+TEST_F(LiveView, IsShownByABrowser) {
+  if (page().find("<script>") == std::string_view::npos)
+    GTEST_SKIP() << "built without the page: npm or esbuild are missing";
+  if (browser().empty()) GTEST_SKIP() << "no chromium in PATH: apt-get install chromium";
+  const fs::path folder = fs::path(::testing::TempDir()) / "output_web_browser";
+  fs::remove_all(folder);
+  fs::create_directories(folder);
+  for (std::size_t i = 0; i < recording().size(); ++i) output->frame(report_of(i));
+  const std::string command =
+      "'" + browser().string() + "' --headless=new --no-sandbox --use-angle=swiftshader " +
+      "--enable-unsafe-swiftshader --enable-logging=stderr --virtual-time-budget=5000 " +
+      "--user-data-dir='" + (folder / "profile").string() + "' --dump-dom '" + output->url() +
+      "' > '" + (folder / "dom").string() + "' 2> '" + (folder / "log").string() + "'";
+  ASSERT_EQ(std::system(command.c_str()), 0) << text_of(folder / "log");
+  const std::string dom = text_of(folder / "dom");
+  EXPECT_THAT(dom, HasSubstr("<dt>frames</dt><dd>4</dd>"));
+  EXPECT_THAT(dom, HasSubstr("class=\"badge tracking\""));
+  EXPECT_THAT(dom, HasSubstr("1 fit the pose"));
+  EXPECT_THAT(dom, HasSubstr(">frame 3<"));
+  EXPECT_THAT(dom, HasSubstr("<td>track</td><td class=\"number\">5.0</td>"));
+  EXPECT_THAT(dom, Not(HasSubstr("draws no 3-D")));
+  EXPECT_THAT(text_of(folder / "log"), Not(HasSubstr("Uncaught")));
+  fs::remove_all(folder);
 }
 
 std::string failure_of(const WebOutput::Options& options) {

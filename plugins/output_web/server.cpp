@@ -32,6 +32,7 @@ using namespace std::chrono_literals;
 constexpr std::uint32_t kHeaderLimit = 8192;  // bytes of an HTTP request
 constexpr std::size_t kMostConnections = 64;
 constexpr auto kRequestTime = 10s;
+constexpr auto kIdleTime = 30s;  // until a viewer that does not answer to pings has gone
 constexpr auto kFarewell = 500ms;
 constexpr int kNice = 10;  // a tenth of tracking's share while both want to run
 
@@ -129,7 +130,8 @@ class Server::Loop::Viewer : public std::enable_shared_from_this<Viewer> {
 
   void start(const http::request<http::empty_body>& request) {
     beast::get_lowest_layer(socket_).expires_never();  // the socket has time limits of its own
-    socket_.set_option(websocket::stream_base::timeout::suggested(beast::role_type::server));
+    socket_.set_option(websocket::stream_base::timeout{
+        .handshake_timeout = kRequestTime, .idle_timeout = kIdleTime, .keep_alive_pings = true});
     socket_.read_message_max(kRequestSize);
     socket_.binary(true);
     socket_.async_accept(request, [self = shared_from_this()](error_code error) {
@@ -289,6 +291,8 @@ void Server::Loop::accept() {
   acceptor_.async_accept([this](error_code error, tcp::socket socket) {
     if (!acceptor_.is_open()) return;
     if (!error) {
+      error_code ignored;
+      socket.set_option(tcp::no_delay(true), ignored);  // messages are whole
       if (connections_.size() + viewers_.size() < kMostConnections)
         std::make_shared<Connection>(*this, std::move(socket))->start();
       return accept();

@@ -83,6 +83,7 @@ class TestConnection {
 inline std::string answer_to(std::uint16_t port, const std::string& request) {
   TestConnection connection(port);
   connection.send(request);
+  connection.end();
   return connection.rest();
 }
 
@@ -97,6 +98,7 @@ class TestViewer {
   explicit TestViewer(std::uint16_t port, const std::string& target = "/live") {
     namespace ip = boost::asio::ip;
     socket_.next_layer().connect(ip::tcp::endpoint(ip::make_address("127.0.0.1"), port));
+    socket_.next_layer().set_option(ip::tcp::no_delay(true));
     socket_.binary(true);
     socket_.handshake("localhost", target);
   }
