@@ -34,7 +34,7 @@ struct RunArguments {
   fs::path save_map, load_map;
   bool localise_only = false;
   bool images = false;
-  int view_port = 0;
+  std::string view_port;  // empty: no live view
   bool quiet = false;
 };
 
@@ -106,6 +106,7 @@ void run(const RunArguments& arguments) {
   Registry registry;
   PipelineRequest request = arguments.request;
   if (arguments.images) request.outputs.emplace_back("images");
+  if (!arguments.view_port.empty()) request.outputs.push_back("web.port=" + arguments.view_port);
   const PipelineConfig config = load_pipeline(request, registry);
   SparseMap known_map = arguments.load_map.empty() ? SparseMap() : load_map(arguments.load_map);
   std::shared_ptr<MapSaver> saver;
@@ -163,7 +164,7 @@ void add_run(CLI::App& app) {
       ->allow_extra_args(false);
   command->add_flag("--images", arguments->images,
                     "Draw every frame with labels and features: --with images");
-  CLI::Option* view = command->add_flag(
+  command->add_flag(
       "--view{8080}", arguments->view_port,
       "Show the run in a browser, at this port of this machine; 0 takes any that is free");
   command->add_flag("-q,--quiet", arguments->quiet, "Print only warnings and errors");
@@ -177,11 +178,7 @@ void add_run(CLI::App& app) {
       ->add_flag("--localise-only", arguments->localise_only,
                  "Only localise in the loaded map, without changing it")
       ->needs(load);
-  command->callback([arguments, view] {
-    if (view->count() > 0)
-      arguments->request.outputs.push_back("web.port=" + std::to_string(arguments->view_port));
-    run(*arguments);
-  });
+  command->callback([arguments] { run(*arguments); });
 }
 
 }  // namespace stillpoint
