@@ -120,5 +120,29 @@ TEST_F(CommandLineRun, OutputsCanBeAdded) {
   EXPECT_THAT(wrong.err, AllOf(HasSubstr("--with imags"), HasSubstr("did you mean 'images'?")));
 }
 
+TEST_F(CommandLineRun, OptionsOfOutputsCanBeSet) {
+  ASSERT_EQ(run({"--with", "images.every=50", "--with", "images.folder=seen", "--with",
+                 "trajectory.file=path.txt"})
+                .exit_code,
+            0);
+  EXPECT_EQ(count_poses(out() / "path.txt"), kSimulatedFrames);
+  EXPECT_FALSE(std::filesystem::exists(out() / "trajectory.txt"));
+  const std::filesystem::directory_iterator pictures(out() / "seen");
+  EXPECT_EQ(std::distance(begin(pictures), end(pictures)), (kSimulatedFrames + 49) / 50);
+  const Outcome wrong = run({"--with", "images.evry=50"});
+  EXPECT_EQ(wrong.exit_code, 2);
+  EXPECT_THAT(wrong.err,
+              AllOf(HasSubstr("--with images.evry=50"), HasSubstr("did you mean 'every'?")));
+}
+
+TEST_F(CommandLineRun, ViewTellsWhereToLook) {
+  const Outcome outcome = run({"--view=0"});
+  EXPECT_EQ(outcome.exit_code, 0);
+  EXPECT_THAT(outcome.err, HasSubstr("live view at http://127.0.0.1:"));
+  const Outcome wrong = run({"--view=70000"});
+  EXPECT_EQ(wrong.exit_code, 2);
+  EXPECT_THAT(wrong.err, HasSubstr("65535"));
+}
+
 }  // namespace
 }  // namespace stillpoint::testing

@@ -45,6 +45,13 @@ TEST(PluginsCheck, TheSimulatorPasses) {
   EXPECT_EQ(outcome.exit_code, 0) << outcome.out << outcome.err;
 }
 
+// Two of its cases have two stages at once, which cannot have the same port.
+TEST(PluginsCheck, TheLiveViewPasses) {
+  const Outcome outcome =
+      call({"plugins", "check", library(kShipped, "output_web"), "--set", "port=0"});
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.out << outcome.err;
+}
+
 TEST(PluginsCheck, StagesThatReadARecordingAreCheckedWithOne) {
   const std::string path = "path=" + simulated_recording().string();
   const std::string camera = (simulated_recording() / "camera.yaml").string();

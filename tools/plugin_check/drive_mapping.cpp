@@ -231,6 +231,7 @@ class OutputDrive final : public FrameDrive<Output> {
       result.tracked = {{{10, 10}, TrackedFeature::Use::kInlier},
                         {{20, 20}, TrackedFeature::Use::kMoving}};
     }
+    report->map = std::make_shared<const SparseMap>(map_);
     poses_.push_back({.frame = now.frame->index,
                       .time = now.frame->time,
                       .state = result.state,

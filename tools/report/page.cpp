@@ -109,7 +109,7 @@ std::string filled_page(const std::filesystem::path& page, const ReportData& dat
   const std::size_t place = text.find(kPlace);
   if (place == std::string::npos)
     throw Error(Fault::kUsage, "this build of Stillpoint has no page for reports", page.string(),
-                "build it with npm and esbuild installed and STILLPOINT_WITH_REPORT_PAGE=ON");
+                "build it with npm and esbuild installed and STILLPOINT_WITH_PAGES=ON");
   std::string blocks = block("report", text_of(report_json(data, written_by)));
   Blocks of_runs(data, limits);
   for (std::size_t i = 0; i < data.runs.size(); ++i) blocks += of_runs.of(data.runs[i], i);

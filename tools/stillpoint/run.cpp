@@ -34,6 +34,7 @@ struct RunArguments {
   fs::path save_map, load_map;
   bool localise_only = false;
   bool images = false;
+  std::string view_port;  // empty: no live view
   bool quiet = false;
 };
 
@@ -105,6 +106,7 @@ void run(const RunArguments& arguments) {
   Registry registry;
   PipelineRequest request = arguments.request;
   if (arguments.images) request.outputs.emplace_back("images");
+  if (!arguments.view_port.empty()) request.outputs.push_back("web.port=" + arguments.view_port);
   const PipelineConfig config = load_pipeline(request, registry);
   SparseMap known_map = arguments.load_map.empty() ? SparseMap() : load_map(arguments.load_map);
   std::shared_ptr<MapSaver> saver;
@@ -121,9 +123,10 @@ void run(const RunArguments& arguments) {
     folder.log(LogLevel::kWarning, text + "; Ctrl-C stops the run");
   });
   warn_of_labels(config, folder);
-  Stages stages =
-      make_stages(config, folder.path(),
-                  [&folder](LogLevel level, std::string_view text) { folder.log(level, text); });
+  Stages stages = make_stages(config, folder.path(), [&](LogLevel level, std::string_view text) {
+    folder.log(level, text);
+    if (level == LogLevel::kInfo) console.note(std::string(text));
+  });
   folder.begin(config.effective_yaml);
   if (!arguments.quiet)
     stages.outputs.push_back(
@@ -153,12 +156,17 @@ void add_run(CLI::App& app) {
                    "Folder for the results; default: out/PIPELINE")
       ->type_name("DIR");
   command
-      ->add_option("--with", arguments->request.outputs,
-                   "Add an output of this type to those of the file; may be repeated")
-      ->type_name("TYPE")
+      ->add_option(
+          "--with", arguments->request.outputs,
+          "Add an output of this type to those of the file, or set one of its options, as in "
+          "--with images.every=10; may be repeated")
+      ->type_name("TYPE[.OPTION=VALUE]")
       ->allow_extra_args(false);
   command->add_flag("--images", arguments->images,
                     "Draw every frame with labels and features: --with images");
+  command->add_flag(
+      "--view{8080}", arguments->view_port,
+      "Show the run in a browser, at this port of this machine; 0 takes any that is free");
   command->add_flag("-q,--quiet", arguments->quiet, "Print only warnings and errors");
   command->add_option("--save-map", arguments->save_map, "Keep the sparse map in this file")
       ->type_name("FILE");

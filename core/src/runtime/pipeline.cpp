@@ -178,7 +178,8 @@ FrameReportPtr Pipeline::process(const FramePtr& frame) {
   if (result.keyframe) add(new_keyframe(*result.keyframe, frame, *labels, weights));
   map_check_.tracked(tracked, *mapping_.snapshot());
   const auto report = std::make_shared<const FrameReport>(
-      FrameReport{frame, *labels, *moving, *evidence, weights, std::move(result), times_.take()});
+      FrameReport{frame, *labels, *moving, *evidence, weights, std::move(result), times_.take(),
+                  mapping_.snapshot(), mapping_.loops()});
   record(report);
   return report;
 }

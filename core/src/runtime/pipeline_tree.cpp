@@ -62,16 +62,27 @@ ConfigNode command_line_overlay(const PipelineRequest& request, const ConfigNode
   return overlay;
 }
 
-bool has_output(const ConfigNode& outputs, const std::string& type) {
-  return std::ranges::any_of(outputs.children, [&](const ConfigNode& output) {
-    const ConfigNode* its = output.find("type");
-    return its && its->scalar == type;
-  });
+/// `type: TYPE`, and the option of `TYPE.OPTION=VALUE`.
+ConfigNode output_from(const std::string& words, const Location& where, FaultList& faults) {
+  ConfigNode output = empty_map(where);
+  std::string type = words;
+  if (words.find('=') != std::string::npos) {
+    const ConfigNode assigned = parse_assignment(words, faults, "--with");
+    if (assigned.children.empty()) return output;
+    type = assigned.children.front().key;
+    output.children = assigned.children.front().children;
+  }
+  output.children.push_back(scalar("type", type, where));
+  return output;
 }
 
-/// `{type: TYPE}` at the end of `outputs:`; what is no list is a fault that is found later.
-void add_output(ConfigNode& tree, const std::string& type) {
-  const Location where{"--with " + type};
+/// At the end of `outputs:`, or over the first one of its type; what is no list is a fault that is
+/// found later.
+void add_output(ConfigNode& tree, const std::string& words, FaultList& faults) {
+  const Location where{"--with " + words};
+  const ConfigNode output = output_from(words, where, faults);
+  const ConfigNode* type = output.find("type");
+  if (!type) return;
   if (!tree.find("outputs")) {
     ConfigNode list;
     list.kind = ConfigNode::Kind::kList;
@@ -80,10 +91,15 @@ void add_output(ConfigNode& tree, const std::string& type) {
     tree.set(std::move(list));
   }
   ConfigNode* outputs = tree.find("outputs");
-  if (outputs->kind != ConfigNode::Kind::kList || has_output(*outputs, type)) return;
-  ConfigNode output = empty_map(where);
-  output.children.push_back(scalar("type", type, where));
-  outputs->children.push_back(std::move(output));
+  if (outputs->kind != ConfigNode::Kind::kList) return;
+  const auto same = std::ranges::find_if(outputs->children, [&](const ConfigNode& other) {
+    const ConfigNode* its = other.find("type");
+    return its && its->scalar == type->scalar;
+  });
+  if (same == outputs->children.end())
+    outputs->children.push_back(output);
+  else
+    *same = merge(*same, output);
 }
 
 /// The camera.yaml of the recording that the source reads; empty when there is none.
@@ -118,7 +134,7 @@ ConfigNode load_pipeline_tree(const fs::path& file, const PipelineRequest& reque
     camera_file = camera_beside_recording(finished(merge_sections(tree, overlay), found_again));
   if (!camera_file.empty()) tree.set(load_section(camera_file, "camera", faults));
   tree = finished(merge_sections(std::move(tree), overlay), faults);
-  for (const std::string& type : request.outputs) add_output(tree, type);
+  for (const std::string& words : request.outputs) add_output(tree, words, faults);
   return tree;
 }
 

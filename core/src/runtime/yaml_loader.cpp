@@ -279,8 +279,9 @@ ConfigNode load_config_file(const fs::path& file, const std::string& category, F
   return load_chain(file, start_of(file), {}, {category, prepare, faults});
 }
 
-ConfigNode parse_assignment(const std::string& assignment, FaultList& faults) {
-  const Location where{"--set " + assignment};
+ConfigNode parse_assignment(const std::string& assignment, FaultList& faults,
+                            const std::string& option) {
+  const Location where{option + ' ' + assignment};
   const ConfigNode nothing = empty_map(where);
   const std::size_t equals = assignment.find('=');
   const std::string path = assignment.substr(0, equals);

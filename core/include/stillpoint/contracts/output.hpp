@@ -39,6 +39,9 @@ struct FrameReport {
   TrackResult result;
   /// Of the calls that ended since the last report: of this frame, and on other threads.
   std::vector<StageTime> times;
+  /// A snapshot of when the frame had been tracked. Never null in a run.
+  std::shared_ptr<const SparseMap> map;
+  int loops_closed = 0;  ///< since the run began
 };
 using FrameReportPtr = std::shared_ptr<const FrameReport>;
 

@@ -30,7 +30,8 @@ struct PipelineRequest {
   std::filesystem::path dataset;
   std::string camera;                    ///< a file, or a name from configs/cameras
   std::vector<std::string> assignments;  ///< `key.sub=value`
-  std::vector<std::string> outputs;      ///< types added to the file's outputs, where not there
+  /// `TYPE`, added to the file's outputs where not there, or `TYPE.OPTION=VALUE`, with that option.
+  std::vector<std::string> outputs;
   bool pushed = false;                   ///< frames come from Engine::process(): without `source:`
   /// Searched after the file's own plugins.paths.
   std::vector<std::filesystem::path> plugin_folders = default_plugin_folders();

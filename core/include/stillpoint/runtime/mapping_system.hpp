@@ -1,6 +1,7 @@
 // Threads 3 to 5: local mapping, loop closing and the dense map around one sparse map.
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -41,7 +42,7 @@ class MappingSystem {
   bool waiting() const { return local_mapping_.waiting(); }
   /// Finishes what is under way and ends the threads; after a stop, at once.
   void end();
-  /// Loops closed. Only after end().
+  /// Loops closed. From any thread.
   int loops() const { return loops_; }
   /// What the dense map holds now. From any thread.
   std::vector<LabelledPoint> dense_points();
@@ -85,7 +86,7 @@ class MappingSystem {
   KeyFrameId next_keyframe_;       // of the thread that pushes
   std::mutex dense_mutex_;         // held while the dense map is called: anybody may read it
   std::uint32_t dense_frame_ = 0;  // given last to the dense map, for messages and times
-  int loops_ = 0;
+  std::atomic<int> loops_ = 0;
   // Used by the loop thread: a correction was sent that the maps of waiting queries do not have.
   bool correction_pending_ = false;
 

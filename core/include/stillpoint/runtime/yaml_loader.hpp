@@ -18,8 +18,10 @@ STILLPOINT_EXPORT ConfigNode load_config_file(const std::filesystem::path& file,
                                               const std::string& category, FaultList& faults,
                                               const std::function<void(ConfigNode&)>& prepare = {});
 
-/// The map for `key.sub=value`; relative paths are meant from the working folder.
-STILLPOINT_EXPORT ConfigNode parse_assignment(const std::string& assignment, FaultList& faults);
+/// The map for `key.sub=value`; relative paths are meant from the working folder. Messages call it
+/// `option assignment`.
+STILLPOINT_EXPORT ConfigNode parse_assignment(const std::string& assignment, FaultList& faults,
+                                              const std::string& option = "--set");
 
 /// Replaces ${NAME} in every scalar by the environment variable.
 STILLPOINT_EXPORT void substitute_environment(ConfigNode& node, FaultList& faults);

@@ -1,0 +1,281 @@
+#include "output_web/journal.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <stillpoint/support/trajectory.hpp>
+
+#include "output_web/map_changes.hpp"
+#include "output_web/message_writer.hpp"
+#include "output_web/picture.hpp"
+
+namespace stillpoint::output_web {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::size_t kTimesKept = 12'000;    // about 600 frames
+constexpr std::size_t kCloudsPerMessage = 8;  // 29 kB each for 640 × 480 px
+constexpr std::size_t kFirstFit = 10;         // frames
+constexpr double kFitGrowth = 1.05;           // of the frames, until the truth is fitted again
+constexpr double kNoShift = 1e-4;             // metres
+
+std::string text_of(const Json& json) {
+  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+std::uint16_t short_of(int value) {
+  return static_cast<std::uint16_t>(
+      std::clamp(value, 0, int{std::numeric_limits<std::uint16_t>::max()}));
+}
+
+void write_text(Record kind, const std::string& text, MessageWriter& writer) {
+  writer.begin(kind);
+  writer.text(text);
+  writer.end();
+}
+
+}  // namespace
+
+struct Journal::Snapshot {
+  FrameReport latest;
+  std::vector<FrameEntry> frames;  // new ones, or all for a fit
+  std::size_t first_new = 0;       // of these
+  std::vector<std::string> stages;
+  std::size_t first_stage = 0;
+  std::vector<TimeEntry> times;
+  std::vector<std::shared_ptr<const std::string>> clouds;
+  std::vector<LoopEntry> loops;
+  std::string end;
+  bool fit = false;
+
+  bool empty() const {
+    return first_new == frames.size() && times.empty() && clouds.empty() && end.empty();
+  }
+  void write_stages(MessageWriter& writer) const;
+  void write_frames(MessageWriter& writer) const;
+  void write_times(MessageWriter& writer) const;
+  void write_loops(MessageWriter& writer) const;
+  void write_fit(MessageWriter& writer) const;
+};
+
+void Journal::add(const FrameReport& report) {
+  const TrackResult& result = report.result;
+  FrameEntry entry{.pose = {.frame = report.frame->index,
+                            .time = report.frame->time,
+                            .state = result.state,
+                            .reference = result.reference,
+                            .reference_from_camera = result.reference_from_camera,
+                            .world_from_camera = result.world_from_camera,
+                            .held_by_depth = result.held_by_depth},
+                   .features = result.features,
+                   .matches = result.matches,
+                   .inliers = result.inliers,
+                   .keyframe = result.keyframe.has_value(),
+                   .true_position = run_.truth.position_at(report.frame->time)};
+  entry.pose.poorly_constrained = result.state == TrackState::kTracking && result.uncertainty &&
+                                  result.uncertainty->poorly_constrained();
+  std::shared_ptr<const std::string> cloud;
+  if (result.keyframe)
+    cloud = std::make_shared<const std::string>(cloud_of(report, result.keyframe->id));
+  const std::lock_guard lock(mutex_);
+  add_loop(report);
+  add_times(report.times);
+  frames_.push_back(std::move(entry));
+  if (cloud) clouds_.push_back(std::move(cloud));
+  latest_ = report;
+}
+
+void Journal::add_times(const std::vector<StageTime>& times) {
+  for (const StageTime& time : times) {
+    auto stage = std::ranges::find(stages_, time.stage);
+    if (stage == stages_.end()) stage = stages_.insert(stages_.end(), time.stage);
+    times_.push_back({time.frame, static_cast<std::uint8_t>(stage - stages_.begin()),
+                      static_cast<float>(time.wall_ms)});
+  }
+  while (times_.size() > kTimesKept) {
+    times_.pop_front();
+    ++times_dropped_;
+  }
+}
+
+// Compares with the map before: what mapping has moved meanwhile is among it.
+void Journal::add_loop(const FrameReport& report) {
+  if (!latest_.map || !report.map || report.loops_closed == latest_.loops_closed) return;
+  LoopEntry loop{.frame = report.frame->index};
+  for (KeyFrameId id = 0; id < latest_.map->keyframe_id_end(); ++id) {
+    const KeyFrame* before = latest_.map->keyframe(id);
+    const KeyFrame* after = report.map->keyframe(id);
+    if (!before || !after) continue;
+    const double shift =
+        (after->world_from_camera.translation() - before->world_from_camera.translation()).norm();
+    if (shift > kNoShift) ++loop.moved;
+    loop.largest_shift_m = std::max(loop.largest_shift_m, static_cast<float>(shift));
+  }
+  loops_.push_back(loop);
+}
+
+void Journal::finish(const RunSummary& summary) {
+  const Json json = {{"complete", summary.complete},
+                     {"failure", summary.failure},
+                     {"dropped_frames", summary.dropped_frames},
+                     {"loops_closed", summary.loops_closed},
+                     {"wall_seconds", summary.wall_seconds}};
+  const std::lock_guard lock(mutex_);
+  add_times(summary.times);
+  latest_.map = std::make_shared<const SparseMap>(summary.map);
+  end_ = text_of(json);
+}
+
+std::string Journal::news(Seen& seen, const Request& request) {
+  const Snapshot now = snapshot(seen, request);
+  if (now.empty()) return {};
+  MessageWriter writer;
+  writer.number(kProtocol);
+  if (!seen.hello && now.latest.frame) {
+    write_text(Record::kHello, hello(*now.latest.frame->camera), writer);
+    seen.hello = true;
+  }
+  now.write_stages(writer);
+  if (request.map && now.latest.map && now.latest.map != seen.map) {
+    write_map_changes(*seen.map, *now.latest.map, writer);
+    seen.map = now.latest.map;
+  }
+  now.write_frames(writer);
+  now.write_times(writer);
+  for (const auto& cloud : now.clouds) writer.text(*cloud);
+  now.write_loops(writer);
+  if (now.fit) now.write_fit(writer);
+  if (request.image && now.latest.frame && seen.image != now.latest.frame->index) {
+    writer.text(picture(now.latest));
+    seen.image = now.latest.frame->index;
+  }
+  if (!now.end.empty()) write_text(Record::kEnd, now.end, writer);
+  return writer.take();
+}
+
+Journal::Snapshot Journal::snapshot(Seen& seen, const Request& request) const {
+  const std::lock_guard lock(mutex_);
+  Snapshot now{.latest = latest_, .first_stage = seen.stages};
+  now.stages.assign(stages_.begin() + static_cast<std::ptrdiff_t>(seen.stages), stages_.end());
+  seen.stages = stages_.size();
+
+  const auto grown = static_cast<std::size_t>(kFitGrowth * static_cast<double>(seen.fitted_frames));
+  now.fit = run_.truth.known() && frames_.size() >= std::max(kFirstFit, grown + 1);
+  const std::size_t first = now.fit ? 0 : seen.frames;
+  now.frames.assign(frames_.begin() + static_cast<std::ptrdiff_t>(first), frames_.end());
+  now.first_new = seen.frames - first;
+  seen.frames = frames_.size();
+  if (now.fit) seen.fitted_frames = frames_.size();
+
+  const std::size_t times = std::max(seen.times, times_dropped_) - times_dropped_;
+  now.times.assign(times_.begin() + static_cast<std::ptrdiff_t>(times), times_.end());
+  seen.times = times_dropped_ + times_.size();
+
+  now.loops.assign(loops_.begin() + static_cast<std::ptrdiff_t>(seen.loops), loops_.end());
+  seen.loops = loops_.size();
+  for (; request.cloud && seen.clouds < clouds_.size() && now.clouds.size() < kCloudsPerMessage;
+       ++seen.clouds)
+    now.clouds.push_back(clouds_[seen.clouds]);
+  if (!seen.end) now.end = end_;
+  seen.end = !end_.empty();
+  return now;
+}
+
+std::string Journal::hello(const Camera& camera) const {
+  Json classes = Json::array();
+  for (std::size_t id = 0; id < run_.classes.size(); ++id)
+    classes.push_back(
+        {{"name", run_.classes[id]}, {"color", color_of_class(static_cast<std::uint8_t>(id))}});
+  return text_of({{"version", STILLPOINT_VERSION},
+                  {"run", run_.name},
+                  {"truth", run_.truth.known()},
+                  {"camera",
+                   {{"width", camera.width},
+                    {"height", camera.height},
+                    {"fx", camera.fx},
+                    {"fy", camera.fy},
+                    {"cx", camera.cx},
+                    {"cy", camera.cy}}},
+                  {"classes", classes}});
+}
+
+const std::string& Journal::picture(const FrameReport& report) {
+  if (picture_frame_ != report.frame->index) {
+    picture_ = picture_of(report);
+    picture_frame_ = report.frame->index;
+  }
+  return picture_;
+}
+
+void Journal::Snapshot::write_stages(MessageWriter& writer) const {
+  for (std::size_t i = 0; i < stages.size(); ++i) {
+    writer.begin(Record::kStages);
+    writer.number(static_cast<std::uint8_t>(first_stage + i));
+    writer.text(stages[i]);
+    writer.end();
+  }
+}
+
+void Journal::Snapshot::write_frames(MessageWriter& writer) const {
+  if (first_new == frames.size()) return;
+  writer.begin(Record::kFrames);
+  for (std::size_t i = first_new; i < frames.size(); ++i) {
+    const FrameEntry& frame = frames[i];
+    const int flags = (frame.keyframe ? 1 : 0) | (frame.pose.held_by_depth ? 2 : 0) |
+                      (frame.pose.poorly_constrained ? 4 : 0) | (frame.true_position ? 8 : 0);
+    writer.number(frame.pose.frame);
+    writer.number(frame.pose.time);
+    writer.number(static_cast<std::uint8_t>(frame.pose.state));
+    writer.number(static_cast<std::uint8_t>(flags));
+    writer.number(frame.pose.reference);
+    writer.pose(frame.pose.reference_from_camera);
+    writer.pose(frame.pose.world_from_camera);
+    for (const int count : {frame.features, frame.matches, frame.inliers})
+      writer.number(short_of(count));
+    writer.point(frame.true_position.value_or(Eigen::Vector3d::Zero()));
+  }
+  writer.end();
+}
+
+void Journal::Snapshot::write_times(MessageWriter& writer) const {
+  if (times.empty()) return;
+  writer.begin(Record::kTimes);
+  for (const TimeEntry& time : times) {
+    writer.number(time.frame);
+    writer.number(time.stage);
+    writer.number(time.wall_ms);
+  }
+  writer.end();
+}
+
+void Journal::Snapshot::write_loops(MessageWriter& writer) const {
+  for (const LoopEntry& loop : loops) {
+    writer.begin(Record::kLoops);
+    writer.number(loop.frame);
+    writer.number(loop.moved);
+    writer.number(loop.largest_shift_m);
+    writer.end();
+  }
+}
+
+void Journal::Snapshot::write_fit(MessageWriter& writer) const {
+  if (!latest.map) return;
+  std::vector<Eigen::Vector3d> truth, estimate;
+  for (const FrameEntry& frame : frames) {
+    if (!frame.true_position) continue;
+    const auto world = world_from_camera(*latest.map, frame.pose);
+    if (!world) continue;
+    truth.push_back(*frame.true_position);
+    estimate.emplace_back(world->translation());
+  }
+  const auto fitted = fit_truth(truth, estimate);
+  if (!fitted) return;
+  writer.begin(Record::kTruth);
+  writer.pose(fitted->world_from_truth);
+  writer.number(static_cast<float>(fitted->rmse_m));
+  writer.number(static_cast<std::uint32_t>(fitted->pairs));
+  writer.end();
+}
+
+}  // namespace stillpoint::output_web

@@ -1,0 +1,87 @@
+// What has happened in the run so far, for viewers that come at any time.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <deque>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <stillpoint/sdk.hpp>
+#include <string>
+#include <vector>
+
+#include "output_web/request.hpp"
+#include "output_web/truth.hpp"
+
+namespace stillpoint::output_web {
+
+/// What a viewer has got already.
+struct Seen {
+  bool hello = false;
+  bool end = false;
+  std::size_t stages = 0, frames = 0, times = 0, clouds = 0, loops = 0;
+  std::size_t fitted_frames = 0;  ///< that the last fit of the truth was made of
+  std::optional<std::uint32_t> image;
+  std::shared_ptr<const SparseMap> map = std::make_shared<const SparseMap>();
+};
+
+/// Written by the pipeline's threads, who wait for nothing but a copy of pointers, and read by the
+/// server's.
+class Journal {
+ public:
+  struct Run {
+    std::string name;    ///< of the recording
+    ClassNames classes;  ///< of the segmenter
+    Truth truth;
+  };
+  explicit Journal(Run run) : run_(std::move(run)) {}
+
+  void add(const FrameReport& report);
+  void finish(const RunSummary& summary);
+
+  /// A message with all that is new to a viewer, as far as it asks for that; empty when nothing is.
+  std::string news(Seen& seen, const Request& request);
+
+ private:
+  struct FrameEntry {
+    TrackedPose pose;
+    int features = 0, matches = 0, inliers = 0;
+    bool keyframe = false;
+    std::optional<Eigen::Vector3d> true_position;
+  };
+  struct TimeEntry {
+    std::uint32_t frame = 0;
+    std::uint8_t stage = 0;  // index into stages_
+    float wall_ms = 0;
+  };
+  struct LoopEntry {
+    std::uint32_t frame = 0;
+    std::uint32_t moved = 0;    // key frames
+    float largest_shift_m = 0;  // of them
+  };
+  /// A copy of what is shared, to be written without a lock.
+  struct Snapshot;
+
+  void add_times(const std::vector<StageTime>& times);
+  void add_loop(const FrameReport& report);
+  Snapshot snapshot(Seen& seen, const Request& request) const;
+  std::string hello(const Camera& camera) const;
+  const std::string& picture(const FrameReport& report);
+
+  const Run run_;
+  mutable std::mutex mutex_;  // of all until picture_
+  FrameReport latest_;
+  std::vector<FrameEntry> frames_;
+  std::vector<std::string> stages_;
+  std::deque<TimeEntry> times_;
+  std::size_t times_dropped_ = 0;
+  std::vector<std::shared_ptr<const std::string>> clouds_;
+  std::vector<LoopEntry> loops_;
+  std::string end_;
+
+  std::optional<std::uint32_t> picture_frame_;  // of the server's thread
+  std::string picture_;
+};
+
+}  // namespace stillpoint::output_web

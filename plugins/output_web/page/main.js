@@ -1,0 +1,128 @@
+// The page: asks for what is new, shows it, and asks again when that is done. A hidden page does not ask.
+import './style.css';
+
+import {ChartPanel} from './chart_panel.js';
+import {ImagePanel} from './image_panel.js';
+import {MapPanel} from './map_panel.js';
+import {read, request} from './protocol.js';
+import {Run} from './run.js';
+
+const BETWEEN_REQUESTS = 66;  // ms
+const BETWEEN_CHARTS = 500;   // ms
+const RETRY = 1500;           // ms
+const TOAST = 6000;           // ms
+
+const byId = (id) => document.getElementById(id);
+const image = new ImagePanel();
+const map = mapPanel();
+const charts = new ChartPanel();
+let run = new Run();
+let chartsDrawn = 0;
+let toastEnd = 0;
+const arrivals = [];  // {at, frames}, of the last seconds
+
+/** Browsers without WebGL show the rest. */
+function mapPanel() {
+  try {
+    return new MapPanel();
+  } catch (error) {
+    byId('map').textContent = 'This browser draws no 3-D (WebGL), so there is no map.';
+    return {show() {}, reset() {}};
+  }
+}
+
+function connect() {
+  const scheme = location.protocol === 'https:' ? 'wss:' : 'ws:';
+  const socket = new WebSocket(`${scheme}//${location.host}/live${location.search}`);
+  socket.binaryType = 'arraybuffer';
+  const ask = () => socket.readyState === WebSocket.OPEN && socket.send(request({image: true, map: true, cloud: true}));
+  socket.onopen = () => {
+    say('live');
+    ask();
+  };
+  socket.onmessage = async ({data}) => {
+    const begin = performance.now();
+    await take(data);
+    const rest = BETWEEN_REQUESTS - (performance.now() - begin);
+    setTimeout(() => requestAnimationFrame(ask), Math.max(0, rest));
+  };
+  socket.onclose = () => {
+    say(run.end ? endWords(run.end) : 'no connection, trying again');
+    setTimeout(connect, RETRY);
+  };
+}
+
+function endWords(end) {
+  if (end.failure) return `the run has failed: ${end.failure}`;
+  return end.complete ? 'the run has ended' : 'the run was stopped';
+}
+
+function say(text) { byId('connection').textContent = text; }
+
+async function take(data) {
+  const changed = new Set();
+  read(data, (name, content) => {
+    if (name === 'hello') begin();
+    run.take(name, content);
+    changed.add(name);
+  });
+  map.show(run, changed);
+  showFigures();
+  if (changed.has('loop')) toast(run.loops.at(-1));
+  if (performance.now() - chartsDrawn > BETWEEN_CHARTS || run.end) {
+    charts.show(run);
+    chartsDrawn = performance.now();
+  }
+  if (run.end) say(endWords(run.end));
+  await image.show(run);
+}
+
+function begin() {
+  run = new Run();
+  map.reset();
+  charts.reset();
+  arrivals.length = 0;
+}
+
+function toast({frame, moved, shift}) {
+  byId('toast').textContent =
+    `Loop closed at frame ${frame}: ${moved} key frames moved, by up to ${(100 * shift).toFixed(1)} cm`;
+  byId('toast').hidden = false;
+  clearTimeout(toastEnd);
+  toastEnd = setTimeout(() => { byId('toast').hidden = true; }, TOAST);
+}
+
+function framesPerSecond() {
+  if (run.end) return run.frames.length / run.end.wall_seconds;
+  const now = performance.now();
+  arrivals.push({at: now, frames: run.frames.length});
+  while (arrivals.length > 2 && now - arrivals[0].at > 3000) arrivals.shift();
+  const [first] = arrivals;
+  return now > first.at ? 1000 * (run.frames.length - first.frames) / (now - first.at) : 0;
+}
+
+function showFigures() {
+  const last = run.frames.at(-1);
+  if (!last) return;
+  byId('run').textContent = run.hello.run;
+  const state = byId('state');
+  state.textContent = last.state === 'lost' ? 'LOST' : last.state;
+  state.className = `badge ${last.state}`;
+  document.title = `${last.state === 'lost' ? 'LOST · ' : ''}${run.hello.run || 'Stillpoint'} · Stillpoint`;
+  const figures = [
+    ['frames', run.seen], ['frames/s', framesPerSecond().toFixed(1)],
+    ['coverage', `${(100 * run.tracked / run.seen).toFixed(0)} %`], ['times lost', run.timesLost],
+    ['dropped', run.dropped], ['key frames', run.keyframeCount], ['landmarks', run.landmarks.size],
+    ['loops', run.loops.length]];
+  if (run.fit) figures.push(['ATE, RMSE', `${(100 * run.fit.rmse).toFixed(1)} cm`]);
+  byId('figures').replaceChildren(...figures.map(([name, value]) => {
+    const box = document.createElement('div');
+    const [dt, dd] = [document.createElement('dt'), document.createElement('dd')];
+    dt.textContent = name;
+    dd.textContent = value;
+    box.append(dt, dd);
+    return box;
+  }));
+}
+
+connect();

@@ -1,0 +1,45 @@
+// The page and its messages over HTTP and WebSocket, on a thread of its own.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <stillpoint/sdk.hpp>
+#include <string>
+#include <string_view>
+
+#include "output_web/access.hpp"
+#include "output_web/journal.hpp"
+
+namespace stillpoint::output_web {
+
+struct ServerSetup {
+  std::string address = "127.0.0.1";
+  std::uint16_t port = 0;  ///< 0: any that is free
+  int viewers = 8;         ///< at once
+  Access access;
+  std::string_view page;  ///< HTML; outlives the server
+  std::function<void(LogLevel, std::string_view)> log;
+};
+
+/// A viewer asks and is answered once something is new: who does not read is not written to, and
+/// nothing waits for anybody. All requests are small and limited, and so is the time for them.
+class Server {
+ public:
+  /// Throws Error(kUsage) when the address or the port cannot be used.
+  Server(ServerSetup setup, Journal& journal);
+  /// Sends what is new and says good-bye, for half a second at most.
+  ~Server();
+  Server(const Server&) = delete;
+  Server& operator=(const Server&) = delete;
+
+  std::uint16_t port() const;
+  /// The journal has something new. From any thread; does not wait.
+  void notify();
+
+ private:
+  class Loop;
+  std::unique_ptr<Loop> loop_;
+};
+
+}  // namespace stillpoint::output_web

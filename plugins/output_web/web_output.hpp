@@ -1,0 +1,50 @@
+// A live view of the run in browsers.
+#pragma once
+
+#include <stillpoint/sdk.hpp>
+#include <string>
+
+#include "output_web/journal.hpp"
+#include "output_web/server.hpp"
+
+namespace stillpoint::output_web {
+
+class WebOutput final : public Output {
+ public:
+  struct Options {
+    int port = 8080;
+    std::string address = "127.0.0.1";
+    std::string token;
+    int viewers = 8;
+
+    void visit(OptionVisitor& v) {
+      v("port", port, {.min = 0, .max = 65535, .help = "of the page; 0 takes any that is free"});
+      v("address", address,
+        {.help = "of this machine to listen at, in numbers; 0.0.0.0 is all of them, for other "
+                 "machines, too"});
+      v("token", token,
+        {.help =
+             "that viewers must have in the page's address; empty: none for 127.0.0.1, a random "
+             "one otherwise"});
+      v("viewers", viewers, {.min = 1, .max = 32, .help = "at once"});
+    }
+  };
+  /// Throws Error(kUsage) when address or port cannot be used, or the token has other characters
+  /// than letters, digits, '-' and '_'.
+  WebOutput(const Options& options, const StageContext& context);
+
+  void frame(const FrameReport& report) override;
+  void finish(const RunSummary& summary) override;
+
+  /// What a browser is to open, token included.
+  const std::string& url() const { return url_; }
+
+ private:
+  WebOutput(const Options& options, const StageContext& context, const std::string& token);
+
+  Journal journal_;
+  Server server_;  // last: it uses the journal
+  std::string url_;
+};
+
+}  // namespace stillpoint::output_web
