@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdio>
+#include <sstream>
 
 #include "stillpoint/error.hpp"
 #include "study/text_file.hpp"
@@ -87,8 +88,12 @@ std::string recording_fingerprint(const fs::path& recording) {
 
 std::string input_fingerprint(const std::string& effective_pipeline, const fs::path& recording,
                               const std::vector<fs::path>& folders) {
+  // Each option is a line of its own, and reading all of them takes most of the time that planning
+  // a large study takes.
   std::vector<std::string> scalars;
-  collect_scalars(YAML::Load(effective_pipeline), scalars);
+  std::istringstream lines(effective_pipeline);
+  for (std::string line; std::getline(lines, line);)
+    if (line.find('/') != std::string::npos) collect_scalars(YAML::Load(line), scalars);
   Fingerprint fingerprint;
   for (const std::string& scalar : scalars)
     if (scalar != recording.string()) add_named(fingerprint, scalar, folders);
