@@ -66,8 +66,10 @@ std::string line_of(const std::vector<std::string>& cells) {
 
 std::string text_of(const LatexTable& table) {
   std::string text = "\n\\begin{table*}\n  \\centering\n  \\caption{" + table.caption +
-                     "}\n  \\label{tab:" + table.label + "}\n  \\begin{tabular}{" + table.columns +
-                     "}\n    \\toprule\n" + line_of(table.header) + "    \\midrule\n";
+                     "}\n  \\label{tab:" + table.label +
+                     "}\n  \\small\\setlength{\\tabcolsep}{4pt}\n  \\begin{tabular}{" +
+                     table.columns + "}\n    \\toprule\n" + line_of(table.header) +
+                     "    \\midrule\n";
   for (const std::vector<std::string>& row : table.rows)
     text += row.empty() ? "    \\addlinespace\n" : line_of(row);
   return text + "    \\bottomrule\n  \\end{tabular}\n\\end{table*}\n";
