@@ -31,7 +31,7 @@ std::string text_of(const Json& json) {
 
 /// As JPEG, no wider than a page shows it. Empty when it cannot be read.
 std::string jpeg_of(const std::filesystem::path& file) {
-  constexpr int kWidth = 640, kQuality = 80;
+  constexpr int kWidth = 960, kQuality = 80;
   cv::Mat picture = cv::imread(file.string());
   if (picture.empty()) return {};
   if (picture.cols > kWidth)
@@ -86,6 +86,7 @@ class Blocks {
     }
     try {
       const MapVoxels voxels = read_voxels(run.octree, limits_.voxels);
+      if (voxels.size() == 0) return;
       const std::string packed = block("map-" + id, map_bytes(voxels));
       maps_ += packed.size();
       text += packed;

@@ -100,7 +100,10 @@ void read_pipeline(RunData& run, fs::path& recording) {
   run.yaml = study::read_text(run.folder / "pipeline.yaml");
   if (run.yaml.empty()) run.notes.emplace_back("pipeline.yaml is missing.");
   if (recording.empty()) recording = recording_of_pipeline(run.yaml);
-  if (recording.empty()) return;
+  if (recording.empty()) {
+    run.recording = "without a folder";  // of a live source, or one that simulates
+    return;
+  }
   if (run.recording.empty()) run.recording = recording.filename().string();
   std::error_code unreadable;
   if (const fs::path truth = recording / "groundtruth.txt"; fs::exists(truth, unreadable))

@@ -1,4 +1,5 @@
 // stillpoint report: a page and tables of runs or of a study.
+#include <algorithm>
 #include <filesystem>
 #include <iostream>
 #include <map>
@@ -53,14 +54,15 @@ void compare_with_its_file(report::RunData& run) {
 }
 
 report::ReportData read(const ReportArguments& arguments) {
-  const fs::path& first = arguments.folders.front();
-  const fs::path study = first / "study.yaml";
-  const bool is_study = fs::exists(study);
+  const auto study = std::ranges::find_if(
+      arguments.folders, [](const fs::path& folder) { return fs::exists(folder / "study.yaml"); });
+  const bool is_study = study != arguments.folders.end();
   if (is_study && arguments.folders.size() > 1)
-    throw Error(Fault::kUsage, "a report is of one study, or of runs", first.string(),
+    throw Error(Fault::kUsage, "a report is of one study, or of runs", study->string(),
                 "give it alone");
-  report::ReportData data = is_study ? report::read_study(first, recorded_study(study))
-                                     : report::read_runs(arguments.folders);
+  report::ReportData data = is_study
+                                ? report::read_study(*study, recorded_study(*study / "study.yaml"))
+                                : report::read_runs(arguments.folders);
   if (!arguments.base.empty()) {
     std::map<fs::path, std::string> yaml;  // by recording: loading a pipeline takes a while
     for (report::RunData& run : data.runs) {
@@ -88,8 +90,8 @@ void write_report(const ReportArguments& arguments) {
       study::origin_of({.version = STILLPOINT_VERSION, .commit = built_from_commit()});
   const std::string html =
       filled_page(page_file(), data, "Stillpoint " STILLPOINT_VERSION ", " + here.date);
-  const fs::path folder = page.parent_path();
-  write_text(page, html);
+  const fs::path folder = fs::absolute(page).parent_path();
+  write_text(folder / page.filename(), html);
   write_text(folder / "tables.tex", latex_tables(data.tables));
   write_text(folder / "tables.csv", csv_tables(data.tables));
   for (const std::string& note : data.notes) std::cerr << "note: " << note << '\n';

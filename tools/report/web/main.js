@@ -74,6 +74,8 @@ function chooser(title, names, id, show) {
   return {part, choose};
 }
 
+const nextPicture = () => new Promise(resolve => { requestAnimationFrame(resolve); });
+
 async function build() {
   startTheme();
   const report = await json('report');
@@ -94,6 +96,7 @@ async function build() {
   main.replaceChildren(...parts.filter(Boolean));
   await recording?.choose(0);
   await run?.choose(0);
+  for (let i = 0; i < 3; ++i) await nextPicture();  // charts are drawn when their size is known
 }
 
 build().then(() => { document.documentElement.dataset.ready = 'yes'; }, error => {
