@@ -47,7 +47,7 @@ foreach(file share/man/man1/stillpoint-run.1.gz share/bash-completion/completion
     message(FATAL_ERROR "the package stillpoint has no /usr/${file}")
   endif()
 endforeach()
-expect_depends(stillpoint libopencv-dnn406 libyaml-cpp0.7 libsqlite3-0)
+expect_depends(stillpoint libopencv-dnn406 libyaml-cpp0.7 libsqlite3-0 libcairo2)
 
 unpack(libstillpoint-dev)
 expect_depends(libstillpoint-dev stillpoint libeigen3-dev libopencv-dev)

@@ -80,6 +80,22 @@ TEST(ReportProgram, WritesPageAndTablesOfARunAndChangesNothingElse) {
   EXPECT_FALSE(fs::exists(finished_run() / "report.html"));
 }
 
+TEST(ReportProgram, WritesEveryFigureWhereItIsAsked) {
+  SKIP_WITHOUT_PAGE();
+  const TemporaryFolder folder;
+  const Outcome outcome =
+      call({"report", finished_run().string(), "-o", (folder.path() / "page.html").string(),
+            "--figures", (folder.path() / "figures").string()});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr("6 figures in "));
+  const fs::path figures = folder.path() / "figures" / recording_with_people().filename() / "a_run";
+  for (const char* name :
+       {"trajectory", "errors", "excluded", "features", "stage_times", "frame_times"}) {
+    EXPECT_THAT(text_of(figures / (std::string(name) + ".svg")), HasSubstr("<svg")) << name;
+    EXPECT_THAT(text_of(figures / (std::string(name) + ".pdf")), HasSubstr("%PDF-1.")) << name;
+  }
+}
+
 TEST(ReportProgram, SaysWhatALoneRunDiffersInFromItsFile) {
   const report::RunData run = report::read_run(finished_run(), "name");
   EXPECT_EQ(run.pipeline.filename(), "stillpoint.yaml");

@@ -116,7 +116,7 @@ void add_report(CLI::App& app) {
   command
       ->add_option("--figures", arguments->figures,
                    "Folder for every figure as SVG and PDF, for papers")
-      ->type_name("FOLDER");
+      ->type_name("DIR");
   command
       ->add_option("--base", arguments->base,
                    "Pipeline with whose options those of each run are compared. Default: the file "
