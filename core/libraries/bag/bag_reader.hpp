@@ -71,8 +71,8 @@ std::string ros1_type(std::string type);
 /// Seconds of nanoseconds, nearest to what a text with as many digits gives.
 inline double seconds(std::int64_t nanoseconds) {
   constexpr std::int64_t kSecond = 1'000'000'000;
-  return static_cast<double>(nanoseconds / kSecond) +
-         static_cast<double>(nanoseconds % kSecond) * 1e-9;
+  const std::int64_t whole = nanoseconds / kSecond;
+  return static_cast<double>(whole) + static_cast<double>(nanoseconds % kSecond) * 1e-9;
 }
 
 }  // namespace stillpoint::bag
