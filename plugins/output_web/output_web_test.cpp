@@ -529,12 +529,10 @@ TEST_F(LiveView, IsShownByABrowser) {
       "' > '" + (folder / "dom").string() + "' 2> '" + (folder / "log").string() + "'";
   ASSERT_EQ(std::system(command.c_str()), 0) << text_of(folder / "log");
   const std::string dom = text_of(folder / "dom");
-  EXPECT_THAT(dom, HasSubstr("<dt>frames</dt><dd>4</dd>"));
-  EXPECT_THAT(dom, HasSubstr("class=\"badge tracking\""));
-  EXPECT_THAT(dom, HasSubstr("1 fit the pose"));
-  EXPECT_THAT(dom, HasSubstr(">frame 3<"));
-  EXPECT_THAT(dom, HasSubstr("<td>track</td><td class=\"number\">5.0</td>"));
-  EXPECT_THAT(dom, Not(HasSubstr("draws no 3-D")));
+  for (const char* shown :
+       {"<dt>frames</dt><dd>4</dd>", "class=\"badge tracking\"", "1 fit the pose", ">frame 3<",
+        "<td>track</td><td class=\"number\">5.0</td>", "data-engine=\"three.js"})
+    EXPECT_NE(dom.find(shown), std::string::npos) << shown;
   EXPECT_THAT(text_of(folder / "log"), Not(HasSubstr("Uncaught")));
   fs::remove_all(folder);
 }
