@@ -48,13 +48,13 @@ export class ImagePanel {
   async show(run) {
     const picture = run.picture;
     if (!picture || picture === this.picture) return;
+    this.count(picture, run.hello.classes);
+    document.getElementById('frame-number').textContent = `frame ${picture.frame}`;
     const bitmap = await createImageBitmap(new Blob([picture.jpeg], {type: 'image/jpeg'}));
     this.bitmap?.close();
     [this.picture, this.bitmap, this.classes] = [picture, bitmap, run.hello.classes];
     this.mask = picture.mask && tinted(picture.mask);
     this.draw();
-    this.count();
-    document.getElementById('frame-number').textContent = `frame ${picture.frame}`;
   }
 
   draw() {
@@ -105,13 +105,13 @@ export class ImagePanel {
     }
   }
 
-  count() {
+  count(picture, classes) {
     const counts = {inlier: 0, outlier: 0, moving: 0, unmatched: 0};
     const reasons = new Map();
-    for (const feature of this.picture.features) {
+    for (const feature of picture.features) {
       ++counts[feature.use];
       if (feature.use !== 'moving') continue;
-      const reason = reasonOf(feature, this.classes);
+      const reason = reasonOf(feature, classes);
       reasons.set(reason, (reasons.get(reason) ?? 0) + 1);
     }
     const why = [...reasons].sort((a, b) => b[1] - a[1]).map(([reason, count]) => `${reason} ${count}`).join(', ');

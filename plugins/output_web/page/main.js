@@ -17,7 +17,7 @@ const image = new ImagePanel();
 const map = mapPanel();
 const charts = new ChartPanel();
 let run = new Run();
-let chartsDrawn = 0;
+let chartsDrawn = -Infinity;
 let toastEnd = 0;
 const arrivals = [];  // {at, frames}, of the last seconds
 
@@ -82,6 +82,7 @@ function begin() {
   map.reset();
   charts.reset();
   arrivals.length = 0;
+  chartsDrawn = -Infinity;
 }
 
 function toast({frame, moved, shift}) {

@@ -1,0 +1,101 @@
+"""test_browser.py CHROMIUM URL CONDITION [PICTURE]: opens the page, waits until the JavaScript expression holds, and
+prints the document; errors of its scripts go to standard error. With PICTURE, a PNG of it, of 1366 x 768 px.
+
+Speaks the DevTools protocol over a WebSocket: JSON in text frames."""
+
+import base64
+import json
+import re
+import socket
+import struct
+import subprocess
+import sys
+import tempfile
+
+WAIT = """new Promise((resolve, reject) => {
+  const look = () => (CONDITION) ? resolve(document.documentElement.outerHTML) : setTimeout(look, 50);
+  setTimeout(() => reject(new Error('not within 20 s: ' + document.body.innerText)), 20000);
+  look();
+})"""
+
+
+class DevTools:
+    def __init__(self, port, path):
+        self.socket = socket.create_connection(("127.0.0.1", port))
+        self.socket.sendall(
+            f"GET {path} HTTP/1.1\r\nHost: 127.0.0.1\r\nUpgrade: websocket\r\nConnection: Upgrade\r\n"
+            "Sec-WebSocket-Version: 13\r\nSec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n\r\n".encode())
+        self.file = self.socket.makefile("rb")
+        while self.file.readline() not in (b"\r\n", b""):
+            pass
+        self.calls = 0
+
+    def call(self, method, **parameters):
+        self.calls += 1
+        text = json.dumps({"id": self.calls, "method": method, "params": parameters}).encode()
+        self.socket.sendall(b"\x81\xff" + struct.pack(">Q", len(text)) + bytes(4) + text)  # a mask of zeros
+        answer = self.wait_for("id", self.calls)
+        if "error" in answer:
+            raise RuntimeError(f"{method}: {answer['error']}")
+        return answer["result"]
+
+    def wait_for(self, key, value):
+        while True:
+            message = self.receive()
+            if message.get("method") == "Runtime.exceptionThrown":
+                print("Uncaught:", json.dumps(message["params"]), file=sys.stderr)
+            if message.get(key) == value:
+                return message
+
+    def receive(self):
+        message, last = b"", False
+        while not last:
+            first, size = self.file.read(2)
+            last = first & 0x80
+            if size == 126:
+                size, = struct.unpack(">H", self.file.read(2))
+            elif size == 127:
+                size, = struct.unpack(">Q", self.file.read(8))
+            message += self.file.read(size)
+        return json.loads(message)
+
+
+def look_at(browser, url, condition, picture):
+    for line in browser.stderr:
+        listening = re.search(r"DevTools listening on ws://127\.0\.0\.1:(\d+)(\S+)", line)
+        if listening:
+            break
+    else:
+        sys.exit("the browser does not start")
+    port = int(listening[1])
+    target = DevTools(port, listening[2]).call("Target.createTarget", url="about:blank")["targetId"]
+    page = DevTools(port, f"/devtools/page/{target}")
+    page.call("Runtime.enable")
+    page.call("Page.enable")
+    page.call("Emulation.setDeviceMetricsOverride", width=1366, height=768, deviceScaleFactor=1, mobile=False)
+    page.call("Page.navigate", url=url)
+    page.wait_for("method", "Page.loadEventFired")
+    seen = page.call("Runtime.evaluate", expression=WAIT.replace("CONDITION", condition), awaitPromise=True)
+    if "exceptionDetails" in seen:
+        sys.exit(seen["exceptionDetails"]["exception"]["description"])
+    print(seen["result"]["value"])
+    if picture:
+        with open(picture, "wb") as file:
+            file.write(base64.b64decode(page.call("Page.captureScreenshot")["data"]))
+
+
+def main():
+    chromium, url, condition, *picture = sys.argv[1:]
+    with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as profile:
+        browser = subprocess.Popen(
+            [chromium, "--headless=new", "--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader",
+             "--remote-debugging-port=0", f"--user-data-dir={profile}", "about:blank"],
+            stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+        try:
+            look_at(browser, url, condition, picture[0] if picture else None)
+        finally:
+            browser.kill()
+            browser.wait()
+
+
+main()
