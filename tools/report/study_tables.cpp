@@ -197,6 +197,7 @@ std::vector<Table> study_tables(const StudyResults& results) {
     if (!table.rows.empty()) tables.push_back(std::move(table));
   };
   for (std::size_t metric = 0; metric < study::kMetricCount; ++metric) {
+    if (study::metrics()[metric].group != study::Metric::Group::kAlone) continue;
     Table table =
         matrix_of(results, static_cast<MetricId>(metric), metric == study::kAte ? marked : names);
     table.note = note_of_matrices(results, metric == study::kAte && any_significant);
