@@ -71,11 +71,11 @@ TEST(ReportProgram, WritesPageAndTablesOfARunAndChangesNothingElse) {
   const std::string before = text_of(finished_run() / "summary.json");
   const Outcome outcome = call({"report", finished_run().string(), "-o", page.string()});
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
-  EXPECT_THAT(outcome.out, AllOf(HasSubstr("page.html"), HasSubstr("tables.tex, tables.csv")));
+  EXPECT_THAT(outcome.out, AllOf(HasSubstr("page.html"), HasSubstr("tables: page.tex, page.csv")));
   EXPECT_THAT(text_of(page), AllOf(HasSubstr("id=\"report\">"), HasSubstr("id=\"run-0\">"),
                                    HasSubstr("id=\"map-0\">"), HasSubstr("id=\"picture-0-0\">")));
-  EXPECT_THAT(text_of(folder.path() / "new/tables.tex"), HasSubstr("\\toprule"));
-  EXPECT_THAT(text_of(folder.path() / "new/tables.csv"), HasSubstr("Runs,a run,ATE RMSE (m),0.0"));
+  EXPECT_THAT(text_of(folder.path() / "new/page.tex"), HasSubstr("\\toprule"));
+  EXPECT_THAT(text_of(folder.path() / "new/page.csv"), HasSubstr("Runs,a run,ATE RMSE (m),0.0"));
   EXPECT_EQ(text_of(finished_run() / "summary.json"), before);
   EXPECT_FALSE(fs::exists(finished_run() / "report.html"));
 }
@@ -126,7 +126,7 @@ TEST(ReportProgram, SeveralRunsAreReportedInTheWorkingFolder) {
       call({"report", finished_run().string(), "other"}, {.folder = folder.path()});
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_THAT(text_of(folder.path() / "report.html"), HasSubstr("id=\"run-1\">"));
-  EXPECT_TRUE(fs::exists(folder.path() / "tables.tex"));
+  EXPECT_TRUE(fs::exists(folder.path() / "report.tex"));
 }
 
 TEST(ReportProgram, DamagedRunsAreShownAsFarAsTheyGo) {
@@ -155,6 +155,9 @@ TEST(ReportProgram, WhatIsNoRunIsNamed) {
   EXPECT_EQ(outcome.exit_code, 2);
   EXPECT_THAT(outcome.err, HasSubstr("holds neither a run nor a study"));
   EXPECT_EQ(call({"report", (folder.path() / "none").string()}).exit_code, 2);
+  outcome = call({"report", folder.path().string(), "-o", "page.tex"});
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_THAT(outcome.err, HasSubstr("page.tex: a page is an .html file"));
   EXPECT_TRUE(fs::is_empty(folder.path()));
   folder.write("study.yaml", "version: 1\nsequences: []\nvariants: []\nspeed: 3\n");
   outcome = call({"report", folder.path().string()});
@@ -207,7 +210,7 @@ TEST(ReportProgram, AnIncompleteStudySaysSo) {
                       "another version"),
             HasSubstr("sitting/better/0: Failed with exit code 139: ended by signal 11")));
   EXPECT_EQ(text_of(folder.path() / "runs/walking/better/0/result.json"), "{\"format\": 99}");
-  const std::string csv = text_of(folder.path() / "tables.csv");
+  const std::string csv = text_of(folder.path() / "report.csv");
   EXPECT_THAT(csv, HasSubstr("walking,plain,0.1,0.1000,0\n"));
 }
 

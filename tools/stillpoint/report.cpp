@@ -81,6 +81,9 @@ void write_report(const ReportArguments& arguments) {
   const fs::path page = !arguments.output.empty() ? arguments.output
                         : alone                   ? arguments.folders.front() / "report.html"
                                                   : fs::path("report.html");
+  if (page.extension() != ".html")  // or its tables could take its place
+    throw Error(Fault::kUsage, "a page is an .html file", page.string(),
+                "name it with -o FILE.html");
   const report::ReportData data = read(arguments);
   if (!arguments.figures.empty())
     std::cout << report::write_figures(data, arguments.figures) << " figures in "
@@ -89,13 +92,16 @@ void write_report(const ReportArguments& arguments) {
       study::origin_of({.version = STILLPOINT_VERSION, .commit = built_from_commit()});
   const std::string html =
       filled_page(page_file(), data, "Stillpoint " STILLPOINT_VERSION ", " + here.date);
-  const fs::path folder = fs::absolute(page).parent_path();
-  write_text(folder / page.filename(), html);
-  write_text(folder / "tables.tex", latex_tables(data.tables));
-  write_text(folder / "tables.csv", csv_tables(data.tables));
+  const auto beside = [&](const char* ending) {
+    return fs::absolute(page).replace_extension(ending);
+  };
+  write_text(fs::absolute(page), html);
+  write_text(beside(".tex"), latex_tables(data.tables));
+  write_text(beside(".csv"), csv_tables(data.tables));
   for (const std::string& note : data.notes) std::cerr << "note: " << note << '\n';
   std::cout << page.string() << " (" << evaluation::fixed(static_cast<double>(html.size()) / 1e6, 1)
-            << " MB), tables.tex, tables.csv\n";
+            << " MB); tables: " << beside(".tex").filename().string() << ", "
+            << beside(".csv").filename().string() << '\n';
 }
 
 }  // namespace
@@ -109,9 +115,10 @@ void add_report(CLI::App& app) {
       ->required()
       ->check(CLI::ExistingDirectory);
   command
-      ->add_option("-o,--output", arguments->output,
-                   "The page; tables.tex and tables.csv lie beside it. Default: report.html in the "
-                   "folder, or here when there are several")
+      ->add_option(
+          "-o,--output", arguments->output,
+          "The page; beside it lie its tables, as .tex and .csv. Default: report.html in the "
+          "folder, or here when there are several")
       ->type_name("FILE");
   command
       ->add_option("--figures", arguments->figures,
