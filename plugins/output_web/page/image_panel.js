@@ -114,7 +114,7 @@ export class ImagePanel {
       const reason = reasonOf(feature, classes);
       reasons.set(reason, (reasons.get(reason) ?? 0) + 1);
     }
-    const why = [...reasons].sort((a, b) => b[1] - a[1]).map(([reason, count]) => `${reason} ${count}`).join(', ');
+    const why = [...reasons].sort((a, b) => b[1] - a[1]).map(([reason, count]) => `${reason}: ${count}`).join('; ');
     document.getElementById('legend').replaceChildren(...Object.entries(counts).map(([use, count]) => {
       const item = document.createElement('li');
       const mark = document.createElement('i');

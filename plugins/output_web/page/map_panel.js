@@ -10,7 +10,7 @@ import {moved} from './run.js';
 const STRONG = 60;       // shared landmarks of an edge that is drawn, unless it closes a loop
 const FAR_APART = 15;    // key frames between the ends of an edge that closes a loop
 const FRUSTUM = 0.08;    // metres
-const FIRST_VIEW = [-0.5, -1.1, -2.6];  // metres, in the camera's frame: behind it, above and to the left
+const FIRST_VIEW = [-0.5, -0.8, -1.8];  // metres, in the camera's frame: behind it, above and to the left
 const LONGEST_GAP = 5;   // frames without a pose that a line bridges
 
 const DARK = {trajectory: 0x4db6ac, truth: 0xb0bec5, keyframe: 0x5c9ded, graph: 0x35506e, loop: 0xff9d2e,
