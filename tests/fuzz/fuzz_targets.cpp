@@ -30,8 +30,8 @@
 #include "stillpoint/engine/map_file.hpp"
 #include "stillpoint/runtime/plugin_stamp.hpp"
 #include "stillpoint/runtime/yaml_loader.hpp"
-#include "support/bag_writer.hpp"
 #include "stillpoint/testing/test_recording.hpp"
+#include "support/bag_writer.hpp"
 #include "support/recording_writer.hpp"
 #include "tum_recording/image_size.hpp"
 #include "tum_recording/png_decoder.hpp"
@@ -360,6 +360,8 @@ FuzzTarget bag_message() {
                             bytes[0] % 2 == 0 ? Serialisation::kRos1 : Serialisation::kCdr);
               },
           .words = {"rgb8", "bayer_rggb8", "yuv422", "32FC1", "mono8", "plumb_bob"}};
+}
+
 FuzzTarget live_request() {
   return {.seeds = {{output_web::kProtocol, 1, 7}},
           .parse = [](const fs::path& file) { output_web::parse_request(bytes_of(file)); }};
@@ -425,7 +427,7 @@ std::vector<NamedFuzzTarget> fuzz_targets() {
           {"Ros1Bag", ros1_bag},
           {"McapFile", mcap_file},
           {"Ros2Database", ros2_database},
-          {"BagMessage", bag_message}};
+          {"BagMessage", bag_message},
           {"LiveRequest", live_request},
           {"LiveAccess", live_access},
           {"LiveConnection", live_connection}};

@@ -24,15 +24,15 @@ class STILLPOINT_EXPORT ConfigError final : public Error {
 
 /// A pipeline file and what is changed of it.
 struct PipelineRequest {
-  std::string pipeline;                  ///< a file, or a name from configs/pipelines
-  /// Replaces source.path, and `tum_rgbd` by `bag` where it is one, or the other way round; relative
-  /// to the working folder.
+  std::string pipeline;  ///< a file, or a name from configs/pipelines
+  /// Replaces source.path, and `tum_rgbd` by `bag` where it is one, or the other way round;
+  /// relative to the working folder.
   std::filesystem::path dataset;
   std::string camera;                    ///< a file, or a name from configs/cameras
   std::vector<std::string> assignments;  ///< `key.sub=value`
   /// `TYPE`, added to the file's outputs where not there, or `TYPE.OPTION=VALUE`, with that option.
   std::vector<std::string> outputs;
-  bool pushed = false;                   ///< frames come from Engine::process(): without `source:`
+  bool pushed = false;  ///< frames come from Engine::process(): without `source:`
   /// Searched after the file's own plugins.paths.
   std::vector<std::filesystem::path> plugin_folders = default_plugin_folders();
 };
