@@ -215,7 +215,8 @@ void Pipeline::finish_outputs() {
   const MapStore::Snapshot map = mapping_.snapshot();
   const SourceReport source = feed_ ? feed_->report() : SourceReport();
   const std::vector<StageTime> times = times_.take();
-  if (!map_directory_.empty()) keep_failure_of([&] { map_is_saved_ = mapping_.save(map_directory_); });
+  if (!map_directory_.empty())
+    keep_failure_of([&] { map_is_saved_ = mapping_.save(map_directory_); });
   for (OutputStage& output : outputs_) output.finish([&] { return summary(*map, source, times); });
 }
 
