@@ -60,7 +60,7 @@ TEST(CommandLine, OptionsThatDoNotExistGetASuggestion) {
 }
 
 TEST(Completion, OfCommandsAndOptions) {
-  EXPECT_THAT(completions({"r"}), ElementsAre("run"));
+  EXPECT_THAT(completions({"r"}), ElementsAre("record", "run"));
   EXPECT_THAT(completions({"plugins", ""}), AllOf(Contains("list"), Contains("new")));
   EXPECT_THAT(completions({"run", "--s"}), ElementsAre("--set", "--save-map"));
   EXPECT_THAT(completions({}), AllOf(Contains("run"), Contains("simulate"), Not(Contains("list"))));
