@@ -30,7 +30,7 @@ struct PipelineRequest {
   std::vector<std::string> assignments;  ///< `key.sub=value`
   /// `TYPE`, added to the file's outputs where not there, or `TYPE.OPTION=VALUE`, with that option.
   std::vector<std::string> outputs;
-  bool pushed = false;                   ///< frames come from Engine::process(): without `source:`
+  bool pushed = false;  ///< frames come from Engine::process(): without `source:`
   /// Searched after the file's own plugins.paths.
   std::vector<std::filesystem::path> plugin_folders = default_plugin_folders();
 };
