@@ -123,7 +123,8 @@ class Server::Loop::Viewer : public std::enable_shared_from_this<Viewer> {
   }
   ~Viewer() {
     loop_.viewers_.erase(this);
-    if (loop_.farewell_ && loop_.viewers_.empty()) loop_.farewell_->cancel();
+    error_code ignored;
+    if (loop_.farewell_ && loop_.viewers_.empty()) loop_.farewell_->cancel(ignored);
   }
   Viewer(const Viewer&) = delete;
   Viewer& operator=(const Viewer&) = delete;
