@@ -60,7 +60,7 @@ TEST(CommandLine, OptionsThatDoNotExistGetASuggestion) {
 }
 
 TEST(Completion, OfCommandsAndOptions) {
-  EXPECT_THAT(completions({"r"}), ElementsAre("record", "run"));
+  EXPECT_THAT(completions({"r"}), ElementsAre("record", "report", "run"));
   EXPECT_THAT(completions({"plugins", ""}), AllOf(Contains("list"), Contains("new")));
   EXPECT_THAT(completions({"run", "--s"}), ElementsAre("--set", "--save-map"));
   EXPECT_THAT(completions({}), AllOf(Contains("run"), Contains("simulate"), Not(Contains("list"))));
@@ -70,7 +70,7 @@ TEST(Completion, OfValues) {
   EXPECT_THAT(completions({"run", "st"}), Contains("stillpoint"));
   EXPECT_THAT(completions({"run", "stillpoint", "--camera", "tum"}),
               AllOf(Contains("tum_fr3"), Contains("<files>")));
-  EXPECT_THAT(completions({"run", "stillpoint", "--dataset", ""}), ElementsAre("<folders>"));
+  EXPECT_THAT(completions({"run", "stillpoint", "--dataset", ""}), ElementsAre("<files>"));
   EXPECT_THAT(completions({"run", "stillpoint", "--load-map", ""}), ElementsAre("<files>"));
   EXPECT_THAT(completions({"run", "--dataset", "x", "orb_b"}), Contains("orb_baseline"));
   EXPECT_THAT(completions({"plugins", "new", "map_"}), ElementsAre("map_checker", "map_backend"));
