@@ -23,7 +23,8 @@ namespace fs = std::filesystem;
 using ::testing::HasSubstr;
 
 constexpr int kFrames = 30;
-constexpr double kPeriod = 0.1;           // s, slower than a Kinect: a busy machine drops nothing
+constexpr int kUsed = 25;                 // a busy machine may drop a few
+constexpr double kPeriod = 0.1;           // s, slower than a Kinect, for busy machines
 constexpr double kTicksPerSecond = 60e6;  // of a Kinect's counter
 
 // As fakenect-record leaves it: raw pixels behind a header of one line, named by time of arrival
@@ -87,12 +88,12 @@ TEST(Kinect, IsTrackedLive) {
   const TemporaryFolder folder;
   const fs::path out = folder.path() / "out";
   const Outcome outcome = call({"run", "orb_baseline", "--set", "source.type=freenect", "--set",
-                                "source.limit=" + std::to_string(kFrames), "--camera",
+                                "source.limit=" + std::to_string(kUsed), "--camera",
                                 (recording.path() / "camera.yaml").string(), "-o", out.string()},
                                with_fakenect(dump.path()));
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   const auto summary = json_file(out / "summary.json");
-  EXPECT_EQ(summary["tracked_frames"], kFrames) << summary;
+  EXPECT_EQ(summary["tracked_frames"], kUsed) << summary;
   EXPECT_EQ(summary["times_lost"], 0);
   const fs::path estimate = folder.path() / "estimate.txt";
   write_with_times_of(recording.path(), out / "trajectory.txt", estimate);
@@ -110,7 +111,7 @@ TEST(Kinect, KeepsWhatWasTrackedWhenItIsUnplugged) {
                                with_fakenect(dump.path()));
   EXPECT_EQ(outcome.exit_code, 3);
   EXPECT_THAT(outcome.err, HasSubstr("Kinect: the camera was unplugged"));
-  EXPECT_EQ(count_poses(out / "trajectory.txt"), std::size_t{kFrames});
+  EXPECT_GE(count_poses(out / "trajectory.txt"), std::size_t{kUsed});
   EXPECT_FALSE(json_file(out / "summary.json")["complete"]);
 }
 
