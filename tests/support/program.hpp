@@ -42,6 +42,7 @@ struct Outcome {
 
 struct Surroundings {
   std::filesystem::path folder = std::filesystem::temp_directory_path();
+  std::filesystem::path program = program_file();
   std::map<std::string, std::string> environment = {};  ///< besides that of the test
 };
 
@@ -59,7 +60,7 @@ class Program {
                                      O_WRONLY | O_CREAT | O_TRUNC, 0600);
     posix_spawn_file_actions_adddup2(&actions, pipe[1], STDERR_FILENO);
     posix_spawn_file_actions_addchdir_np(&actions, surroundings.folder.c_str());
-    arguments.insert(arguments.begin(), program_file().string());
+    arguments.insert(arguments.begin(), surroundings.program.string());
     std::vector<std::string> variables = environment_with(surroundings.environment);
     // As in a terminal: what a shell puts into the background ignores SIGINT, and so its children.
     sigset_t interrupt;
@@ -69,12 +70,12 @@ class Program {
     posix_spawnattr_init(&attributes);
     posix_spawnattr_setsigdefault(&attributes, &interrupt);
     posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGDEF);
-    const int error = ::posix_spawn(&process_, program_file().c_str(), &actions, &attributes,
+    const int error = ::posix_spawn(&process_, surroundings.program.c_str(), &actions, &attributes,
                                     pointers(arguments).data(), pointers(variables).data());
     posix_spawnattr_destroy(&attributes);
     posix_spawn_file_actions_destroy(&actions);
     ::close(pipe[1]);
-    if (error != 0) fail("cannot start " + program_file().string(), error);
+    if (error != 0) fail("cannot start " + surroundings.program.string(), error);
   }
   ~Program() {
     if (process_ > 0) finish();
