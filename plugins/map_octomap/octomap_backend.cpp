@@ -120,12 +120,13 @@ void OctomapBackend::move(std::span<const MovedKeyFrame> moved) {
   for (const MovedKeyFrame& keyframe : moved)
     if (const auto found = index_.find(keyframe.keyframe); found != index_.end())
       entries_[found->second].world_from_camera = keyframe.world_from_camera;
+  if (entries_.size() < rest_until_) return;
   std::vector<std::size_t> far;
   for (std::size_t i = 0; i < entries_.size(); ++i)
     if (!is_up_to_date(entries_[i]) &&
         moved_by(entries_[i]) > options_.tolerance * options_.resolution)
       far.push_back(i);
-  fuse_again(far);
+  rest_until_ = entries_.size() + fuse_again(far) / kScansPerKeyFrame;
 }
 
 void OctomapBackend::save(const std::filesystem::path& directory) {
@@ -188,8 +189,9 @@ double OctomapBackend::moved_by(const Entry& entry) const {
   return change.translation().norm() + options_.range * rotation_angle(change);
 }
 
-void OctomapBackend::fuse_again(std::span<const std::size_t> entries) {
-  if (entries.empty()) return;
+std::size_t OctomapBackend::fuse_again(std::span<const std::size_t> entries) {
+  if (entries.empty()) return 0;
+  std::size_t scans = entries.size();
   std::vector<BrickKey> changed;
   // These are scanned twice: the bricks that they see now must be known before anything is fused,
   // and keeping the scans would take up to a megabyte each.
@@ -203,6 +205,7 @@ void OctomapBackend::fuse_again(std::span<const std::size_t> entries) {
   for (Entry& entry : entries_) {
     if (!share_any(entry.bricks, changed)) continue;
     scan_.scan(entry.images.unpack(entry.fused_at));
+    ++scans;
     bricks.clear();
     std::copy_if(scan_.bricks().begin(), scan_.bricks().end(), std::back_inserter(bricks),
                  [&](const ScanBrick* brick) {
@@ -210,6 +213,7 @@ void OctomapBackend::fuse_again(std::span<const std::size_t> entries) {
                  });
     tree_.add(scan_, bricks, model_);
   }
+  return scans;
 }
 
 }  // namespace stillpoint::map_octomap

@@ -28,10 +28,12 @@ using semantic_octree::SemanticOctree;
 /// that was ever seen there is fused again, and the rest stays as it is.
 class OctomapBackend final : public MapBackend {
  public:
-  /// Free space ends this many standard deviations of the depth before a ray's end.
-  /// At 2 cm more voxels of surfaces would
-  /// be carved away than noise leaves in free space (docs/dense_maps.md).
+  /// Free space ends this many standard deviations of the depth before a ray's end. At 2 cm more
+  /// voxels of surfaces would be carved away than noise leaves in free space (docs/dense_maps.md).
   static constexpr double kSigmasBeforeSurface = 2.0;
+  /// Most scans for fusing again per new key frame, on average: where poses never settle, the time
+  /// would otherwise grow with the square of the number of key frames.
+  static constexpr std::size_t kScansPerKeyFrame = 10;
 
   struct Options {
     enum class Model {
@@ -79,7 +81,8 @@ class OctomapBackend final : public MapBackend {
   void scan(Entry& entry);
   static bool is_up_to_date(const Entry& entry);
   double moved_by(const Entry& entry) const;
-  void fuse_again(std::span<const std::size_t> entries);
+  /// Returns the number of scans.
+  std::size_t fuse_again(std::span<const std::size_t> entries);
   void save_cost_map(const std::filesystem::path& directory) const;
 
   Options options_;
@@ -90,6 +93,7 @@ class OctomapBackend final : public MapBackend {
   ScanBricks scan_;
   std::vector<Entry> entries_;  // in the order in which they came
   std::map<KeyFrameId, std::size_t> index_;
+  std::size_t rest_until_ = 0;  // entries, before which nothing is fused again but by save()
 };
 
 }  // namespace stillpoint::map_octomap

@@ -119,6 +119,29 @@ TEST_F(OctomapBackendTest, SmallMovesWaitUntilItIsSaved) {
   expect_same(map.tree(), map_at(pose_of).tree());
 }
 
+// Where poses never settle: 23 scans were made, which is the share of two key frames.
+TEST_F(OctomapBackendTest, AfterFusingAgainItRestsForAFewKeyFrames) {
+  OctomapBackend map = map_at(drifted_pose_of);
+  map.move(all_to(pose_of));
+  map.move(all_to(drifted_pose_of));
+  expect_same(map.tree(), map_at(pose_of).tree());
+  OctomapBackend expected = map_at(drifted_pose_of);
+  for (KeyFrameId id = kKeyFrames; id < kKeyFrames + 2; ++id) {
+    map.integrate(keyframe_at(id, pose_of(id)));
+    expected.integrate(keyframe_at(id, pose_of(id)));
+  }
+  map.move({});
+  expect_same(map.tree(), expected.tree());
+}
+
+TEST_F(OctomapBackendTest, WhatIsSavedNeverRests) {
+  OctomapBackend map = map_at(drifted_pose_of);
+  map.move(all_to(pose_of));
+  map.move(all_to(drifted_pose_of));
+  map.save(folder());
+  expect_same(map.tree(), map_at(drifted_pose_of).tree());
+}
+
 TEST_F(OctomapBackendTest, KeyFramesThatItNeverSawMoveNothing) {
   OctomapBackend map = map_at(pose_of);
   map.move(std::vector<MovedKeyFrame>{{100, pose_of(3)}});
