@@ -42,7 +42,8 @@ if(NOT result EQUAL 2 OR NOT output MATCHES "the package libstillpoint-dev has i
   message(FATAL_ERROR "without the headers, 'plugins new' says (${result}):\n${output}")
 endif()
 foreach(file share/man/man1/stillpoint-run.1.gz share/bash-completion/completions/stillpoint
-             share/zsh/vendor-completions/_stillpoint share/doc/stillpoint/copyright bin/stillpoint-demo)
+             share/zsh/vendor-completions/_stillpoint share/doc/stillpoint/copyright share/doc/stillpoint/changelog.gz bin/stillpoint-demo
+             share/man/man1/stillpoint-demo.1.gz share/man/man1/stillpoint-get-models.1.gz)
   if(NOT EXISTS ${root}/usr/${file})
     message(FATAL_ERROR "the package stillpoint has no /usr/${file}")
   endif()
