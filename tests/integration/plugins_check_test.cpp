@@ -108,6 +108,14 @@ constexpr Careless kCareless[] = {
 INSTANTIATE_TEST_SUITE_P(Ways, PluginsCheckCareless, ::testing::ValuesIn(kCareless),
                          [](const auto& careless) { return std::string(careless.param.how); });
 
+TEST(PluginsCheck, ATrackerThatChangesAMapThatStaysAsItIsFails) {
+  const Outcome outcome = call({"plugins", "check", library(kBad, "wrong_results"), "tracker/wrong",
+                                "--set", "how=right", "--case", "a map that stays as it is"});
+  EXPECT_EQ(outcome.exit_code, 1) << outcome.out;
+  EXPECT_THAT(outcome.out, HasSubstr("it made a key frame, but the map stays as it is"));
+  EXPECT_THAT(outcome.err, HasSubstr("1 of 1 cases failed"));
+}
+
 TEST(PluginsCheck, TheyPassTheUsualRecording) {
   for (const std::string how : {"shared", "fixed_size", "unfinished"}) {
     const Outcome outcome = call({"plugins", "check", library(kBad, "careless"), "--set",

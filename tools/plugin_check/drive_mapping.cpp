@@ -49,12 +49,13 @@ class TrackerDrive final : public FrameDrive<Tracker> {
     const Input& now = input(i);
     auto prepared = call("prepare", i, [&] { return stage_.prepare(now.frame); });
     check("prepare", i, [&] { check_prepared(prepared.get(), *now.frame); });
-    const auto next = static_cast<KeyFrameId>(map_.keyframe_id_end());
-    TrackResult result = call("track", i, [&] {
-      return stage_.track(std::move(prepared), *now.weights, map_, {.next_keyframe = next});
-    });
+    const TrackHints hints{
+        .next_keyframe = static_cast<KeyFrameId>(map_.keyframe_id_end()),
+        .localise_only = scenario_.localised_from && i >= *scenario_.localised_from};
+    TrackResult result = call(
+        "track", i, [&] { return stage_.track(std::move(prepared), *now.weights, map_, hints); });
     check("track", i, [&] {
-      check_tracking(result, *now.frame, map_, next);
+      check_tracking(result, *now.frame, map_, hints);
       check_thoroughly(result, *now.frame);
     });
     observer_.saw(result.state);

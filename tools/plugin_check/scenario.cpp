@@ -150,6 +150,12 @@ std::vector<Scenario> make_scenarios() {
   all.push_back(named(scenario_of({.frames = 1}), "a single frame",
                       "a recording may end at once, and a run may be stopped",
                       "do not count on a second call"));
+  Scenario localised = usual;
+  localised.localised_from = kUsualFrames / 2;
+  all.push_back(named(std::move(localised), "a map that stays as it is",
+                      "robots are localised in the map of a building (--localise-only)",
+                      "track on the given map, and make no key frame with "
+                      "TrackHints::localise_only"));
   Scenario large = scenario_of({.frames = kFewFrames, .first_index = kLargeIndex});
   large.first_keyframe = kLargeId;
   all.push_back(named(std::move(large), "large indices and ids",

@@ -2,7 +2,9 @@
 // authors forget.
 #pragma once
 
+#include <cstddef>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -28,6 +30,8 @@ struct Scenario {
   std::vector<Input> inputs;
   KeyFrameId first_keyframe = 0;
   bool of_images = true;  ///< false: only labels, points and weights differ from the usual
+  /// For trackers only: from this input on, the map stays as it is.
+  std::optional<std::size_t> localised_from = {};
 
   /// With features, weights and true pose.
   KeyFrame keyframe(std::size_t i, KeyFrameId id) const;

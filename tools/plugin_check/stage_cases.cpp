@@ -205,9 +205,11 @@ std::vector<std::string> cases_of(const std::string& kind, const std::vector<Sce
   std::vector<std::string> names = {scenarios.front().name, kOptions, kSameSeed, kTwoAtOnce,
                                     kDestroyed};
   if (kind == Source::kKind) return names;
-  for (const Scenario& scenario : scenarios)
-    if (&scenario != &scenarios.front() && (scenario.of_images || kind != Segmenter::kKind))
-      names.push_back(scenario.name);
+  for (const Scenario& scenario : scenarios) {
+    const bool is_for_kind = (scenario.of_images || kind != Segmenter::kKind) &&
+                             (!scenario.localised_from || kind == Tracker::kKind);
+    if (&scenario != &scenarios.front() && is_for_kind) names.push_back(scenario.name);
+  }
   return names;
 }
 

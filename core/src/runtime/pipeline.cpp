@@ -38,7 +38,7 @@ TrackResult track(Tracker& tracker, PreparedFramePtr prepared, const StaticWeigh
                   const SparseMap& map, TrackHints hints, bool thorough) {
   const FramePtr frame = prepared->frame;
   TrackResult result = tracker.track(std::move(prepared), weights, map, hints);
-  check_tracking(result, *frame, map, hints.next_keyframe);
+  check_tracking(result, *frame, map, hints);
   if (thorough) check_thoroughly(result, *frame);
   return result;
 }

@@ -176,14 +176,18 @@ void check_prepared(const PreparedFrame* prepared, const Frame& frame) {
 }
 
 void check_tracking(const TrackResult& result, const Frame& frame, const SparseMap& map,
-                    KeyFrameId next) {
-  if (result.keyframe) check_keyframe(*result.keyframe, frame, map, next);
+                    const TrackHints& hints) {
+  if (result.keyframe) {
+    require_of_stage(!hints.localise_only, "it made a key frame, but the map stays as it is",
+                     "make none with TrackHints::localise_only");
+    check_keyframe(*result.keyframe, frame, map, hints.next_keyframe);
+  }
   if (result.state != TrackState::kTracking) return;
   require_of_stage(
       is_pose(result.world_from_camera) && is_pose(result.reference_from_camera),
       "the pose is no rigid motion",
       "it must be finite, with an orthonormal rotation; return kLost where there is none");
-  const KeyFrameId end = next + (result.keyframe ? 1 : 0);
+  const KeyFrameId end = hints.next_keyframe + (result.keyframe ? 1 : 0);
   require_of_stage(result.reference < end,
                    "the reference is key frame " +
                        (result.reference == kNoId ? "kNoId" : std::to_string(result.reference)) +

@@ -173,7 +173,9 @@ class WrongTracking : public ::testing::TestWithParam<TrackFault> {};
 TEST_P(WrongTracking, IsRefused) {
   const Frame frame = right_frame(7);
   TrackResult result = right_result(frame);
-  const auto message = [&] { return message_of([&] { check_tracking(result, frame, {}, 3); }); };
+  const auto message = [&] {
+    return message_of([&] { check_tracking(result, frame, {}, {.next_keyframe = 3}); });
+  };
   ASSERT_EQ(message(), "");
   GetParam().spoil(result);
   EXPECT_THAT(message(), HasSubstr(GetParam().message));
@@ -205,6 +207,18 @@ INSTANTIATE_TEST_SUITE_P(
                    [](TrackResult& r) { r.keyframe->world_from_camera.matrix()(0, 0) = kNan; },
                    "the pose of the key frame is no rigid motion"}),
     [](const auto& test) { return test.param.name; });
+
+TEST(StageResults, AMapThatStaysAsItIsGetsNoKeyFrame) {
+  const Frame frame = right_frame(7);
+  TrackResult result = right_result(frame);
+  const TrackHints hints{.next_keyframe = 4, .localise_only = true};
+  const auto message = [&] {
+    return message_of([&] { check_tracking(result, frame, {}, hints); });
+  };
+  EXPECT_THAT(message(), HasSubstr("it made a key frame, but the map stays as it is"));
+  result.keyframe.reset();
+  EXPECT_EQ(message(), "");
+}
 
 TEST(StageResults, WhatIsPreparedIsTheFrame) {
   const auto frame = std::make_shared<const Frame>(right_frame());
@@ -253,7 +267,7 @@ TEST(StageResults, WrongCorrectionsAreRefused) {
 TEST(StageResults, WhoIsLostNeedsNoPose) {
   TrackResult result{.state = TrackState::kLost};
   result.world_from_camera.translation().x() = kNan;
-  EXPECT_EQ(message_of([&] { check_tracking(result, right_frame(), {}, 0); }), "");
+  EXPECT_EQ(message_of([&] { check_tracking(result, right_frame(), {}, {}); }), "");
 }
 
 }  // namespace

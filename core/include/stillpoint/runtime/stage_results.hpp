@@ -38,9 +38,9 @@ STILLPOINT_EXPORT void check_weights(const StaticWeights& weights, const Segment
 /// Of a tracker, before it tracks `frame`.
 STILLPOINT_EXPORT void check_prepared(const PreparedFrame* prepared, const Frame& frame);
 
-/// Of a tracker, for a frame; `next` is the id of the next key frame.
+/// Of a tracker, for a frame and what it was told.
 STILLPOINT_EXPORT void check_tracking(const TrackResult& result, const Frame& frame,
-                                      const SparseMap& map, KeyFrameId next);
+                                      const SparseMap& map, const TrackHints& hints);
 
 /// Of a local mapper that has inserted a key frame, or refined around one.
 STILLPOINT_EXPORT void check_inserted(const SparseMap& map, const SparseMap& before);
