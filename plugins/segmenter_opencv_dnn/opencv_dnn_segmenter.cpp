@@ -178,9 +178,9 @@ Segmentation OpenCvDnnSegmenter::segment_as_is(const Frame& frame) {
 void OpenCvDnnSegmenter::tell_of_darkness(const Frame& frame) {
   if (told_ || !network_.brightened()) return;
   told_ = true;
-  log_(LogLevel::kWarning, "frame " + std::to_string(frame.index) +
-                               " is dark and was brightened for the network, as others may be; a "
-                               "longer exposure or more light finds more");
+  log_(LogLevel::kWarning, "dark images, such as frame " + std::to_string(frame.index) +
+                               ", are brightened for the network; more light or a longer exposure "
+                               "helps");
 }
 
 Segmentation OpenCvDnnSegmenter::from_scores(const cv::Mat& output, const Frame& frame) {

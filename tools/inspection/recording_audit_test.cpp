@@ -109,7 +109,7 @@ TEST_F(RecordingAuditTest, CountsUnusableLinesOfTheGroundTruth) {
 }
 
 TEST_F(RecordingAuditTest, TellsOfWrongExposure) {
-  write(5);
+  write(7);
   const auto add = [this](const cv::Mat& color) {
     const double time = 1.0 + 0.1 * count_++;
     writer_.pair(time, color, cv::Mat(48, 64, CV_16UC1, cv::Scalar(10000)));
@@ -122,8 +122,8 @@ TEST_F(RecordingAuditTest, TellsOfWrongExposure) {
   add(lamp);
   add(cv::Mat(48, 64, CV_8UC3, cv::Scalar::all(0)));
   EXPECT_THAT(audit().warnings,
-              AllOf(Contains(HasSubstr("2 of 8 sampled colour images are dark")),
-                    Contains(HasSubstr("1 of 8 sampled colour images are over-exposed"))));
+              AllOf(Contains(HasSubstr("2 of 10 sampled colour images are dark")),
+                    Contains(HasSubstr("1 of 10 sampled colour images are over-exposed"))));
 }
 
 TEST_F(RecordingAuditTest, DoubtsTheDepthFactor) {
