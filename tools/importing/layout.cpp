@@ -75,7 +75,7 @@ const Layout& layout_named(const std::string& name) {
 const Layout& layout_of(const std::filesystem::path& recording) {
   std::error_code error;
   const bool there = std::filesystem::exists(recording, error);
-  if (std::filesystem::is_directory(recording, error))
+  if (there && std::filesystem::is_directory(recording, error))
     std::filesystem::directory_iterator(recording, error);  // may be forbidden
   if (!there || error)
     throw Error(Fault::kData, error ? error.message() : "no such file or folder",
