@@ -8,13 +8,15 @@
 #include "segmenter_opencv_dnn/quiet_opencv.hpp"
 #include "stillpoint/error.hpp"
 #include "stillpoint/support/did_you_mean.hpp"
+#include "stillpoint/support/exposure.hpp"
 #include "stillpoint/support/model_lookup.hpp"
 #include "stillpoint/support/size_text.hpp"
 
 namespace stillpoint::segmenter_opencv_dnn {
 namespace {
 
-const char kOwnCode = 0;  // its address identifies this library, beside which models lie
+constexpr double kMostGain = 16;  // of an image that is nearly black, noise would be people
+const char kOwnCode = 0;          // its address identifies this library, beside which models lie
 
 double of_channel(const std::vector<double>& values, int channel) {
   return values.size() == 1 ? values[0] : values[static_cast<std::size_t>(channel)];
@@ -48,6 +50,13 @@ void check_finite(cv::dnn::Net& net, const std::string& file) {
   }
 }
 
+/// Factor for an image whose brightest percent is darker than `level`.
+double brightening(const cv::Mat& image, int level) {
+  if (level == 0) return 1;
+  const int brightest = level_quantile(image, kNotBrightest);
+  return brightest == 0 ? 1 : std::clamp(static_cast<double>(level) / brightest, 1.0, kMostGain);
+}
+
 }  // namespace
 
 void NetworkOptions::visit(OptionVisitor& v) {
@@ -62,6 +71,11 @@ void NetworkOptions::visit(OptionVisitor& v) {
   v.choice("channels", channels, {{"rgb", ChannelOrder::kRgb}, {"bgr", ChannelOrder::kBgr}},
            {.help = "order of the input's channels"});
   v("output", output, {.help = "name of the output; empty: the only one"});
+  v("brighten_to", brighten_to,
+    {.min = 0,
+     .max = 255,
+     .unit = "grey levels",
+     .help = "a dark image is brightened until its brightest percent has this level; 0: never"});
   v.require(scale.size() == 1 || scale.size() == 3, "'scale' needs one or three numbers");
   v.require(mean.size() == 1 || mean.size() == 3, "'mean' needs one or three numbers");
 }
@@ -102,9 +116,10 @@ std::vector<cv::Mat> Network::run(const cv::Mat& bgr) {
 }
 
 /// As cv::dnn::blobFromImage, but with a scale per channel, and in a third of its time.
-cv::Mat Network::input(const cv::Mat& bgr) const {
+cv::Mat Network::input(const cv::Mat& bgr) {
   cv::Mat stretched;
   cv::resize(bgr, stretched, input_size());
+  gain_ = brightening(stretched, options_.brighten_to);
   const int shape[] = {1, 3, options_.height, options_.width};
   cv::Mat blob(4, shape, CV_32FC1);
   for (int i = 0; i < 3; ++i) {
@@ -112,7 +127,7 @@ cv::Mat Network::input(const cv::Mat& bgr) const {
     cv::extractChannel(stretched, channel, options_.channels == ChannelOrder::kRgb ? 2 - i : i);
     const double scale = of_channel(options_.scale, i);
     cv::Mat plane(input_size(), CV_32FC1, blob.ptr<float>(0, i));
-    channel.convertTo(plane, CV_32F, scale, -scale * of_channel(options_.mean, i));
+    channel.convertTo(plane, CV_32F, gain_ * scale, -scale * of_channel(options_.mean, i));
   }
   return blob;
 }

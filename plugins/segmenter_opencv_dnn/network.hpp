@@ -20,7 +20,8 @@ struct NetworkOptions {
   std::vector<double> scale = {1.0 / 255};  ///< one, or one per channel
   std::vector<double> mean = {0.0};         ///< one, or one per channel, in the network's order
   ChannelOrder channels = ChannelOrder::kRgb;
-  std::string output;  ///< empty: the only one
+  std::string output;   ///< empty: the only one
+  int brighten_to = 0;  ///< level, 0 to 255, of the brightest percent of a dark image; 0: as it is
 
   void visit(OptionVisitor& visitor);
 };
@@ -35,6 +36,8 @@ class Network {
   /// The outputs for an image of any size, stretched to the input. They are valid until the next
   /// call. Throws Error(kStage) when OpenCV does, and for outputs that are not finite.
   std::vector<cv::Mat> run(const cv::Mat& bgr);
+  /// Whether the last image was dark, and brightened.
+  bool brightened() const { return gain_ > 1; }
 
   /// Of that forward pass.
   const std::vector<cv::Mat>& trial_outputs() const { return trial_outputs_; }
@@ -42,7 +45,7 @@ class Network {
   cv::Size input_size() const { return {options_.width, options_.height}; }
 
  private:
-  cv::Mat input(const cv::Mat& bgr) const;
+  cv::Mat input(const cv::Mat& bgr);
   std::vector<cv::Mat> forward(const cv::Mat& bgr);
 
   NetworkOptions options_;
@@ -50,6 +53,7 @@ class Network {
   cv::dnn::Net net_;
   std::vector<std::string> outputs_;
   std::vector<cv::Mat> trial_outputs_;
+  double gain_ = 1;  // of the last image
 };
 
 }  // namespace stillpoint::segmenter_opencv_dnn

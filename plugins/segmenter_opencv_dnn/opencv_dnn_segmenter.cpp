@@ -102,7 +102,8 @@ OpenCvDnnSegmenter::OpenCvDnnSegmenter(const Options& options, const StageContex
     : options_(options),
       classes_(classes_of(options.classes)),
       network_((use_threads(options.threads, context), options.network),
-               options.rule.result == ResultKind::kBoxes) {
+               options.rule.result == ResultKind::kBoxes),
+      log_(context.log) {
   check_outputs();
 }
 
@@ -163,6 +164,7 @@ Segmentation OpenCvDnnSegmenter::segment(const Frame& frame) {
 
 Segmentation OpenCvDnnSegmenter::segment_as_is(const Frame& frame) {
   const std::vector<cv::Mat> outputs = network_.run(frame.bgr);
+  tell_of_darkness(frame);
   Segmentation result =
       options_.rule.result == ResultKind::kBoxes
           ? from_boxes(detections(outputs, classes_.size(), options_.rule.threshold,
@@ -171,6 +173,14 @@ Segmentation OpenCvDnnSegmenter::segment_as_is(const Frame& frame) {
           : from_scores(outputs.front(), frame);
   result.frame = frame.index;
   return result;
+}
+
+void OpenCvDnnSegmenter::tell_of_darkness(const Frame& frame) {
+  if (told_ || !network_.brightened()) return;
+  told_ = true;
+  log_(LogLevel::kWarning, "dark images, such as frame " + std::to_string(frame.index) +
+                               ", are brightened for the network; more light or a longer exposure "
+                               "helps");
 }
 
 Segmentation OpenCvDnnSegmenter::from_scores(const cv::Mat& output, const Frame& frame) {

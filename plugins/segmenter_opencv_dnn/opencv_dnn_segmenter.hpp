@@ -1,7 +1,9 @@
 // Labels from any network that OpenCV reads (paper III-B).
 #pragma once
 
+#include <functional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "segmenter_opencv_dnn/box_mask.hpp"
@@ -45,12 +47,15 @@ class OpenCvDnnSegmenter final : public Segmenter {
   [[noreturn]] void refuse(const cv::Mat& output, const std::string& expected) const;
   Segmentation from_scores(const cv::Mat& output, const Frame& frame);
   Segmentation from_boxes(std::vector<Detection> found, const Frame& frame) const;
+  void tell_of_darkness(const Frame& frame);
 
   Options options_;
   ClassNames classes_;
   Network network_;
   CellGrid grid_;        // for the image size seen last
   unsigned images_ = 0;  // seen so far
+  std::function<void(LogLevel, std::string_view)> log_;
+  bool told_ = false;  // that images are dark
 };
 
 }  // namespace stillpoint::segmenter_opencv_dnn

@@ -165,6 +165,28 @@ TEST(OpenCvDnnSegmenter, OneProbabilityOrLogit) {
   EXPECT_NEAR(result.objects.front().score, 1 / (1 + std::exp(-0.4)), 1e-6);
 }
 
+TEST(OpenCvDnnSegmenter, DarkImagesAreBrightenedAndToldOfOnce) {
+  const testing::TemporaryFolder folder;
+  NetworkOptions network = caffe_network(folder, red_channel(), {4, 1});
+  network.output = "out";
+  network.scale = {0.01};
+  network.brighten_to = 195;
+  const Frame dark = blocks((cv::Mat_<cv::Vec3b>(1, 4) << cv::Vec3b(30, 0, 0), cv::Vec3b(16, 0, 0),
+                             cv::Vec3b(17, 0, 0), cv::Vec3b(0, 65, 65)),
+                            1);
+  const Frame black = blocks(cv::Mat_<cv::Vec3b>::zeros(1, 4), 1);
+  int told = 0;
+  StageContext context;
+  context.log = [&](LogLevel level, std::string_view) { told += level == LogLevel::kWarning; };
+  OpenCvDnnSegmenter segmenter(with(network, ResultKind::kProbability, {"person"}), context);
+  EXPECT_EQ(cv::countNonZero(segmenter.segment(black).labels), 0);
+  EXPECT_EQ(told, 0);
+  const cv::Mat expected = (cv::Mat_<std::uint8_t>(1, 4) << 1, 0, 1, 0);
+  for (int i = 0; i < 2; ++i)  // 0.90, 0.48, 0.51 and 0
+    EXPECT_EQ(cv::norm(segmenter.segment(dark).labels, expected, cv::NORM_INF), 0);
+  EXPECT_EQ(told, 1);
+}
+
 TEST(OpenCvDnnSegmenter, ChannelsScaleAndMean) {
   const testing::TemporaryFolder folder;
   NetworkOptions network = caffe_network(folder, subsampling(1), {1, 1});

@@ -89,8 +89,8 @@ void FreenectSource::start() {
 
 void FreenectSource::process_events(std::stop_token stop) {
   while (!stop.stop_requested()) {
-    timeval patience{.tv_sec = 0, .tv_usec = 100'000};
-    if (freenect_process_events_timeout(kinect_.context(), &patience) >= 0) continue;
+    timeval timeout{.tv_sec = 0, .tv_usec = 100'000};
+    if (freenect_process_events_timeout(kinect_.context(), &timeout) >= 0) continue;
     frames_.end("the camera was unplugged");
     return;
   }

@@ -154,12 +154,12 @@ void OpenNi2Source::start() {
 }
 
 void OpenNi2Source::read(std::stop_token stop) {
-  constexpr int kPatience = 100;  // ms
+  constexpr int kTimeout = 100;  // ms
   VideoStream* streams[] = {&camera_.color, &camera_.depth};
   while (!stop.stop_requested()) {
     int ready = 0;
     VideoFrameRef frame;
-    const openni::Status waited = OpenNI::waitForAnyStream(streams, 2, &ready, kPatience);
+    const openni::Status waited = OpenNI::waitForAnyStream(streams, 2, &ready, kTimeout);
     if (waited == openni::STATUS_TIME_OUT) continue;
     if (waited != openni::STATUS_OK || streams[ready]->readFrame(&frame) != openni::STATUS_OK) {
       frames_.end("the camera sends no more images");

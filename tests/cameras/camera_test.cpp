@@ -10,6 +10,7 @@
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "evaluation/trajectory.hpp"
@@ -82,15 +83,24 @@ void write_with_times_of(const fs::path& recording, const fs::path& estimate, co
   }
 }
 
-TEST(Kinect, IsTrackedLive) {
-  const RecordingCopy recording(kFrames);
-  const Dump dump(recording);
+/// A run of the recording as a Kinect would give it.
+class LiveKinect : public ::testing::Test {
+ protected:
+  Outcome run(int limit) const {  // frames; 0: until fakenect has no more
+    const Dump dump(recording);
+    return call({"run", "orb_baseline", "--set", "source.type=freenect", "--set",
+                 "source.limit=" + std::to_string(limit), "--camera",
+                 (recording.path() / "camera.yaml").string(), "-o", out.string()},
+                with_fakenect(dump.path()));
+  }
+
+  const RecordingCopy recording{kFrames};
   const TemporaryFolder folder;
   const fs::path out = folder.path() / "out";
-  const Outcome outcome = call({"run", "orb_baseline", "--set", "source.type=freenect", "--set",
-                                "source.limit=" + std::to_string(kUsed), "--camera",
-                                (recording.path() / "camera.yaml").string(), "-o", out.string()},
-                               with_fakenect(dump.path()));
+};
+
+TEST_F(LiveKinect, IsTracked) {
+  const Outcome outcome = run(kUsed);
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   const auto summary = json_file(out / "summary.json");
   EXPECT_EQ(summary["tracked_frames"], kUsed) << summary;
@@ -101,26 +111,36 @@ TEST(Kinect, IsTrackedLive) {
 }
 
 // fakenect ends with its images, as if the cable was pulled.
-TEST(Kinect, KeepsWhatWasTrackedWhenItIsUnplugged) {
-  const RecordingCopy recording(kFrames);
-  const Dump dump(recording);
-  const TemporaryFolder folder;
-  const fs::path out = folder.path() / "out";
-  const Outcome outcome = call({"run", "orb_baseline", "--set", "source.type=freenect", "--camera",
-                                (recording.path() / "camera.yaml").string(), "-o", out.string()},
-                               with_fakenect(dump.path()));
+TEST_F(LiveKinect, KeepsWhatWasTrackedWhenItIsUnplugged) {
+  const Outcome outcome = run(0);
   EXPECT_EQ(outcome.exit_code, 3);
   EXPECT_THAT(outcome.err, HasSubstr("Kinect: the camera was unplugged"));
   EXPECT_GE(count_poses(out / "trajectory.txt"), std::size_t{kUsed});
   EXPECT_FALSE(json_file(out / "summary.json")["complete"]);
 }
 
-TEST(Kinect, MayBeMissing) {
+TEST(LiveCamera, MayBeMissing) {
   for (const char* type : {"freenect", "openni2"}) {
     const Outcome outcome =
         call({"run", "orb_baseline", "--set", std::string("source.type=") + type});
     EXPECT_EQ(outcome.exit_code, 3) << outcome.err;
     EXPECT_THAT(outcome.err, HasSubstr("no camera is connected"));
+  }
+}
+
+// Damaged ones in place of missing ones: the loader goes no further than the first of this name.
+TEST(LiveCamera, OnlyItsSourceNeedsTheDriver) {
+  const TemporaryFolder folder;
+  for (const char* library : {"libfreenect.so.0.5", "libOpenNI2.so.0"})
+    folder.write(library, "no library");
+  const Surroundings without_drivers{.environment = {{"LD_LIBRARY_PATH", folder.path().string()}}};
+  EXPECT_EQ(call({"plugins", "list", "--strict"}, without_drivers).exit_code, 0);
+  for (const auto& [type, package] :
+       {std::pair("freenect", "libfreenect0.5"), std::pair("openni2", "libopenni2-0")}) {
+    const Outcome outcome =
+        call({"run", "orb_baseline", "--set", std::string("source.type=") + type}, without_drivers);
+    EXPECT_EQ(outcome.exit_code, 2) << outcome.err;
+    EXPECT_THAT(outcome.err, HasSubstr(std::string("on Debian the package ") + package));
   }
 }
 

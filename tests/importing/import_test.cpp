@@ -88,6 +88,9 @@ TEST_F(Import, SaysWhatItLookedFor) {
   outcome = import(folder_.path() / "nowhere");
   EXPECT_EQ(outcome.exit_code, 3);
   EXPECT_THAT(outcome.err, HasSubstr("nowhere: no such file or folder"));
+  outcome = import(std::string(300, 'x'));
+  EXPECT_EQ(outcome.exit_code, 3);
+  EXPECT_THAT(outcome.err, HasSubstr("x: File name too long"));
   outcome = import(folder_.path(), {"--layout", "7scenes"});
   EXPECT_EQ(outcome.exit_code, 2);
   EXPECT_THAT(outcome.err, HasSubstr("no layout '7scenes'; did you mean '7-scenes'?"));

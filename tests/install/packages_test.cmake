@@ -15,6 +15,7 @@ function(expect_depends package)
   foreach(name IN LISTS ARGN)
     expect_in_output(${name})
   endforeach()
+  set(output "${output}" PARENT_SCOPE)
 endfunction()
 
 file(REMOVE_RECURSE ${BUILD_DIR}/packages)
@@ -49,6 +50,9 @@ foreach(file share/man/man1/stillpoint-run.1.gz share/bash-completion/completion
   endif()
 endforeach()
 expect_depends(stillpoint libopencv-dnn406 libyaml-cpp0.7 libsqlite3-0 libcairo2)
+if(output MATCHES "libfreenect|libopenni2")
+  message(FATAL_ERROR "the package stillpoint depends on the drivers of live cameras:\n${output}")
+endif()
 
 unpack(libstillpoint-dev)
 expect_depends(libstillpoint-dev stillpoint libeigen3-dev libopencv-dev)

@@ -45,7 +45,7 @@ std::string all_signs() {
 
 const Layout* recognised(const std::filesystem::path& recording) {
   const auto found =
-      std::ranges::find_if(kLayouts, [&](const Layout& l) { return l.is_there(recording); });
+      std::ranges::find_if(kLayouts, [&](const Layout& l) { return l.recognises(recording); });
   return found == kLayouts.end() ? nullptr : &*found;
 }
 
@@ -73,8 +73,13 @@ const Layout& layout_named(const std::string& name) {
 }
 
 const Layout& layout_of(const std::filesystem::path& recording) {
-  if (!std::filesystem::exists(recording))
-    throw Error(Fault::kData, "no such file or folder", recording.string());
+  std::error_code error;
+  const bool there = std::filesystem::exists(recording, error);
+  if (there && std::filesystem::is_directory(recording, error))
+    std::filesystem::directory_iterator(recording, error);  // may be forbidden
+  if (!there || error)
+    throw Error(Fault::kData, error ? error.message() : "no such file or folder",
+                recording.string());
   if (const Layout* layout = recognised(recording)) return *layout;
   if (std::filesystem::exists(recording / "rgb.txt") &&
       std::filesystem::exists(recording / "depth.txt"))

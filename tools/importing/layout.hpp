@@ -15,7 +15,7 @@ struct Layout {
   const char* title;   ///< "7-Scenes"
   const char* signs;   ///< what it is recognised by, for messages
   const char* camera;  ///< its camera in configs/cameras; null: the recording brings it
-  bool (*is_there)(const std::filesystem::path& recording);
+  bool (*recognises)(const std::filesystem::path& recording);
   /// Throws Error(kData) when the recording cannot be used.
   std::unique_ptr<ForeignRecording> (*open)(const std::filesystem::path& recording,
                                             const ImportOptions& options);

@@ -38,7 +38,8 @@ std::filesystem::path without_slash(const std::filesystem::path& folder) {
 }
 
 void refuse(const std::filesystem::path& folder, const std::string& what) {
-  if (std::filesystem::exists(folder))
+  std::error_code error;  // of a path that cannot be; making it will say why
+  if (std::filesystem::exists(folder, error))
     throw Error(Fault::kUsage, what, folder.string(), "name another folder or remove this one");
 }
 
@@ -114,11 +115,11 @@ void RecordingFolder::commit(std::span<const StampedPose> truth, const std::stri
 }
 
 bool add_frames(ForeignRecording& recording, RecordingFolder& folder, const std::stop_token& stop,
-                const std::function<void(std::size_t frames)>& said_at) {
+                const std::function<void(std::size_t frames)>& progress) {
   for (std::size_t i = 0; i < recording.size(); ++i) {
     if (stop.stop_requested()) return false;
     folder.add(recording.read(i));
-    said_at(i + 1);
+    progress(i + 1);
   }
   return true;
 }

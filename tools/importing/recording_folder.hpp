@@ -43,9 +43,9 @@ class RecordingFolder {
   std::size_t linked_ = 0, copied_ = 0, written_ = 0;
 };
 
-/// All frames into `folder`, then `said_at` after each with their number. False when a stop was
+/// All frames into `folder`, then `progress` after each with their number. False when a stop was
 /// requested before the end.
 bool add_frames(ForeignRecording& recording, RecordingFolder& folder, const std::stop_token& stop,
-                const std::function<void(std::size_t frames)>& said_at);
+                const std::function<void(std::size_t frames)>& progress);
 
 }  // namespace stillpoint::importing

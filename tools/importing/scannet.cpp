@@ -10,6 +10,7 @@
 #include "importing/images.hpp"
 #include "importing/sens_file.hpp"
 #include "stillpoint/error.hpp"
+#include "stillpoint/support/rectifier.hpp"
 #include "stillpoint/support/size_text.hpp"
 #include "tum_recording/image_size.hpp"
 
@@ -45,13 +46,8 @@ class ScanNet final : public ForeignRecording {
         color_camera_(scaled(file_.color_camera(), size_)),
         registration_(file_.depth_camera(), color_camera_, file_.color_from_depth()) {
     camera_.name = "scannet";
-    camera_.width = size_.width;
-    camera_.height = size_.height;
-    camera_.fx = color_camera_.fx;
-    camera_.fy = color_camera_.fy;
-    camera_.cx = color_camera_.cx;
-    camera_.cy = color_camera_.cy;
     camera_.depth_factor = file_.depth_factor();
+    camera_ = rectified(camera_, color_camera_);
     if (const cv::Size original = original_size(); original != size_)
       notes_.push_back("colour images were scaled from " + size_text(original) + " to " +
                        size_text(size_) + ", the size of the depth images");

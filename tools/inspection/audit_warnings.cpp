@@ -27,6 +27,16 @@ void check_images(const RecordingAudit& audit, Warnings& warnings) {
                            "; choose another camera");
 }
 
+void check_exposure(const RecordingAudit& audit, Warnings& warnings) {
+  const std::string all = " of " + std::to_string(audit.sampled) + " sampled colour images are ";
+  if (audit.dark_images > 0)
+    warnings.push_back(std::to_string(audit.dark_images) + all +
+                       "dark; a network may miss people there, and tracking has fewer features");
+  if (audit.overexposed_images > 0)
+    warnings.push_back(std::to_string(audit.overexposed_images) + all +
+                       "over-exposed, a third or more of them white; nothing can be tracked there");
+}
+
 void check_depth(const RecordingAudit& audit, Warnings& warnings) {
   const DepthStatistics& depth = audit.depth_values;
   if (depth.images() == 0) return;
@@ -93,6 +103,7 @@ void check_truth(const RecordingAudit& audit, Warnings& warnings) {
 Warnings audit_warnings(const RecordingAudit& audit, const RecordingOptions& pairing) {
   Warnings warnings;
   check_images(audit, warnings);
+  check_exposure(audit, warnings);
   check_depth(audit, warnings);
   check_times(audit, pairing, warnings);
   check_offset(audit, pairing, warnings);

@@ -5,6 +5,7 @@
 
 #include "inspection/audit_warnings.hpp"
 #include "stillpoint/error.hpp"
+#include "stillpoint/support/exposure.hpp"
 #include "tum_recording/image_reader.hpp"
 
 namespace stillpoint::inspection {
@@ -36,6 +37,13 @@ std::string kind_of(const cv::Mat& image, const std::filesystem::path& file) {
          file.extension().string().substr(file.has_extension() ? 1 : 0);
 }
 
+void judge_exposure(const cv::Mat& color, RecordingAudit& audit) {
+  constexpr double kNotWhite = 2.0 / 3;  // share of the values
+  constexpr int kWhite = 250;            // level from which a sensor or an encoder saturates
+  audit.dark_images += level_quantile(color, kNotBrightest) < kDarkLevel ? 1 : 0;
+  audit.overexposed_images += level_quantile(color, kNotWhite) >= kWhite ? 1 : 0;
+}
+
 /// Reads the images of one pair; one that cannot be used is a finding.
 void read_pair(const ImagePair& pair, ImageReader& reader, RecordingAudit& audit,
                MotionStretch& motion) {
@@ -43,6 +51,7 @@ void read_pair(const ImagePair& pair, ImageReader& reader, RecordingAudit& audit
   try {
     const cv::Mat color = reader.color(pair.color.file);
     ++audit.color_kinds[kind_of(color, pair.color.file)];
+    judge_exposure(color, audit);
     motion.color.add_color(pair.color.time, color);
   } catch (const Error& error) {
     audit.unreadable.push_back(error.what());

@@ -36,6 +36,8 @@ struct RecordingAudit {
   std::map<std::string, int> color_kinds;  ///< "640 x 480, 8 bit, 3 channels, jpg" → how many
   std::map<std::string, int> depth_kinds;
   std::vector<std::string> unreadable;  ///< of the sampled images: file and reason
+  int dark_images = 0;                  ///< of the sampled ones
+  int overexposed_images = 0;           ///< of the sampled ones: a third or more is white
   DepthStatistics depth_values;
   TimeOffset time_offset;
   std::optional<TruthAudit> truth;

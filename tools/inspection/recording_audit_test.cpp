@@ -20,6 +20,8 @@ using ::testing::Contains;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
+const cv::Scalar kGrey(140, 140, 140);
+
 class RecordingAuditTest : public ::testing::Test {
  protected:
   /// Pairs at 10 Hz from 1.0 s; half of the depth pixels hold `depth_value`, the others nothing.
@@ -28,7 +30,7 @@ class RecordingAuditTest : public ::testing::Test {
     depth.rowRange(0, 24) = depth_value;
     for (int i = 0; i < count; ++i) {
       const double time = 1.0 + 0.1 * (count_ + i);
-      color_.push_back(writer_.color(time, cv::Mat(48, 64, CV_8UC3, cv::Scalar(9, 9, 9))));
+      color_.push_back(writer_.color(time, cv::Mat(48, 64, CV_8UC3, kGrey)));
       depth_.push_back(writer_.depth(time + 0.004, depth));
     }
     count_ += count;
@@ -82,7 +84,7 @@ TEST_F(RecordingAuditTest, ListsGapsLongestFirst) {
   write(5);
   count_ += 9;
   write(5);
-  writer_.color(9.0, cv::Mat(48, 64, CV_8UC3, cv::Scalar(9, 9, 9)));
+  writer_.color(9.0, cv::Mat(48, 64, CV_8UC3, kGrey));
   const RecordingAudit result = audit();
   ASSERT_EQ(result.pairs.gaps.size(), 2u);
   EXPECT_NEAR(result.pairs.gaps[0].length, 1.0, 1e-6);
@@ -104,6 +106,24 @@ TEST_F(RecordingAuditTest, CountsUnusableLinesOfTheGroundTruth) {
               AllOf(Contains(AllOf(HasSubstr("2 lines of the ground truth are unusable"),
                                    HasSubstr("groundtruth.txt:2"))),
                     Contains(HasSubstr("ground truth covers 20.0 % of the frames"))));
+}
+
+TEST_F(RecordingAuditTest, TellsOfWrongExposure) {
+  write(7);
+  const auto add = [this](const cv::Mat& color) {
+    const double time = 1.0 + 0.1 * count_++;
+    writer_.pair(time, color, cv::Mat(48, 64, CV_16UC1, cv::Scalar(10000)));
+  };
+  cv::Mat half_white(48, 64, CV_8UC3, kGrey);
+  half_white.rowRange(0, 24) = cv::Scalar::all(255);
+  cv::Mat lamp(48, 64, CV_8UC3, cv::Scalar::all(30));
+  lamp(cv::Rect(0, 0, 4, 4)) = cv::Scalar::all(255);  // half a percent
+  add(half_white);
+  add(lamp);
+  add(cv::Mat(48, 64, CV_8UC3, cv::Scalar::all(0)));
+  EXPECT_THAT(audit().warnings,
+              AllOf(Contains(HasSubstr("2 of 10 sampled colour images are dark")),
+                    Contains(HasSubstr("1 of 10 sampled colour images are over-exposed"))));
 }
 
 TEST_F(RecordingAuditTest, DoubtsTheDepthFactor) {

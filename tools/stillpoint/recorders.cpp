@@ -8,6 +8,7 @@
 #include "stillpoint/engine/pipeline_config.hpp"
 #include "stillpoint/error.hpp"
 #include "stillpoint/support/atomic_file.hpp"
+#include "stillpoint/support/rectifier.hpp"
 
 namespace stillpoint {
 namespace {
@@ -57,19 +58,8 @@ void FolderRecorder::frame(const FrameReport& report) {
 
 /// Sources give images without distortion, and cropped.
 void FolderRecorder::write_camera(const Camera& camera) const {
-  CameraModel model = sensor_;
-  model.width = camera.width;
-  model.height = camera.height;
-  model.fx = camera.fx;
-  model.fy = camera.fy;
-  model.cx = camera.cx;
-  model.cy = camera.cy;
-  model.depth_noise = camera.depth_noise;
-  model.surface_noise = camera.surface_noise;
-  model.distortion.clear();
-  model.crop.clear();
   AtomicFile file(folder_ / "camera.yaml");
-  file.stream() << "version: 1\n" << camera_yaml(model);
+  file.stream() << "version: 1\n" << camera_yaml(rectified(sensor_, camera));
   file.commit();
 }
 

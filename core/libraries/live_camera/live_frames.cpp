@@ -81,8 +81,8 @@ void LiveFrames::put_depth(std::uint64_t ticks, cv::Mat depth) {
 std::optional<Frame> LiveFrames::next() {
   if (options_.limit > 0 && given_ == static_cast<std::uint32_t>(options_.limit))
     return std::nullopt;
-  const std::chrono::milliseconds patience(std::lround(options_.timeout * 1000));
-  while (auto pair = pairs_.take(patience)) {
+  const std::chrono::milliseconds timeout(std::lround(options_.timeout * 1000));
+  while (auto pair = pairs_.take(timeout)) {
     if (given_ > 0 && pair->seconds <= last_seconds_) {  // the device's clock was compared anew
       ++late_;
       continue;

@@ -60,9 +60,9 @@ void LivePairs::end(std::string why) {
   changed_.notify_one();
 }
 
-std::optional<LivePair> LivePairs::take(std::chrono::milliseconds patience) {
+std::optional<LivePair> LivePairs::take(std::chrono::milliseconds timeout) {
   std::unique_lock lock(mutex_);
-  changed_.wait_for(lock, patience, [&] { return !pairs_.empty() || !why_ended_.empty(); });
+  changed_.wait_for(lock, timeout, [&] { return !pairs_.empty() || !why_ended_.empty(); });
   if (pairs_.empty()) return std::nullopt;
   LivePair pair = std::move(pairs_.front());
   pairs_.pop_front();

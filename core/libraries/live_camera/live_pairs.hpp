@@ -32,8 +32,8 @@ class LivePairs {
   /// The driver ends, for this reason: waiting pairs are still given, then `why` is known.
   void end(std::string why);
 
-  /// The oldest waiting pair; nothing when none has come within `patience`, or after end().
-  std::optional<LivePair> take(std::chrono::milliseconds patience);
+  /// The oldest waiting pair; nothing when none has come within `timeout`, or after end().
+  std::optional<LivePair> take(std::chrono::milliseconds timeout);
 
   std::string why_ended() const;  ///< empty while the driver works
   std::size_t dropped() const;    ///< pairs that nobody took in time

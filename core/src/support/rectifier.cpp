@@ -61,6 +61,20 @@ std::vector<float> metres_of_raw(const CameraModel& model) {
 
 }  // namespace
 
+CameraModel rectified(CameraModel sensor, const Camera& camera) {
+  sensor.width = camera.width;
+  sensor.height = camera.height;
+  sensor.fx = camera.fx;
+  sensor.fy = camera.fy;
+  sensor.cx = camera.cx;
+  sensor.cy = camera.cy;
+  sensor.depth_noise = camera.depth_noise;
+  sensor.surface_noise = camera.surface_noise;
+  sensor.distortion.clear();
+  sensor.crop.clear();
+  return sensor;
+}
+
 Rectifier::Rectifier(const CameraModel& model)
     : model_(checked(model)),
       crop_(crop_of(model)),

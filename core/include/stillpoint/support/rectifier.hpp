@@ -11,6 +11,9 @@
 
 namespace stillpoint {
 
+/// `sensor` for images that are rectified already: those of `camera`, without distortion or crop.
+STILLPOINT_EXPORT CameraModel rectified(CameraModel sensor, const Camera& camera);
+
 /// Undistorts, crops, and scales depth, with maps computed once. Images must have the size of the
 /// camera model. May be called from any thread.
 class STILLPOINT_EXPORT Rectifier {
