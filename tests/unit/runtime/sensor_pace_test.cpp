@@ -89,7 +89,8 @@ TEST_P(SensorPace, WhilePausedTheRecordingWaitsAndNothingIsDropped) {
     time->set(100);  // all are due
   };
   std::thread viewer([&] {
-    f.journal.wait_for("source 4");  // 1 is to be tracked next, 2 and 3 wait, there is no room for 4
+    f.journal.wait_for(
+        "source 4");  // 1 is to be tracked next, 2 and 3 wait, there is no room for 4
     pause.reset();
   });
   Engine(std::move(stages), runtime(GetParam(), Pace::kSensor), {}, std::move(clock)).run();

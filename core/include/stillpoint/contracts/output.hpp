@@ -65,9 +65,9 @@ struct RunSummary {
   const std::vector<StageTime>& times;  ///< what ended since the last report
   int dropped_frames = 0;               ///< by `pace: sensor`
   int loops_closed = 0;
-  int dropped_reports = 0;  ///< by outputs that were too slow, with `when_full: drop`
+  int dropped_reports = 0;    ///< by outputs that were too slow, with `when_full: drop`
   double wall_seconds = 0.0;  ///< without pauses
-  double cpu_seconds = 0.0;  ///< of the whole process during the run
+  double cpu_seconds = 0.0;   ///< of the whole process during the run
   double recorded_seconds = 0.0;
   long long seed = 0;
   std::string mode;                     ///< "inline" or "threaded"

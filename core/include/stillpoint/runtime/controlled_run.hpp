@@ -51,8 +51,8 @@ class ControlledRun final : public LiveRun, public std::enable_shared_from_this<
 
   mutable std::mutex mutex_;
   std::condition_variable_any changed_;
-  int pauses_ = 0;              // guarded by mutex_, like the next two
-  bool step_ = false;           // one frame may begin
+  int pauses_ = 0;     // guarded by mutex_, like the next two
+  bool step_ = false;  // one frame may begin
   double paused_seconds_ = 0.0;
 
   std::mutex reach_mutex_;      // held during calls

@@ -50,7 +50,7 @@ class FrameFeed {
   FramePtr previous_;  // the last one read
   std::size_t dropped_ = 0;
   std::optional<double> clock_ahead_;  // seconds from the recording's time to that of the clock
-  std::exception_ptr failure_;  // written before the queue is closed, read after
+  std::exception_ptr failure_;         // written before the queue is closed, read after
   BoundedQueue<FramePtr> queue_;
   std::jthread thread_;  // last: it uses all the others
 };
