@@ -1,6 +1,7 @@
 // The run's dense map, now and then.
 #pragma once
 
+#include <algorithm>
 #include <chrono>
 #include <memory>
 #include <stillpoint/sdk.hpp>

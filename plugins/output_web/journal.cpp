@@ -91,7 +91,7 @@ void Journal::set_steering(std::string state) {
 
 bool Journal::shows_voxels() const {
   const std::lock_guard lock(mutex_);
-  return !voxels_->empty();
+  return voxels_ != nullptr;
 }
 
 void Journal::set_voxels(VoxelsPtr voxels) {
@@ -198,7 +198,7 @@ Journal::Snapshot Journal::snapshot(Seen& seen, const Request& request) const {
   seen.clouds += now.clouds.size();
   if (seen.steering != steering_changes_) now.steering = steering_;
   seen.steering = steering_changes_;
-  if (request.voxels && seen.voxels != voxels_) now.voxels = voxels_;
+  if (request.voxels && voxels_ && seen.voxels != voxels_) now.voxels = voxels_;
   if (!seen.end) now.end = end_;
   seen.end = !end_.empty();
   return now;

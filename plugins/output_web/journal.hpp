@@ -72,7 +72,7 @@ class Journal {
   std::vector<LoopEntry> loops_;
   std::string steering_;
   std::size_t steering_changes_ = 0;
-  VoxelsPtr voxels_ = std::make_shared<const Voxels>();
+  VoxelsPtr voxels_;  // null: nobody has asked for them
   std::string end_;
 
   std::optional<std::uint32_t> picture_frame_;  // of the server's thread

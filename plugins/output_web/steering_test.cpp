@@ -1,7 +1,7 @@
 // Viewers that steer the run.
-#include <mutex>
 #include <nlohmann/json.hpp>
 
+#include "output_web/fake_run.hpp"
 #include "output_web/live_view_fixture.hpp"
 
 namespace stillpoint::output_web {
@@ -9,37 +9,6 @@ namespace {
 
 using ::testing::HasSubstr;
 using Json = nlohmann::json;
-
-/// Writes down what it is told.
-class FakeRun final : public LiveRun {
- public:
-  Pause pause() override {
-    write("pause");
-    return {this, [this](const void*) { write("go on"); }};
-  }
-  void step() override { write("step"); }
-  void stop() override { write("stop"); }
-  std::optional<std::vector<LabelledPoint>> dense_map() override { return std::nullopt; }
-  std::filesystem::path map_file() const override { return "/secret/folder/room.map"; }
-  void save_map() override {
-    write("save");
-    if (disk_is_full) throw Error(Fault::kUsage, "no room left");
-  }
-
-  std::vector<std::string> calls() const {
-    const std::lock_guard lock(mutex_);
-    return calls_;
-  }
-  bool disk_is_full = false;  // set before the run
-
- private:
-  void write(const std::string& call) {
-    const std::lock_guard lock(mutex_);
-    calls_.push_back(call);
-  }
-  mutable std::mutex mutex_;
-  std::vector<std::string> calls_;
-};
 
 class Steered : public LiveView {
  protected:

@@ -4,8 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <map>
-#include <optional>
 
+#include "output_web/fake_run.hpp"
 #include "output_web/live_view_fixture.hpp"
 
 namespace stillpoint::output_web {
@@ -75,23 +75,10 @@ TEST_F(VoxelChanges, ComeInPartsThatAddUp) {
   }
 }
 
-/// Has a dense map, unless it is busy.
-class MappedRun final : public LiveRun {
- public:
-  explicit MappedRun(std::optional<std::vector<LabelledPoint>> map) : map_(std::move(map)) {}
-  Pause pause() override { return {}; }
-  void step() override {}
-  void stop() override {}
-  std::optional<std::vector<LabelledPoint>> dense_map() override { return map_; }
-  std::filesystem::path map_file() const override { return {}; }
-  void save_map() override {}
-
- private:
-  const std::optional<std::vector<LabelledPoint>> map_;
-};
-
 TEST_F(LiveView, ShowsTheDenseMapToWhoAsksForIt) {
-  output->begin(std::make_shared<MappedRun>(std::vector{voxel(1, 4)}));
+  const auto run = std::make_shared<FakeRun>();
+  run->dense = {voxel(1, 4)};
+  output->begin(run);
   output->frame(report_of(0));
   TestViewer viewer(port(*output));
   auto records = viewer.asked(7);
@@ -105,7 +92,7 @@ TEST_F(LiveView, ShowsTheDenseMapToWhoAsksForIt) {
 }
 
 TEST_F(LiveView, ShowsTheRestWhileTheDenseMapIsBusy) {
-  output->begin(std::make_shared<MappedRun>(std::nullopt));
+  output->begin(std::make_shared<FakeRun>());
   output->frame(report_of(0));
   const auto records = TestViewer(port(*output)).asked(15);
   ASSERT_TRUE(records);

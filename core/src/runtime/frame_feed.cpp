@@ -109,9 +109,9 @@ void FrameFeed::deliver(FramePtr frame) {
     if (queue_.push_or_drop_oldest(std::move(frame))) ++dropped_;
     return;
   }
-  queue_.push(std::move(frame), stop_.token());
   clock_ahead_.reset();  // after a pause, the next frame is due at once, as the first one was
   if (!paused) clock_ahead_ = clock_.now() - time;
+  queue_.push(std::move(frame), stop_.token());
 }
 
 }  // namespace stillpoint
