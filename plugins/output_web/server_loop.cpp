@@ -93,7 +93,12 @@ bool ServerLoop::obey(Viewer& viewer, Command command) {
 }
 
 void ServerLoop::read_dense_map() {
-  if (VoxelsPtr voxels = dense_map_.read()) journal_.set_voxels(std::move(voxels));
+  try {
+    if (VoxelsPtr voxels = dense_map_.read()) journal_.set_voxels(std::move(voxels));
+  } catch (const std::exception& error) {  // of its plugin, whose run ends with it
+    warn(error.what());
+    dense_map_.begin(nullptr);
+  }
 }
 
 void ServerLoop::work() {
@@ -103,8 +108,8 @@ void ServerLoop::work() {
     try {
       context_.run();
       return;
-    } catch (const std::exception& error) {  // of one viewer, who is gone with it
-      warn(std::string("a viewer was dropped: ") + error.what());
+    } catch (const std::exception& error) {  // of one connection, which is gone with it
+      warn(std::string("a connection was dropped: ") + error.what());
     }
   }
 }

@@ -69,7 +69,12 @@ void Viewer::take_request() {
 
 void Viewer::send(const Request& request) {
   if (writing_ || closed_) return;
-  message_ = loop_.journal().news(seen_, request);
+  try {
+    message_ = loop_.journal().news(seen_, request);
+  } catch (const std::exception& error) {
+    loop_.warn(std::string("a viewer was dropped: ") + error.what());
+    return close(websocket::close_code::internal_error);
+  }
   if (message_.empty()) return;
   writing_ = true;
   asked_.reset();
