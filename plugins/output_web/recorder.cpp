@@ -9,7 +9,7 @@
 namespace stillpoint::output_web {
 namespace {
 
-constexpr std::uint32_t kImageStep = 3;  // frames
+constexpr std::size_t kImageStep = 3;  // frames
 
 }  // namespace
 
@@ -21,8 +21,9 @@ Recorder::Recorder(std::filesystem::path file, std::string_view page)
 }
 
 void Recorder::take(Journal& journal) {
-  write(journal.news(
-      seen_, {.image = taken_++ % kImageStep == 0, .map = true, .cloud = true, .voxels = true}));
+  const bool image = seen_.frames >= next_image_;
+  write(journal.news(seen_, {.image = image, .map = true, .cloud = true, .voxels = true}));
+  if (image && seen_.image) next_image_ = seen_.frames + kImageStep - 1;
 }
 
 void Recorder::finish(Journal& journal) {

@@ -1,7 +1,7 @@
 // A run as a page that shows it again.
 #pragma once
 
-#include <cstdint>
+#include <cstddef>
 #include <filesystem>
 #include <fstream>
 #include <stillpoint/sdk.hpp>
@@ -30,7 +30,7 @@ class Recorder {
   const std::filesystem::path file_;
   std::ofstream stream_;
   Seen seen_;
-  std::uint32_t taken_ = 0;
+  std::size_t next_image_ = 0;  // with so many frames
 };
 
 }  // namespace stillpoint::output_web

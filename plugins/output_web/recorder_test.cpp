@@ -39,11 +39,16 @@ TEST_F(Recording, IsThePageAndWhatAViewerGets) {
   Recorder recorder(folder / "live.html", "<page>");
   std::string expected = "<page>\n";
   Seen seen;
-  for (std::size_t i = 0; i < 2; ++i) {
-    journal.add(report_of(i));
+  const auto take = [&](bool image) {
     recorder.take(journal);
     expected += within_page(
-        journal.news(seen, {.image = i == 0, .map = true, .cloud = true, .voxels = true}));
+        journal.news(seen, {.image = image, .map = true, .cloud = true, .voxels = true}));
+  };
+  journal.set_steering("{}");
+  take(true);  // there is no image yet
+  for (std::size_t i = 0; i < 4; ++i) {
+    journal.add(report_of(i));
+    take(i % 3 == 0);
   }
   recorder.take(journal);  // nothing is new
   recorder.finish(journal);

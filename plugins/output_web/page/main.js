@@ -80,8 +80,8 @@ function say(text) { byId('connection').textContent = text; }
 function take(data, changed) {
   read(data, (name, content) => {
     if (name === 'hello') begin();
-    if (name === 'steering') steering.take(content);
-    else run.take(name, content);
+    if (name !== 'steering') run.take(name, content);
+    else if (live.socket) steering.take(content);  // a recording cannot be steered
     changed.add(name);
   });
 }
