@@ -76,7 +76,7 @@ class RunKeeper final : public Output {
 };
 
 TEST_P(SensorPace, WhilePausedTheRecordingWaitsAndNothingIsDropped) {
-  EngineFixture f(6);
+  EngineFixture f(5);
   auto clock = std::make_unique<ManualClock>();
   ManualClock* time = clock.get();
   const auto keeper = std::make_shared<RunKeeper>();
@@ -95,7 +95,7 @@ TEST_P(SensorPace, WhilePausedTheRecordingWaitsAndNothingIsDropped) {
   });
   Engine(std::move(stages), runtime(GetParam(), Pace::kSensor), {}, std::move(clock)).run();
   viewer.join();
-  EXPECT_EQ(f.journal.entries("track").size(), 6u);
+  EXPECT_EQ(f.journal.entries("track").size(), 5u);
   EXPECT_EQ(f.output->dropped, 0);
 }
 
