@@ -64,7 +64,7 @@ export class MapPanel {
       return object;
     };
     this.cloudGroup = new Group();
-    this.voxels = new VoxelLayer();
+    this.voxels = new VoxelLayer(this.eye.fov);
     this.world.add(this.cloudGroup, this.voxels.points);
     this.landmarks = new Points(new BufferGeometry(), new PointsMaterial({size: 1.6, sizeAttenuation: false}));
     this.doubtful = new Points(new BufferGeometry(), new PointsMaterial({size: 3, sizeAttenuation: false}));

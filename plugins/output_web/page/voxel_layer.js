@@ -3,9 +3,8 @@ import {BufferAttribute, BufferGeometry, Color, Points, PointsMaterial} from 'th
 
 import {surfaceColor} from './surface_colors.js';
 
-const SMALLEST = 1e-3;    // metres
-const ODD_SHADE = 0.86;   // of every other cell, as on a chessboard
-const SQUARE = 1.3;       // sides of a cell, so that oblique surfaces have no holes
+const SMALLEST = 1e-3;   // metres
+const ODD_SHADE = 0.86;  // of every other cell, as on a chessboard
 
 /** The size of the cells: the smallest distance between two different values. */
 function smallestGap(values) {
@@ -19,7 +18,9 @@ function smallestGap(values) {
 }
 
 export class VoxelLayer {
-  constructor() {
+  /** `fov`: of the view, in degrees. */
+  constructor(fov) {
+    this.sizeOfMetre = 1 / Math.tan(fov * Math.PI / 360);  // three.js takes sizes as if it were 90 degrees
     this.points = new Points(new BufferGeometry(), new PointsMaterial({vertexColors: true}));
     this.points.frustumCulled = false;
   }
@@ -39,6 +40,6 @@ export class VoxelLayer {
     this.points.geometry = new BufferGeometry();
     this.points.geometry.setAttribute('position', new BufferAttribute(positions, 3));
     this.points.geometry.setAttribute('color', new BufferAttribute(colors, 3));
-    this.points.material.size = SQUARE * cell;
+    this.points.material.size = this.sizeOfMetre * cell;
   }
 }
