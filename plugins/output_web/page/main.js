@@ -21,6 +21,7 @@ const map = mapPanel();
 const charts = new ChartPanel();
 let run = new Run();
 let chartsDrawn = -Infinity;
+let chartsDue = null;  // a timer
 let toastEnd = 0;
 const arrivals = [];  // {at, frames}, of the last seconds
 
@@ -90,12 +91,22 @@ async function draw(changed) {
   map.show(run, changed);
   showFigures();
   if (changed.has('loop')) toast(loopWords(run.loops.at(-1)));
-  if (performance.now() - chartsDrawn > BETWEEN_CHARTS || run.end) {
-    charts.show(run);
-    chartsDrawn = performance.now();
-  }
+  drawCharts();
   if (run.end) say(endWords(run.end));
   await image.show(run);
+}
+
+/** Now, or soon: the last state is drawn in any case. */
+function drawCharts() {
+  const rest = run.end ? 0 : BETWEEN_CHARTS - (performance.now() - chartsDrawn);
+  if (rest > 0) {
+    chartsDue ??= setTimeout(drawCharts, rest);
+    return;
+  }
+  clearTimeout(chartsDue);
+  chartsDue = null;
+  chartsDrawn = performance.now();
+  charts.show(run);
 }
 
 function begin() {
@@ -135,7 +146,8 @@ function showFigures() {
   state.className = `badge ${last.state}`;
   document.title = `${last.state === 'lost' ? 'LOST · ' : ''}${run.hello.run || 'Stillpoint'} · Stillpoint`;
   const figures = [
-    ['frames', run.seen], ['frames/s', framesPerSecond().toFixed(1)],
+    ['frames', run.seen],
+    ...live.socket || run.end ? [['frames/s', framesPerSecond().toFixed(1)]] : [],  // a recording has its own pace
     ['coverage', `${(100 * run.tracked / run.seen).toFixed(0)} %`], ['times lost', run.timesLost],
     ['dropped', run.dropped], ['key frames', run.keyframeCount], ['landmarks', run.landmarks.size],
     ['loops', run.loops.length]];
