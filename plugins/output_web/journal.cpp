@@ -1,10 +1,11 @@
 #include "output_web/journal.hpp"
 
 #include <algorithm>
-#include <limits>
 #include <nlohmann/json.hpp>
-#include <stillpoint/support/trajectory.hpp>
+#include <span>
+#include <utility>
 
+#include "output_web/json_text.hpp"
 #include "output_web/map_changes.hpp"
 #include "output_web/message_writer.hpp"
 #include "output_web/picture.hpp"
@@ -16,18 +17,11 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::size_t kTimesKept = 12'000;    // about 600 frames
 constexpr std::size_t kCloudsPerMessage = 8;  // 29 kB each for 640 × 480 px
-constexpr std::size_t kFirstFit = 10;         // frames
-constexpr double kFitGrowth = 1.05;           // of the frames, until the truth is fitted again
-constexpr double kNoShift = 1e-4;             // metres
-
-std::string text_of(const Json& json) {
-  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
-}
-
-std::uint16_t short_of(int value) {
-  return static_cast<std::uint16_t>(
-      std::clamp(value, 0, int{std::numeric_limits<std::uint16_t>::max()}));
-}
+constexpr std::size_t kCloudsKept = 2000;
+constexpr std::size_t kVoxelsPerMessage = 50'000;  // 16 bytes each
+constexpr std::size_t kFirstFit = 10;              // frames
+constexpr double kFitGrowth = 1.05;                // of the frames, until the truth is fitted again
+constexpr double kNoShift = 1e-4;                  // metres
 
 void write_text(Record kind, const std::string& text, MessageWriter& writer) {
   writer.begin(kind);
@@ -46,17 +40,16 @@ struct Journal::Snapshot {
   std::vector<TimeEntry> times;
   std::vector<std::shared_ptr<const std::string>> clouds;
   std::vector<LoopEntry> loops;
+  std::string steering;
+  VoxelsPtr voxels;  // null: nothing new
   std::string end;
   bool fit = false;
 
   bool empty() const {
-    return first_new == frames.size() && times.empty() && clouds.empty() && end.empty();
+    return first_new == frames.size() && times.empty() && clouds.empty() && steering.empty() &&
+           !voxels && end.empty();
   }
-  void write_stages(MessageWriter& writer) const;
-  void write_frames(MessageWriter& writer) const;
-  void write_times(MessageWriter& writer) const;
-  void write_loops(MessageWriter& writer) const;
-  void write_fit(MessageWriter& writer) const;
+  std::span<const FrameEntry> new_frames() const { return std::span(frames).subspan(first_new); }
 };
 
 void Journal::add(const FrameReport& report) {
@@ -83,7 +76,27 @@ void Journal::add(const FrameReport& report) {
   add_times(report.times);
   frames_.push_back(std::move(entry));
   if (cloud) clouds_.push_back(std::move(cloud));
+  if (clouds_.size() > kCloudsKept) {
+    clouds_.pop_front();
+    ++clouds_dropped_;
+  }
   latest_ = report;
+}
+
+void Journal::set_steering(std::string state) {
+  const std::lock_guard lock(mutex_);
+  steering_ = std::move(state);
+  ++steering_changes_;
+}
+
+bool Journal::shows_voxels() const {
+  const std::lock_guard lock(mutex_);
+  return voxels_ != nullptr;
+}
+
+void Journal::set_voxels(VoxelsPtr voxels) {
+  const std::lock_guard lock(mutex_);
+  voxels_ = std::move(voxels);
 }
 
 void Journal::add_times(const std::vector<StageTime>& times) {
@@ -121,6 +134,7 @@ void Journal::finish(const RunSummary& summary) {
                      {"dropped_frames", summary.dropped_frames},
                      {"loops_closed", summary.loops_closed},
                      {"wall_seconds", summary.wall_seconds}};
+  if (shows_voxels()) set_voxels(sorted_voxels(summary.dense_map()));
   const std::lock_guard lock(mutex_);
   add_times(summary.times);
   latest_.map = std::make_shared<const SparseMap>(summary.map);
@@ -136,20 +150,23 @@ std::string Journal::news(Seen& seen, const Request& request) {
     write_text(Record::kHello, hello(*now.latest.frame->camera), writer);
     seen.hello = true;
   }
-  now.write_stages(writer);
+  write_stages(now.stages, now.first_stage, writer);
   if (request.map && now.latest.map && now.latest.map != seen.map) {
     write_map_changes(*seen.map, *now.latest.map, writer);
     seen.map = now.latest.map;
   }
-  now.write_frames(writer);
-  now.write_times(writer);
+  write_frames(now.new_frames(), writer);
+  write_times(now.times, writer);
   for (const auto& cloud : now.clouds) writer.text(*cloud);
-  now.write_loops(writer);
-  if (now.fit) now.write_fit(writer);
+  if (now.voxels)
+    seen.voxels = write_voxel_changes(seen.voxels, now.voxels, kVoxelsPerMessage, writer);
+  write_loops(now.loops, writer);
+  if (now.fit && now.latest.map) write_fit(now.frames, *now.latest.map, writer);
   if (request.image && now.latest.frame && seen.image != now.latest.frame->index) {
     writer.text(picture(now.latest));
     seen.image = now.latest.frame->index;
   }
+  if (!now.steering.empty()) write_text(Record::kSteering, now.steering, writer);
   if (!now.end.empty()) write_text(Record::kEnd, now.end, writer);
   return writer.take();
 }
@@ -174,9 +191,14 @@ Journal::Snapshot Journal::snapshot(Seen& seen, const Request& request) const {
 
   now.loops.assign(loops_.begin() + static_cast<std::ptrdiff_t>(seen.loops), loops_.end());
   seen.loops = loops_.size();
-  for (; request.cloud && seen.clouds < clouds_.size() && now.clouds.size() < kCloudsPerMessage;
-       ++seen.clouds)
-    now.clouds.push_back(clouds_[seen.clouds]);
+  seen.clouds = std::max(seen.clouds, clouds_dropped_);
+  for (std::size_t i = seen.clouds - clouds_dropped_;
+       request.cloud && i < clouds_.size() && now.clouds.size() < kCloudsPerMessage; ++i)
+    now.clouds.push_back(clouds_[i]);
+  seen.clouds += now.clouds.size();
+  if (seen.steering != steering_changes_) now.steering = steering_;
+  seen.steering = steering_changes_;
+  if (request.voxels && voxels_ && seen.voxels != voxels_) now.voxels = voxels_;
   if (!seen.end) now.end = end_;
   seen.end = !end_.empty();
   return now;
@@ -206,76 +228,6 @@ const std::string& Journal::picture(const FrameReport& report) {
     picture_frame_ = report.frame->index;
   }
   return picture_;
-}
-
-void Journal::Snapshot::write_stages(MessageWriter& writer) const {
-  for (std::size_t i = 0; i < stages.size(); ++i) {
-    writer.begin(Record::kStages);
-    writer.number(static_cast<std::uint8_t>(first_stage + i));
-    writer.text(stages[i]);
-    writer.end();
-  }
-}
-
-void Journal::Snapshot::write_frames(MessageWriter& writer) const {
-  if (first_new == frames.size()) return;
-  writer.begin(Record::kFrames);
-  for (std::size_t i = first_new; i < frames.size(); ++i) {
-    const FrameEntry& frame = frames[i];
-    const int flags = (frame.keyframe ? 1 : 0) | (frame.pose.held_by_depth ? 2 : 0) |
-                      (frame.pose.poorly_constrained ? 4 : 0) | (frame.true_position ? 8 : 0);
-    writer.number(frame.pose.frame);
-    writer.number(frame.pose.time);
-    writer.number(static_cast<std::uint8_t>(frame.pose.state));
-    writer.number(static_cast<std::uint8_t>(flags));
-    writer.number(frame.pose.reference);
-    writer.pose(frame.pose.reference_from_camera);
-    writer.pose(frame.pose.world_from_camera);
-    for (const int count : {frame.features, frame.matches, frame.inliers})
-      writer.number(short_of(count));
-    writer.point(frame.true_position.value_or(Eigen::Vector3d::Zero()));
-  }
-  writer.end();
-}
-
-void Journal::Snapshot::write_times(MessageWriter& writer) const {
-  if (times.empty()) return;
-  writer.begin(Record::kTimes);
-  for (const TimeEntry& time : times) {
-    writer.number(time.frame);
-    writer.number(time.stage);
-    writer.number(time.wall_ms);
-  }
-  writer.end();
-}
-
-void Journal::Snapshot::write_loops(MessageWriter& writer) const {
-  for (const LoopEntry& loop : loops) {
-    writer.begin(Record::kLoops);
-    writer.number(loop.frame);
-    writer.number(loop.moved);
-    writer.number(loop.largest_shift_m);
-    writer.end();
-  }
-}
-
-void Journal::Snapshot::write_fit(MessageWriter& writer) const {
-  if (!latest.map) return;
-  std::vector<Eigen::Vector3d> truth, estimate;
-  for (const FrameEntry& frame : frames) {
-    if (!frame.true_position) continue;
-    const auto world = world_from_camera(*latest.map, frame.pose);
-    if (!world) continue;
-    truth.push_back(*frame.true_position);
-    estimate.emplace_back(world->translation());
-  }
-  const auto fitted = fit_truth(truth, estimate);
-  if (!fitted) return;
-  writer.begin(Record::kTruth);
-  writer.pose(fitted->world_from_truth);
-  writer.number(static_cast<float>(fitted->rmse_m));
-  writer.number(static_cast<std::uint32_t>(fitted->pairs));
-  writer.end();
 }
 
 }  // namespace stillpoint::output_web

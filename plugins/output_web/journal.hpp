@@ -11,8 +11,10 @@
 #include <string>
 #include <vector>
 
+#include "output_web/journal_records.hpp"
 #include "output_web/request.hpp"
 #include "output_web/truth.hpp"
+#include "output_web/voxels.hpp"
 
 namespace stillpoint::output_web {
 
@@ -20,10 +22,11 @@ namespace stillpoint::output_web {
 struct Seen {
   bool hello = false;
   bool end = false;
-  std::size_t stages = 0, frames = 0, times = 0, clouds = 0, loops = 0;
+  std::size_t stages = 0, frames = 0, times = 0, clouds = 0, loops = 0, steering = 0;
   std::size_t fitted_frames = 0;  ///< that the last fit of the truth was made of
   std::optional<std::uint32_t> image;
   std::shared_ptr<const SparseMap> map = std::make_shared<const SparseMap>();
+  VoxelsPtr voxels = std::make_shared<const Voxels>();
 };
 
 /// Written by the pipeline's threads, who wait for nothing but a copy of pointers, and read by the
@@ -39,27 +42,15 @@ class Journal {
 
   void add(const FrameReport& report);
   void finish(const RunSummary& summary);
+  /// What Steering::state() is now.
+  void set_steering(std::string state);
+  void set_voxels(VoxelsPtr voxels);
 
   /// A message with all that is new to a viewer, as far as it asks for that; empty when nothing is.
   std::string news(Seen& seen, const Request& request);
 
  private:
-  struct FrameEntry {
-    TrackedPose pose;
-    int features = 0, matches = 0, inliers = 0;
-    bool keyframe = false;
-    std::optional<Eigen::Vector3d> true_position;
-  };
-  struct TimeEntry {
-    std::uint32_t frame = 0;
-    std::uint8_t stage = 0;  // index into stages_
-    float wall_ms = 0;
-  };
-  struct LoopEntry {
-    std::uint32_t frame = 0;
-    std::uint32_t moved = 0;    // key frames
-    float largest_shift_m = 0;  // of them
-  };
+  bool shows_voxels() const;  // somebody has asked for them
   /// A copy of what is shared, to be written without a lock.
   struct Snapshot;
 
@@ -76,8 +67,12 @@ class Journal {
   std::vector<std::string> stages_;
   std::deque<TimeEntry> times_;
   std::size_t times_dropped_ = 0;
-  std::vector<std::shared_ptr<const std::string>> clouds_;
+  std::deque<std::shared_ptr<const std::string>> clouds_;
+  std::size_t clouds_dropped_ = 0;
   std::vector<LoopEntry> loops_;
+  std::string steering_;
+  std::size_t steering_changes_ = 0;
+  VoxelsPtr voxels_;  // null: nobody has asked for them
   std::string end_;
 
   std::optional<std::uint32_t> picture_frame_;  // of the server's thread

@@ -28,7 +28,10 @@ enum class Record : std::uint8_t {
   kCloud = 11,
   kLoops = 12,
   kTruth = 13,
-  kEnd = 14
+  kEnd = 14,
+  kSteering = 15,
+  kVoxels = 16,
+  kVoxelsRemoved = 17
 };
 
 /// Appends to a string of bytes.

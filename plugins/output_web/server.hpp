@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <functional>
 #include <memory>
 #include <stillpoint/sdk.hpp>
@@ -17,8 +18,10 @@ struct ServerSetup {
   std::string address = "127.0.0.1";
   std::uint16_t port = 0;  ///< 0: any that is free
   int viewers = 8;         ///< at once
+  bool control = true;     ///< viewers may make the run do something
   Access access;
-  std::string_view page;  ///< HTML; outlives the server
+  std::string_view page;         ///< HTML; outlives the server
+  std::filesystem::path record;  ///< a file that shows the run again; empty: none
   std::function<void(LogLevel, std::string_view)> log;
 };
 
@@ -26,7 +29,7 @@ struct ServerSetup {
 /// nothing waits for anybody. All requests are small and limited, and so is the time for them.
 class Server {
  public:
-  /// Throws Error(kUsage) when the address or the port cannot be used.
+  /// Throws Error(kUsage) when the address, the port or the file cannot be used.
   Server(ServerSetup setup, Journal& journal);
   /// Sends what is new and says good-bye, for half a second at most.
   ~Server();
@@ -34,12 +37,13 @@ class Server {
   Server& operator=(const Server&) = delete;
 
   std::uint16_t port() const;
-  /// The journal has something new. From any thread; does not wait.
+  /// The run that viewers may steer. From any thread, like notify(); neither waits.
+  void begin(std::shared_ptr<LiveRun> run);
+  /// The journal has something new.
   void notify();
 
  private:
-  class Loop;
-  std::unique_ptr<Loop> loop_;
+  std::unique_ptr<class ServerLoop> loop_;
 };
 
 }  // namespace stillpoint::output_web

@@ -1,5 +1,5 @@
 """test_browser.py CHROMIUM URL CONDITION [PICTURE]: opens the page, waits until the JavaScript expression holds, and
-prints the document; errors of its scripts go to standard error. With PICTURE, a PNG of it, of 1366 x 768 px.
+prints the document; errors of its scripts go to standard error. With PICTURE, a PNG of it, of 1280 x 800 px.
 
 Speaks the DevTools protocol over a WebSocket: JSON in text frames."""
 
@@ -72,7 +72,7 @@ def look_at(browser, url, condition, picture):
     page = DevTools(port, f"/devtools/page/{target}")
     page.call("Runtime.enable")
     page.call("Page.enable")
-    page.call("Emulation.setDeviceMetricsOverride", width=1366, height=768, deviceScaleFactor=1, mobile=False)
+    page.call("Emulation.setDeviceMetricsOverride", width=1280, height=800, deviceScaleFactor=1, mobile=False)
     page.call("Page.navigate", url=url)
     page.wait_for("method", "Page.loadEventFired")
     seen = page.call("Runtime.evaluate", expression=WAIT.replace("CONDITION", condition), awaitPromise=True)

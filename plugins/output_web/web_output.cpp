@@ -37,8 +37,10 @@ ServerSetup setup_of(const WebOutput::Options& options, const StageContext& cont
   return {.address = options.address,
           .port = static_cast<std::uint16_t>(options.port),
           .viewers = options.viewers,
+          .control = options.control,
           .access = Access(options.address, token),
           .page = page(),
+          .record = options.record.empty() ? "" : context.output_directory / options.record,
           .log = context.log};
 }
 
@@ -55,6 +57,8 @@ WebOutput::WebOutput(const Options& options, const StageContext& context, const 
       url_(url_of(options.address, server_.port(), token)) {
   context.log(LogLevel::kInfo, "live view at " + url_);
 }
+
+void WebOutput::begin(const std::shared_ptr<LiveRun>& run) { server_.begin(run); }
 
 void WebOutput::frame(const FrameReport& report) {
   journal_.add(report);

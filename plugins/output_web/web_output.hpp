@@ -16,6 +16,8 @@ class WebOutput final : public Output {
     std::string address = "127.0.0.1";
     std::string token;
     int viewers = 8;
+    bool control = true;
+    std::string record;
 
     void visit(OptionVisitor& v) {
       v("port", port, {.min = 0, .max = 65535, .help = "of the page; 0 takes any that is free"});
@@ -27,12 +29,17 @@ class WebOutput final : public Output {
              "that viewers must have in the page's address; empty: none for 127.0.0.1, a random "
              "one otherwise"});
       v("viewers", viewers, {.min = 1, .max = 32, .help = "at once"});
+      v("control", control, {.help = "viewers may pause and end the run and have its map saved"});
+      v("record", record,
+        {.help = "name of a page in the run folder that shows the run again, such as live.html; "
+                 "empty: none"});
     }
   };
-  /// Throws Error(kUsage) when address or port cannot be used, or the token has other characters
-  /// than letters, digits, '-' and '_'.
+  /// Throws Error(kUsage) when address, port or file cannot be used, or the token has other
+  /// characters than letters, digits, '-' and '_'.
   WebOutput(const Options& options, const StageContext& context);
 
+  void begin(const std::shared_ptr<LiveRun>& run) override;
   void frame(const FrameReport& report) override;
   void finish(const RunSummary& summary) override;
 

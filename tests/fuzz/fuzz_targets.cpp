@@ -363,7 +363,7 @@ FuzzTarget bag_message() {
 }
 
 FuzzTarget live_request() {
-  return {.seeds = {{output_web::kProtocol, 1, 7}},
+  return {.seeds = {{output_web::kProtocol, 1, 15}, {output_web::kProtocol, 2, 5}},
           .parse = [](const fs::path& file) { output_web::parse_request(bytes_of(file)); }};
 }
 

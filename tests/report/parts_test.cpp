@@ -103,15 +103,6 @@ TEST(Thinning, KeepsPeaks) {
   EXPECT_EQ(thinned(3, 10, [](std::size_t) { return 0; }).size(), 3u);
 }
 
-// RFC 4648, section 10.
-TEST(Packing, Base64IsThatOfTheStandard) {
-  EXPECT_EQ(base64(""), "");
-  EXPECT_EQ(base64("f"), "Zg==");
-  EXPECT_EQ(base64("fo"), "Zm8=");
-  EXPECT_EQ(base64("foobar"), "Zm9vYmFy");
-  EXPECT_EQ(base64("\xff\xfe"), "//4=");
-}
-
 TEST(Packing, WhatIsPackedIsUnpackedAgain) {
   std::string text;
   for (int i = 0; i < 10'000; ++i) text += std::to_string(i * i);

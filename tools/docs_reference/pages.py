@@ -22,7 +22,7 @@ CONTRACTS = ["contracts/frame.hpp", "contracts/camera.hpp", "pose_math.hpp", "er
              "contracts/sparse_map.hpp",
              "contracts/local_mapper.hpp", "contracts/map_correction.hpp", "contracts/loop_closer.hpp",
              "contracts/dense_keyframe.hpp", "contracts/labelled_point.hpp", "contracts/map_backend.hpp",
-             "contracts/output.hpp", "options.hpp", "plugin.hpp"]
+             "contracts/live_run.hpp", "contracts/output.hpp", "options.hpp", "plugin.hpp"]
 ENGINE = ["engine/engine.hpp", "engine/pipeline_config.hpp", "engine/stages.hpp", "engine/make_stages.hpp",
           "engine/map_file.hpp", "engine/registry.hpp", "engine/config_lookup.hpp",
           "engine/install_layout.hpp", "engine/pace_clock.hpp"]

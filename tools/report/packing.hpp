@@ -6,9 +6,6 @@
 
 namespace stillpoint::report {
 
-/// RFC 4648, with padding.
-std::string base64(std::string_view bytes);
-
 /// gzip (RFC 1952), which browsers unpack by DecompressionStream. The same bytes give the same.
 std::string gzipped(std::string_view bytes);
 

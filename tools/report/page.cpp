@@ -9,6 +9,7 @@
 #include "report/packing.hpp"
 #include "report/page_json.hpp"
 #include "stillpoint/error.hpp"
+#include "stillpoint/support/base64.hpp"
 #include "study/text_file.hpp"
 
 namespace stillpoint::report {

@@ -54,8 +54,9 @@ auto in_source(const Stages& stages, Function function) {
                   [&] { return std::invoke(function, *stages.source.object); });
 }
 
-// Runs, and prints the table also when a stage has failed: what was computed is saved.
-void run_and_print(Stages stages, const PipelineConfig& config, const RunFolder& folder, bool quiet,
+// Runs, and prints the table also when a stage has failed: what was computed is saved. Whether the
+// run came to its end.
+bool run_and_print(Stages stages, const PipelineConfig& config, const RunFolder& folder, bool quiet,
                    std::stop_token stop) {
   const fs::path ground_truth = in_source(stages, &Source::ground_truth);
   const auto table = std::make_shared<RunTable>();
@@ -85,6 +86,7 @@ void run_and_print(Stages stages, const PipelineConfig& config, const RunFolder&
         LogLevel::kWarning,
         "no frame was tracked: the trajectory is empty; 'stillpoint inspect' says whether the "
         "camera and the depth fit the images");
+  return table->complete();
 }
 
 /// What is allowed, but seldom meant.
@@ -133,16 +135,18 @@ void run(const RunArguments& arguments) {
         {{std::make_shared<Progress>(console, in_source(stages, &Source::size)), "progress"}});
   stages.known_map = std::move(known_map);
   stages.localise_only = arguments.localise_only;
+  stages.map_file = arguments.save_map.empty() ? folder.path() / "sparse.map" : arguments.save_map;
   if (saver) stages.outputs.push_back({{std::move(saver), "map saver"}});
+  bool complete = false;
   int signal = 0;
   {
     const Interrupt interrupt([&console](const std::string& line) { console.line(line); });
-    run_and_print(std::move(stages), config, folder, arguments.quiet, interrupt.token());
+    complete = run_and_print(std::move(stages), config, folder, arguments.quiet, interrupt.token());
     signal = Interrupt::signal();
   }
-  if (signal == 0) return folder.log(LogLevel::kInfo, "done");
+  if (complete && signal == 0) return folder.log(LogLevel::kInfo, "done");
   folder.log(LogLevel::kWarning, "stopped; what was computed until then is saved");
-  std::raise(signal);  // so that a calling script sees that it was interrupted
+  if (signal != 0) std::raise(signal);  // so that a calling script sees that it was interrupted
 }
 
 }  // namespace

@@ -20,7 +20,7 @@ namespace fs = std::filesystem;
 
 constexpr const char* kResults[] = {"pipeline.yaml", "log.txt",     "trajectory.txt",
                                     "keyframes.txt", "timings.csv", "frames.csv",
-                                    "summary.json",  "run.mcap"};
+                                    "summary.json",  "run.mcap",    "sparse.map"};
 constexpr const char* kMaps[] = {"map.ot", "map.bt", "map.ply", "map.pgm", "map.yaml", "cloud.ply"};
 
 /// "000042.jpg"

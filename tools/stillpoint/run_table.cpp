@@ -25,6 +25,7 @@ void RunTable::finish(const RunSummary& summary) {
   source_ = summary.source;
   keyframes_ = summary.map.keyframe_count();
   landmarks_ = summary.map.landmark_count();
+  complete_ = summary.complete;
   dropped_ = summary.dropped_frames;
   loops_ = summary.loops_closed;
   unlabelled_ = summary.unlabelled_frames;

@@ -16,6 +16,8 @@ class RunTable final : public Output {
   void finish(const RunSummary& summary) override;
 
   void print(std::ostream& stream) const;
+  /// False when the run was stopped or failed.
+  bool complete() const { return complete_; }
   /// There were frames, and none of them has a pose.
   bool nothing_tracked() const { return tracking_.frames > 0 && tracking_.tracked == 0; }
 
@@ -28,6 +30,7 @@ class RunTable final : public Output {
   SourceReport source_;
   std::size_t keyframes_ = 0;
   std::size_t landmarks_ = 0;
+  bool complete_ = true;
   int dropped_ = 0;
   int loops_ = 0;
   int unlabelled_ = 0;

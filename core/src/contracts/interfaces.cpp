@@ -20,6 +20,7 @@ std::optional<MapCorrection> LoopCloser::adjust(const SparseMap&, std::stop_toke
 }
 MapBackend::~MapBackend() = default;
 std::vector<LabelledPoint> MapBackend::occupied() const { return {}; }
+LiveRun::~LiveRun() = default;
 Output::~Output() = default;
 
 const char* name_of(TrackState state) {

@@ -41,10 +41,11 @@ void SteadyClock::wait_until(double time, std::stop_token stop) {
 }
 
 FrameFeed::FrameFeed(Stage<Source> source, const RuntimeOptions& options, PaceClock& clock,
-                     StopSignal& stop, TimeLog& times)
+                     ControlledRun& run, StopSignal& stop, TimeLog& times)
     : pace_(options.pace),
       thorough_(options.validates_fully()),
       clock_(clock),
+      run_(run),
       stop_(stop),
       times_(times),
       source_(std::move(source), "source", times),
@@ -63,10 +64,16 @@ void FrameFeed::end() {
 }
 
 FramePtr FrameFeed::next() {
-  if (!thread_.joinable()) return stop_.requested() ? nullptr : read();
-  if (auto frame = queue_.pop(stop_.token())) return *std::move(frame);
-  if (!stop_.requested() && failure_) std::rethrow_exception(failure_);
-  return nullptr;
+  FramePtr frame;
+  if (!thread_.joinable()) {
+    if (!stop_.requested()) frame = read();
+  } else if (auto popped = queue_.pop(stop_.token())) {
+    frame = *std::move(popped);
+  } else if (!stop_.requested() && failure_) {
+    std::rethrow_exception(failure_);
+  }
+  if (frame) run_.wait_while_paused(stop_.token());  // at the end there is nothing to wait for
+  return stop_.requested() ? nullptr : frame;
 }
 
 FramePtr FrameFeed::read() {
@@ -95,9 +102,16 @@ void FrameFeed::deliver(FramePtr frame) {
     queue_.push(std::move(frame), stop_.token());
     return;
   }
-  if (frame->index == 0) clock_ahead_ = clock_.now() - frame->time;
-  clock_.wait_until(frame->time + clock_ahead_, stop_.token());
-  if (queue_.push_or_drop_oldest(std::move(frame))) ++dropped_;
+  const double time = frame->time;
+  if (clock_ahead_) clock_.wait_until(time + *clock_ahead_, stop_.token());
+  const bool paused = run_.paused();
+  if (clock_ahead_ && !paused) {
+    if (queue_.push_or_drop_oldest(std::move(frame))) ++dropped_;
+    return;
+  }
+  clock_ahead_.reset();  // after a pause, the next frame is due at once, as the first one was
+  if (!paused) clock_ahead_ = clock_.now() - time;
+  queue_.push(std::move(frame), stop_.token());
 }
 
 }  // namespace stillpoint

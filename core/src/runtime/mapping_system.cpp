@@ -117,6 +117,12 @@ std::vector<LabelledPoint> MappingSystem::dense_points() {
   return map_backend_.call_unmeasured({}, &MapBackend::occupied);
 }
 
+std::optional<std::vector<LabelledPoint>> MappingSystem::dense_points_if_idle() {
+  const std::unique_lock lock(dense_mutex_, std::try_to_lock);
+  if (!lock || !map_backend_.present()) return std::nullopt;
+  return map_backend_.call_unmeasured({}, &MapBackend::occupied);
+}
+
 bool MappingSystem::save(const std::filesystem::path& directory) {
   if (!map_backend_.present()) return false;
   const std::lock_guard lock(dense_mutex_);

@@ -21,6 +21,10 @@ OutputStage::OutputStage(std::vector<Stage<Output>> outputs, WhenFull when_full,
   if (mode == Mode::kThreaded && !outputs_.empty()) thread_ = std::jthread([this] { work(); });
 }
 
+void OutputStage::begin(const std::shared_ptr<LiveRun>& run) {
+  for (StageCaller<Output>& output : outputs_) output.call_unmeasured({}, &Output::begin, run);
+}
+
 void OutputStage::frame(FrameReportPtr report) {
   if (!thread_.joinable())
     write(*report);

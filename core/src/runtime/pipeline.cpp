@@ -86,6 +86,10 @@ Pipeline::Pipeline(Stages stages, const RuntimeOptions& runtime,
       source_(std::move(stages.source)),
       decision_(std::move(stages.decision), "decision", times_),
       tracker_(std::move(stages.tracker), "tracking", times_),
+      controlled_run_(std::make_shared<ControlledRun>(
+          ControlledRun::Reach{.map = [this] { return mapping_.snapshot(); },
+                               .dense_map = [this] { return mapping_.dense_points_if_idle(); }},
+          std::move(stages.map_file))),
       segmentation_(std::move(stages.segmenter), std::move(stages.propagator), segmentation,
                     runtime.mode, stop_, times_),
       moving_check_(std::move(stages.moving_checker), runtime, times_),
@@ -137,9 +141,12 @@ FrameReportPtr Pipeline::push(Frame frame) {
 void Pipeline::run(std::stop_token stop) {
   if (finished_ || feed_ || pushed_)
     throw Error(Fault::kUsage, "run() can be called once, and not after process()");
-  const std::stop_callback forward(std::move(stop), [this] { stop_.request(); });
-  feed_.emplace(std::move(source_), options_, *clock_, stop_, times_);
+  const auto request_stop = [this] { stop_.request(); };
+  const std::stop_callback by_caller(std::move(stop), request_stop);
+  const std::stop_callback by_output(controlled_run_->stop_token(), request_stop);
   keep_failure_of([this] {
+    for (OutputStage& output : outputs_) output.begin(controlled_run_);
+    feed_.emplace(std::move(source_), options_, *clock_, *controlled_run_, stop_, times_);
     while (const FramePtr frame = feed_->next()) process(frame);
   });
   finish();
@@ -149,7 +156,8 @@ void Pipeline::finish() {
   if (finished_) throw Error(Fault::kUsage, "the run is finished already");
   finished_ = true;
   end_threads();
-  wall_seconds_ = SteadyClock().now() - wall_start_;
+  controlled_run_->end();
+  wall_seconds_ = SteadyClock().now() - wall_start_ - controlled_run_->paused_seconds();
   cpu_seconds_ = process_cpu_seconds() - cpu_start_;
   finish_outputs();
   throw_failure();

@@ -47,10 +47,12 @@ export class ImagePanel {
 
   async show(run) {
     const picture = run.picture;
-    if (!picture || picture === this.picture) return;
+    if (!picture || picture === this.wanted) return;
+    this.wanted = picture;
     this.count(picture, run.hello.classes);
     document.getElementById('frame-number').textContent = `frame ${picture.frame}`;
     const bitmap = await createImageBitmap(new Blob([picture.jpeg], {type: 'image/jpeg'}));
+    if (picture !== this.wanted) return bitmap.close();  // a later one has come meanwhile
     this.bitmap?.close();
     [this.picture, this.bitmap, this.classes] = [picture, bitmap, run.hello.classes];
     this.mask = picture.mask && tinted(picture.mask);

@@ -1,11 +1,14 @@
-// The page: asks for what is new, shows it, and asks again when that is done. A hidden page does not ask.
+// The page: asks for what is new, shows it, and asks again when that is done. A hidden page does not ask. With
+// messages of a recording within, it shows these instead.
 import './style.css';
 
 import {ChartPanel} from './chart_panel.js';
 import {ImagePanel} from './image_panel.js';
 import {MapPanel} from './map_panel.js';
-import {read, request} from './protocol.js';
+import {order, read, request} from './protocol.js';
+import {recordedMessages, Replay} from './replay.js';
 import {Run} from './run.js';
+import {SteeringPanel} from './steering_panel.js';
 
 const BETWEEN_REQUESTS = 66;  // ms
 const BETWEEN_CHARTS = 500;   // ms
@@ -18,6 +21,7 @@ const map = mapPanel();
 const charts = new ChartPanel();
 let run = new Run();
 let chartsDrawn = -Infinity;
+let chartsDue = null;  // a timer
 let toastEnd = 0;
 const arrivals = [];  // {at, frames}, of the last seconds
 
@@ -27,29 +31,43 @@ function mapPanel() {
     return new MapPanel();
   } catch (error) {
     byId('map').textContent = 'This browser draws no 3-D (WebGL), so there is no map.';
-    return {show() {}, reset() {}};
+    return {show() {}, reset() {}, chooseSurfaces() {}, wanted: {}};
   }
 }
 
+const live = {socket: null};
+const steering = new SteeringPanel((command) => live.socket?.send(order(command)), toast);
+
 function connect() {
   const scheme = location.protocol === 'https:' ? 'wss:' : 'ws:';
-  const socket = new WebSocket(`${scheme}//${location.host}/live${location.search}`);
+  const socket = live.socket = new WebSocket(`${scheme}//${location.host}/live${location.search}`);
   socket.binaryType = 'arraybuffer';
-  const ask = () => socket.readyState === WebSocket.OPEN && socket.send(request({image: true, map: true, cloud: true}));
+  const ask = () => socket.readyState === WebSocket.OPEN && socket.send(request({image: true, map: true, ...map.wanted}));
   socket.onopen = () => {
     say('live');
     ask();
   };
   socket.onmessage = async ({data}) => {
     const begin = performance.now();
-    await take(data);
+    const changed = new Set();
+    take(data, changed);
+    await draw(changed);
     const rest = BETWEEN_REQUESTS - (performance.now() - begin);
     setTimeout(() => requestAnimationFrame(ask), Math.max(0, rest));
   };
   socket.onclose = () => {
+    steering.reset();
     say(run.end ? endWords(run.end) : 'no connection, trying again');
     setTimeout(connect, RETRY);
   };
+}
+
+/** Shows a recording that is within the page. */
+function replay(messages) {
+  byId('surfaces').value = 'voxels';
+  map.chooseSurfaces();
+  say('recording');
+  new Replay(messages, {take, draw, clock: () => run.frames.at(-1)?.time ?? 0});
 }
 
 function endWords(end) {
@@ -59,22 +77,36 @@ function endWords(end) {
 
 function say(text) { byId('connection').textContent = text; }
 
-async function take(data) {
-  const changed = new Set();
+/** Adds to what is known; names of the records go into `changed`. */
+function take(data, changed) {
   read(data, (name, content) => {
     if (name === 'hello') begin();
-    run.take(name, content);
+    if (name !== 'steering') run.take(name, content);
+    else if (live.socket) steering.take(content);  // a recording cannot be steered
     changed.add(name);
   });
+}
+
+async function draw(changed) {
   map.show(run, changed);
   showFigures();
-  if (changed.has('loop')) toast(run.loops.at(-1));
-  if (performance.now() - chartsDrawn > BETWEEN_CHARTS || run.end) {
-    charts.show(run);
-    chartsDrawn = performance.now();
-  }
+  if (changed.has('loop')) toast(loopWords(run.loops.at(-1)));
+  drawCharts();
   if (run.end) say(endWords(run.end));
   await image.show(run);
+}
+
+/** Now, or soon: the last state is drawn in any case. */
+function drawCharts() {
+  const rest = run.end ? 0 : BETWEEN_CHARTS - (performance.now() - chartsDrawn);
+  if (rest > 0) {
+    chartsDue ??= setTimeout(drawCharts, rest);
+    return;
+  }
+  clearTimeout(chartsDue);
+  chartsDue = null;
+  chartsDrawn = performance.now();
+  charts.show(run);
 }
 
 function begin() {
@@ -85,9 +117,12 @@ function begin() {
   chartsDrawn = -Infinity;
 }
 
-function toast({frame, moved, shift}) {
-  byId('toast').textContent =
-    `Loop closed at frame ${frame}: ${moved} key frames moved, by up to ${(100 * shift).toFixed(1)} cm`;
+function loopWords({frame, moved, shift}) {
+  return `Loop closed at frame ${frame}: ${moved} key frames moved, by up to ${(100 * shift).toFixed(1)} cm`;
+}
+
+function toast(text) {
+  byId('toast').textContent = text;
   byId('toast').hidden = false;
   clearTimeout(toastEnd);
   toastEnd = setTimeout(() => { byId('toast').hidden = true; }, TOAST);
@@ -111,7 +146,8 @@ function showFigures() {
   state.className = `badge ${last.state}`;
   document.title = `${last.state === 'lost' ? 'LOST · ' : ''}${run.hello.run || 'Stillpoint'} · Stillpoint`;
   const figures = [
-    ['frames', run.seen], ['frames/s', framesPerSecond().toFixed(1)],
+    ['frames', run.seen],
+    ...live.socket || run.end ? [['frames/s', framesPerSecond().toFixed(1)]] : [],  // a recording has its own pace
     ['coverage', `${(100 * run.tracked / run.seen).toFixed(0)} %`], ['times lost', run.timesLost],
     ['dropped', run.dropped], ['key frames', run.keyframeCount], ['landmarks', run.landmarks.size],
     ['loops', run.loops.length]];
@@ -126,4 +162,9 @@ function showFigures() {
   }));
 }
 
-connect();
+// The messages of a recording come after this script.
+document.addEventListener('DOMContentLoaded', () => {
+  const messages = recordedMessages();
+  if (messages.length > 0) replay(messages);
+  else connect();
+});

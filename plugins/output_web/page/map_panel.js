@@ -1,4 +1,4 @@
-// The map in 3-D: camera, trajectory, truth, key frames with their graph, landmarks and surfaces.
+// The map in 3-D: camera, trajectory, truth, key frames with their graph, landmarks, surfaces and dense map.
 import {
   BufferAttribute, BufferGeometry, Color, Group, LineBasicMaterial, LineSegments, PerspectiveCamera, Points,
   PointsMaterial, Scene, Vector3, WebGLRenderer,
@@ -6,6 +6,8 @@ import {
 import {OrbitControls} from 'three/addons/controls/OrbitControls.js';
 
 import {moved} from './run.js';
+import {surfaceColor} from './surface_colors.js';
+import {VoxelLayer} from './voxel_layer.js';
 
 const STRONG = 60;       // shared landmarks of an edge that is drawn, unless it closes a loop
 const FAR_APART = 15;    // key frames between the ends of an edge that closes a loop
@@ -31,9 +33,6 @@ function setPositions(object, positions) {
   object.geometry.setAttribute('position', new BufferAttribute(positions, 3));
   object.frustumCulled = false;
 }
-
-/** Green to yellow to violet, from low to high. */
-function heightColor(share, color) { return color.setHSL(0.75 - 0.6 * Math.min(1, Math.max(0, share)), 0.65, 0.5); }
 
 export class MapPanel {
   constructor() {
@@ -65,7 +64,8 @@ export class MapPanel {
       return object;
     };
     this.cloudGroup = new Group();
-    this.world.add(this.cloudGroup);
+    this.voxels = new VoxelLayer(this.eye.fov);
+    this.world.add(this.cloudGroup, this.voxels.points);
     this.landmarks = new Points(new BufferGeometry(), new PointsMaterial({size: 1.6, sizeAttenuation: false}));
     this.doubtful = new Points(new BufferGeometry(), new PointsMaterial({size: 3, sizeAttenuation: false}));
     this.world.add(this.landmarks, this.doubtful);
@@ -85,17 +85,31 @@ export class MapPanel {
         this.paint();
       });
     };
-    shows('show-clouds', this.cloudGroup);
     shows('show-landmarks', this.landmarks, this.doubtful);
     shows('show-graph', this.graph, this.keyframes, this.loop);
     shows('show-truth', this.truth);
     this.follow = document.getElementById('follow');
-    this.cloudColor = document.getElementById('cloud-color');
-    this.cloudColor.addEventListener('change', () => {
-      for (const cloud of this.clouds.values()) this.colorCloud(cloud);
-      this.paint();
-    });
+    this.surfaces = document.getElementById('surfaces');
+    this.surfaces.addEventListener('change', () => this.chooseSurfaces());
+    this.surfaceColor = document.getElementById('surface-color');
+    this.surfaceColor.addEventListener('change', () => this.colorSurfaces());
     document.getElementById('from-above').addEventListener('click', () => this.lookFromAbove());
+  }
+
+  /** What of them is shown: nothing else needs to be asked for. */
+  get wanted() { return {cloud: this.surfaces.value === 'clouds', voxels: this.surfaces.value === 'voxels'}; }
+
+  chooseSurfaces() {
+    this.cloudGroup.visible = this.wanted.cloud;
+    this.voxels.points.visible = this.wanted.voxels;
+    if (this.wanted.voxels && this.run) this.voxels.paint(this.run, this.surfaceColor.value);
+    this.paint();
+  }
+
+  colorSurfaces() {
+    for (const cloud of this.clouds.values()) this.colorCloud(cloud);
+    if (this.wanted.voxels && this.run) this.voxels.paint(this.run, this.surfaceColor.value);
+    this.paint();
   }
 
   recolor(colors) {
@@ -119,6 +133,8 @@ export class MapPanel {
     this.run = run;
     document.getElementById('truth-choice').hidden = !run.fit;
     if (changed.has('cloud')) this.addClouds();
+    if (this.wanted.voxels && (changed.has('voxels') || changed.has('voxelsRemoved')))
+      this.voxels.paint(run, this.surfaceColor.value);
     if (changed.has('landmarks')) this.setLandmarks();
     if (changed.has('keyframes')) this.setKeyframes();
     if (changed.has('frames')) this.setTrajectory();
@@ -224,15 +240,8 @@ export class MapPanel {
     const at = new Vector3();
     kept.forEach((cell, i) => {
       const [r, g, b, label] = cells.subarray(6 * cell + 2, 6 * cell + 6);
-      if (this.cloudColor.value === 'class') {
-        const [cr, cg, cb] = label > 0 ? this.run.hello.classes[label]?.color ?? [255, 0, 255] : [120, 130, 136];
-        color.setRGB(cr / 255, cg / 255, cb / 255, 'srgb');
-      } else if (this.cloudColor.value === 'height') {
-        at.fromBufferAttribute(points.geometry.attributes.position, i).applyMatrix4(points.matrix);
-        heightColor((1.5 - at.y) / 3, color);
-      } else {
-        color.setRGB(r / 255, g / 255, b / 255, 'srgb');
-      }
+      at.fromBufferAttribute(points.geometry.attributes.position, i).applyMatrix4(points.matrix);
+      surfaceColor(this.surfaceColor.value, {rgb: [r, g, b], label, height: -at.y}, this.run.hello.classes, color);
       colors.setXYZ(i, color.r, color.g, color.b);
     });
     colors.needsUpdate = true;

@@ -1,12 +1,16 @@
 // Messages as the plugin's README.md lays them out: little-endian numbers in records.
 
 export const PROTOCOL = 1;
-const ASK = 1;
+const ASK = 1, DO = 2;
+export const COMMANDS = {pause: 1, goOn: 2, step: 3, end: 4, saveMap: 5};
 
 /** What the page asks for: everything new of it, once. */
-export function request({image, map, cloud}) {
-  return new Uint8Array([PROTOCOL, ASK, (image ? 1 : 0) | (map ? 2 : 0) | (cloud ? 4 : 0)]);
+export function request({image, map, cloud, voxels}) {
+  return new Uint8Array([PROTOCOL, ASK, (image ? 1 : 0) | (map ? 2 : 0) | (cloud ? 4 : 0) | (voxels ? 8 : 0)]);
 }
+
+/** One of COMMANDS. */
+export function order(command) { return new Uint8Array([PROTOCOL, DO, command]); }
 
 class Reader {
   constructor(buffer, begin, end) {
@@ -88,6 +92,9 @@ const RECORDS = {
   12: ['loop', (r) => ({frame: r.u32(), moved: r.u32(), shift: r.f32()})],
   13: ['fit', (r) => ({worldFromTruth: r.pose(), rmse: r.f32(), pairs: r.u32()})],
   14: ['end', (r) => JSON.parse(r.text())],
+  15: ['steering', (r) => JSON.parse(r.text())],
+  16: ['voxels', (r) => r.all(() => ({position: r.floats(3), rgb: [r.u8(), r.u8(), r.u8()], label: r.u8()}))],
+  17: ['voxelsRemoved', (r) => r.all(() => r.floats(3))],
 };
 
 /** Calls `take(name, content)` for each record; unknown ones are left out. */

@@ -30,6 +30,7 @@ export class Run {
     this.keyframeCount = 0;
     this.landmarks = new Map();
     this.clouds = [];
+    this.voxels = new Map();  // by position
     this.loops = [];
     this.fit = null;
     this.end = null;
@@ -77,6 +78,8 @@ export class Run {
     }
   }
   take_cloud(cloud) { this.clouds.push(cloud); }
+  take_voxels(voxels) { for (const voxel of voxels) this.voxels.set(voxel.position.join(), voxel); }
+  take_voxelsRemoved(positions) { for (const position of positions) this.voxels.delete(position.join()); }
   take_loop(loop) { this.loops.push(loop); }
   take_fit(fit) { this.fit = fit; }
   take_end(end) { this.end = end; }

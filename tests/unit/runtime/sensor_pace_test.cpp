@@ -3,6 +3,7 @@
 
 #include <condition_variable>
 #include <mutex>
+#include <thread>
 
 #include "engine_fixture.hpp"
 
@@ -23,7 +24,10 @@ INSTANTIATE_TEST_SUITE_P(Modes, SensorPace, ::testing::Values(Mode::kInline, Mod
 /// Stands still until a test lets it go on.
 class ManualClock final : public PaceClock {
  public:
-  double now() override { return now_; }
+  double now() override {
+    const std::lock_guard lock(mutex_);
+    return now_;
+  }
   void wait_until(double time, std::stop_token stop) override {
     std::unique_lock lock(mutex_);
     waits_for_ = time;
@@ -62,6 +66,37 @@ TEST_P(SensorPace, TwoFramesWaitAndTheOldestMakesRoom) {
   EXPECT_EQ(f.journal.entries("track"),
             (Strings{"track 0", "track 3", "track 4", "track 5", "track 6", "track 7"}));
   EXPECT_EQ(f.output->dropped, 2);
+}
+
+/// Keeps the run that it is of.
+class RunKeeper final : public Output {
+ public:
+  void begin(const std::shared_ptr<LiveRun>& run) override { kept = run; }
+  std::shared_ptr<LiveRun> kept;
+};
+
+TEST_P(SensorPace, WhilePausedTheRecordingWaitsAndNothingIsDropped) {
+  EngineFixture f(5);
+  auto clock = std::make_unique<ManualClock>();
+  ManualClock* time = clock.get();
+  const auto keeper = std::make_shared<RunKeeper>();
+  Stages stages = f.stages();
+  stages.outputs.push_back({{keeper, "keeper"}});
+  LiveRun::Pause pause;
+  f.journal.hook = [&](const std::string& entry) {
+    if (entry != "output 0") return;
+    pause = keeper->kept->pause();
+    time->set(100);  // all are due
+  };
+  std::thread viewer([&] {
+    f.journal.wait_for(
+        "source 4");  // 1 is to be tracked next, 2 and 3 wait, there is no room for 4
+    pause.reset();
+  });
+  Engine(std::move(stages), runtime(GetParam(), Pace::kSensor), {}, std::move(clock)).run();
+  viewer.join();
+  EXPECT_EQ(f.journal.entries("track").size(), 5u);
+  EXPECT_EQ(f.output->dropped, 0);
 }
 
 TEST_P(SensorPace, AStopEndsTheWait) {

@@ -10,6 +10,7 @@
 
 #include "stillpoint/contracts/frame.hpp"
 #include "stillpoint/contracts/labelled_point.hpp"
+#include "stillpoint/contracts/live_run.hpp"
 #include "stillpoint/contracts/map_evidence.hpp"
 #include "stillpoint/contracts/moving_points.hpp"
 #include "stillpoint/contracts/segmentation.hpp"
@@ -64,9 +65,9 @@ struct RunSummary {
   const std::vector<StageTime>& times;  ///< what ended since the last report
   int dropped_frames = 0;               ///< by `pace: sensor`
   int loops_closed = 0;
-  int dropped_reports = 0;  ///< by outputs that were too slow, with `when_full: drop`
-  double wall_seconds = 0.0;
-  double cpu_seconds = 0.0;  ///< of the whole process during the run
+  int dropped_reports = 0;    ///< by outputs that were too slow, with `when_full: drop`
+  double wall_seconds = 0.0;  ///< without pauses
+  double cpu_seconds = 0.0;   ///< of the whole process during the run
   double recorded_seconds = 0.0;
   long long seed = 0;
   std::string mode;                     ///< "inline" or "threaded"
@@ -86,9 +87,12 @@ struct RunSummary {
 class STILLPOINT_EXPORT Output {
  public:
   static constexpr const char* kKind = "output";
-  static constexpr std::uint32_t kApi = 2;  ///< see kPluginApi
+  static constexpr std::uint32_t kApi = 3;  ///< see kPluginApi
   virtual ~Output();
 
+  /// Before the first frame of a run that its source drives; a program that gives the frames itself
+  /// steers itself. On thread 1. What has come may be kept.
+  virtual void begin(const std::shared_ptr<LiveRun>&) {}
   /// In order of the frames. Threaded, tracking is up to eight frames ahead and then waits; with
   /// `when_full: drop`, frames are left out instead.
   virtual void frame(const FrameReport&) {}

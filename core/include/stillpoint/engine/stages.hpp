@@ -42,6 +42,8 @@ struct Stages {
   std::filesystem::path map_directory;  ///< made for the dense map at the end; empty: not saved
   SparseMap known_map;                  ///< to begin with; empty: the first frame begins one
   bool localise_only = false;           ///< the map stays as it is
+  /// Where outputs may have the sparse map saved while the run goes (LiveRun); empty: nowhere.
+  std::filesystem::path map_file;
 };
 
 }  // namespace stillpoint

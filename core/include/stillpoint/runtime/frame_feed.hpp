@@ -3,10 +3,12 @@
 
 #include <cstddef>
 #include <exception>
+#include <optional>
 #include <thread>
 
 #include "stillpoint/engine/pace_clock.hpp"
 #include "stillpoint/runtime/bounded_queue.hpp"
+#include "stillpoint/runtime/controlled_run.hpp"
 #include "stillpoint/runtime/stage.hpp"
 #include "stillpoint/runtime/worker.hpp"
 
@@ -15,15 +17,15 @@ namespace stillpoint {
 /// `inline` and `pace: free`: next() asks the source. Otherwise the source has a thread of its own:
 /// * `free`: it decodes up to two frames ahead, and every frame is used;
 /// * `sensor`: it delivers frames at the rate at which they were recorded. Two may wait; when a
-///   third comes, the oldest is dropped and counted.
+///   third comes, the oldest is dropped and counted. While the run is paused, it waits instead.
 class FrameFeed {
  public:
-  FrameFeed(Stage<Source> source, const RuntimeOptions& options, PaceClock& clock, StopSignal& stop,
-            TimeLog& times);
+  FrameFeed(Stage<Source> source, const RuntimeOptions& options, PaceClock& clock,
+            ControlledRun& run, StopSignal& stop, TimeLog& times);
   ~FrameFeed();
 
-  /// Null at the end of the recording or after a stop. Throws StageError when the source failed,
-  /// after the frames that came before.
+  /// Waits while the run is paused. Null at the end of the recording or after a stop. Throws
+  /// StageError when the source failed, after the frames that came before.
   FramePtr next();
   /// Ends the thread. Only after a stop or when next() gave null.
   void end();
@@ -40,14 +42,15 @@ class FrameFeed {
   const RuntimeOptions::Pace pace_;
   const bool thorough_;
   PaceClock& clock_;
+  ControlledRun& run_;
   StopSignal& stop_;
   TimeLog& times_;
   StageCaller<Source> source_;
   std::uint32_t frames_read_ = 0;
   FramePtr previous_;  // the last one read
   std::size_t dropped_ = 0;
-  double clock_ahead_ = 0.0;    // seconds from the recording's time to that of the clock
-  std::exception_ptr failure_;  // written before the queue is closed, read after
+  std::optional<double> clock_ahead_;  // seconds from the recording's time to that of the clock
+  std::exception_ptr failure_;         // written before the queue is closed, read after
   BoundedQueue<FramePtr> queue_;
   std::jthread thread_;  // last: it uses all the others
 };

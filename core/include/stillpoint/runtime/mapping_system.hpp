@@ -7,6 +7,7 @@
 #include <functional>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <variant>
 #include <vector>
 
@@ -46,6 +47,8 @@ class MappingSystem {
   int loops() const { return loops_; }
   /// What the dense map holds now. From any thread.
   std::vector<LabelledPoint> dense_points();
+  /// The same, but nothing while a key frame is being mapped, or without a dense map.
+  std::optional<std::vector<LabelledPoint>> dense_points_if_idle();
   /// Writes the dense map into `directory`; false: there is none. Only after end().
   bool save(const std::filesystem::path& directory);
 

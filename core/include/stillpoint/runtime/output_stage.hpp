@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <string>
 #include <thread>
 #include <vector>
@@ -23,6 +24,8 @@ class OutputStage {
   OutputStage(const OutputStage&) = delete;
   OutputStage& operator=(const OutputStage&) = delete;
 
+  /// Before the first frame.
+  void begin(const std::shared_ptr<LiveRun>& run);
   /// With a full queue it waits, or leaves out the report that has waited longest.
   void frame(FrameReportPtr report);
   /// Hands over what waits and ends the thread. No frame() may follow.

@@ -11,6 +11,7 @@
 
 #include "stillpoint/engine/pace_clock.hpp"
 #include "stillpoint/runtime/beside_tracking.hpp"
+#include "stillpoint/runtime/controlled_run.hpp"
 #include "stillpoint/runtime/frame_feed.hpp"
 #include "stillpoint/runtime/map_check.hpp"
 #include "stillpoint/runtime/mapping_system.hpp"
@@ -71,6 +72,8 @@ class Pipeline {
   bool map_is_saved_ = false;
   double wall_seconds_ = 0.0;
   double cpu_seconds_ = 0.0;
+
+  const std::shared_ptr<ControlledRun> controlled_run_;
 
   // Last: their threads use the clock, the stop signal and the time log.
   std::optional<FrameFeed> feed_;  // in run()

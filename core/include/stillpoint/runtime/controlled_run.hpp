@@ -1,0 +1,62 @@
+// The run as outputs reach it, and where tracking waits while it is paused.
+#pragma once
+
+#include <condition_variable>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <stop_token>
+#include <vector>
+
+#include "stillpoint/contracts/live_run.hpp"
+#include "stillpoint/runtime/map_store.hpp"
+
+namespace stillpoint {
+
+/// Outlives the pipeline where an output keeps it.
+class ControlledRun final : public LiveRun, public std::enable_shared_from_this<ControlledRun> {
+ public:
+  /// Parts of the pipeline, which are called from any thread, until end().
+  struct Reach {
+    std::function<MapStore::Snapshot()> map;
+    std::function<std::optional<std::vector<LabelledPoint>>()> dense_map;
+  };
+  ControlledRun(Reach reach, std::filesystem::path map_file)
+      : map_file_(std::move(map_file)), reach_(std::move(reach)) {}
+
+  Pause pause() override;
+  void step() override;
+  void stop() override { stop_.request_stop(); }
+  std::optional<std::vector<LabelledPoint>> dense_map() override;
+  std::filesystem::path map_file() const override { return map_file_; }
+  void save_map() override;
+
+  /// Requested by stop().
+  std::stop_token stop_token() const { return stop_.get_token(); }
+  bool paused() const;
+  /// Returns when the run is not paused, for a step, or after a stop.
+  void wait_while_paused(std::stop_token stop);
+  /// Of waiting, in total.
+  double paused_seconds() const;
+  /// Nothing of the pipeline is called any more, nor under way.
+  void end();
+
+ private:
+  void resume();
+
+  const std::filesystem::path map_file_;
+  std::stop_source stop_;
+
+  mutable std::mutex mutex_;
+  std::condition_variable_any changed_;
+  int pauses_ = 0;     // guarded by mutex_, like the next two
+  bool step_ = false;  // one frame may begin
+  double paused_seconds_ = 0.0;
+
+  std::mutex reach_mutex_;      // held during calls
+  std::optional<Reach> reach_;  // guarded by reach_mutex_; nothing after end()
+};
+
+}  // namespace stillpoint

@@ -1,0 +1,90 @@
+// What viewers get.
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "output_web/live_view_fixture.hpp"
+
+namespace stillpoint::output_web {
+namespace {
+
+TEST_F(LiveView, ShowsARunFromItsBeginning) {
+  output->frame(report_of(0));
+  output->frame(report_of(1));
+  TestViewer viewer(port(*output));
+  const auto records = viewer.asked();
+  ASSERT_TRUE(records);
+  const auto hello = nlohmann::json::parse(records->at(Record::kHello).at(0));
+  EXPECT_EQ(hello["camera"]["width"], 320);
+  EXPECT_EQ(hello["classes"][1]["name"], "person");
+  EXPECT_EQ(records->at(Record::kStages).at(0).substr(1), "track");
+  EXPECT_EQ(number_at<float>(records->at(Record::kTimes).at(0), 5), 5.f);
+  const std::string& frames = records->at(Record::kFrames).at(0);
+  ASSERT_EQ(frames.size() % 2, 0u);
+  const std::size_t second = frames.size() / 2;
+  EXPECT_EQ(number_at<std::uint32_t>(frames, second), 1u);
+  EXPECT_DOUBLE_EQ(number_at<double>(frames, second + 4), recording().frame(1)->time);
+  EXPECT_EQ(number_at<std::uint8_t>(frames, 13), 1);  // a key frame
+  EXPECT_NEAR(number_at<float>(frames, second + 18),
+              recording().world_from_camera(1).translation().x(), 1e-6);
+  EXPECT_EQ(number_at<std::uint16_t>(frames, second + 18 + 56), 1000);
+  EXPECT_EQ(number_at<std::uint32_t>(records->at(Record::kImage).at(0), 0), 1u);
+  EXPECT_EQ(records->count(Record::kCloud), 1u);
+}
+
+TEST_F(LiveView, SendsWhatIsNewAndAskedFor) {
+  output->frame(report_of(0));
+  TestViewer viewer(port(*output));
+  ASSERT_TRUE(viewer.asked(2));
+  viewer.ask(2);
+  output->frame(report_of(1));
+  auto records = viewer.next();
+  ASSERT_TRUE(records);
+  EXPECT_EQ(number_at<std::uint32_t>(records->at(Record::kFrames).at(0), 0), 1u);
+  for (const Record none : {Record::kHello, Record::kStages, Record::kImage, Record::kCloud})
+    EXPECT_FALSE(records->contains(none)) << static_cast<int>(none);
+  records = viewer.asked(5);  // now the rest, without a new frame
+  ASSERT_TRUE(records);
+  EXPECT_TRUE(records->contains(Record::kCloud));
+  EXPECT_FALSE(records->contains(Record::kFrames));
+}
+
+TEST_F(LiveView, TellsOfLoops) {
+  FrameReport report = report_of(0);
+  report.map = std::make_shared<const SparseMap>(map_of_three());
+  output->frame(report);
+  MapEdit edit(map_of_three());
+  edit.keyframe(2).world_from_camera.translation().x() += 0.5;
+  report = report_of(1);
+  report.map = std::make_shared<const SparseMap>(std::move(edit).finish());
+  report.loops_closed = 1;
+  output->frame(report);
+  TestViewer viewer(port(*output));
+  const auto records = viewer.asked();
+  ASSERT_TRUE(records);
+  const std::string& loop = records->at(Record::kLoops).at(0);
+  EXPECT_EQ(number_at<std::uint32_t>(loop, 0), 1u);
+  EXPECT_EQ(number_at<std::uint32_t>(loop, 4), 1u);
+  EXPECT_FLOAT_EQ(number_at<float>(loop, 8), 0.5f);
+}
+
+TEST_F(LiveView, SaysHowTheRunHasEndedThenGoodBye) {
+  output->frame(report_of(0));
+  TestViewer viewer(port(*output)), late(port(*output));
+  ASSERT_TRUE(viewer.asked());
+  viewer.ask();
+  finish(*output);
+  const auto records = viewer.next();
+  ASSERT_TRUE(records);
+  EXPECT_TRUE(nlohmann::json::parse(records->at(Record::kEnd).at(0))["complete"]);
+  std::thread end([&] { output.reset(); });
+  EXPECT_FALSE(viewer.next());
+  EXPECT_EQ(viewer.close_code(), 1001);
+  const auto unasked = late.next();  // who has not asked gets it as well
+  ASSERT_TRUE(unasked);
+  EXPECT_TRUE(unasked->contains(Record::kEnd));
+  EXPECT_FALSE(late.next());
+  end.join();
+}
+
+}  // namespace
+}  // namespace stillpoint::output_web

@@ -1,0 +1,79 @@
+#include "output_web/recorder.hpp"
+
+#include <filesystem>
+#include <fstream>
+#include <stillpoint/support/base64.hpp>
+
+#include "output_web/live_view_fixture.hpp"
+
+namespace stillpoint::output_web {
+namespace {
+
+namespace fs = std::filesystem;
+
+class Recording : public ::testing::Test {
+ protected:
+  Recording() { fs::create_directories(folder); }
+  ~Recording() override { fs::remove_all(folder); }
+
+  std::unique_ptr<WebOutput> output(const std::string& name) const {
+    StageContext context = testing::test_context();
+    context.output_directory = folder;
+    return std::make_unique<WebOutput>(WebOutput::Options{.port = 0, .record = name}, context);
+  }
+  std::string text() const {
+    std::ifstream stream(folder / "live.html");
+    return {std::istreambuf_iterator<char>(stream), {}};
+  }
+
+  const fs::path folder = fs::path(::testing::TempDir()) / "output_web_recording";
+};
+
+// Of a page, so that a message is found as it is.
+std::string within_page(const std::string& message) {
+  return "<script type=\"text/plain\" class=\"message\">" + base64(message) + "</script>\n";
+}
+
+TEST_F(Recording, IsThePageAndWhatAViewerGets) {
+  Journal journal({.name = "walk", .classes = testing::TestRecording::classes(), .truth = {}});
+  Recorder recorder(folder / "live.html", "<page>");
+  std::string expected = "<page>\n";
+  Seen seen;
+  const auto take = [&](bool image) {
+    recorder.take(journal);
+    expected += within_page(
+        journal.news(seen, {.image = image, .map = true, .cloud = true, .voxels = true}));
+  };
+  journal.set_steering("{}");
+  take(true);  // there is no image yet
+  for (std::size_t i = 0; i < 4; ++i) {
+    journal.add(report_of(i));
+    take(i % 3 == 0);
+  }
+  recorder.take(journal);  // nothing is new
+  recorder.finish(journal);
+  EXPECT_EQ(text().substr(0, expected.size()), expected);
+}
+
+TEST_F(Recording, IsWholeWithoutAnybodyLooking) {
+  auto live = output("live.html");
+  for (std::size_t i = 0; i < recording().size(); ++i) live->frame(report_of(i));
+  live.reset();
+  const std::string page = text();
+  EXPECT_THAT(page, ::testing::HasSubstr("<title>Stillpoint"));
+  EXPECT_THAT(page, ::testing::EndsWith("</script>\n"));
+  EXPECT_THAT(page, ::testing::HasSubstr("class=\"message\""));
+}
+
+TEST_F(Recording, SaysWhichFileCannotBeWritten) {
+  try {
+    output("no/folder/live.html");
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_THAT(error.what(), ::testing::HasSubstr("no/folder/live.html cannot be written"));
+    EXPECT_EQ(error.fault(), Fault::kUsage);
+  }
+}
+
+}  // namespace
+}  // namespace stillpoint::output_web

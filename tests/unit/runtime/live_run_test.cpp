@@ -1,0 +1,176 @@
+// What outputs may do with a run while it goes.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <thread>
+
+#include "engine_fixture.hpp"
+#include "stillpoint/engine/map_file.hpp"
+
+namespace stillpoint {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::EngineFixture;
+using testing::runtime;
+using Strings = std::vector<std::string>;
+
+/// An output that keeps the run, and may pause it before its first frame.
+class Steering final : public Output {
+ public:
+  void begin(const std::shared_ptr<LiveRun>& begun) override {
+    run = begun;
+    if (pauses) pause = run->pause();
+    if (on_begin) on_begin();
+  }
+  void frame(const FrameReport&) override {
+    if (on_frame) on_frame();
+  }
+
+  bool pauses = false;
+  std::function<void()> on_begin, on_frame;
+  std::shared_ptr<LiveRun> run;
+  LiveRun::Pause pause;
+};
+
+class LiveRunTest : public ::testing::TestWithParam<Mode> {
+ protected:
+  Stages stages() {
+    Stages all = fixture.stages();
+    all.outputs.push_back({{steering, "steering"}});
+    all.map_file = map_file;
+    return all;
+  }
+  Engine engine() { return {stages(), runtime(GetParam()), {}}; }
+
+  EngineFixture fixture{4};
+  std::shared_ptr<Steering> steering = std::make_shared<Steering>();
+  fs::path map_file = fs::path(::testing::TempDir()) / "live_run_test.map";
+};
+INSTANTIATE_TEST_SUITE_P(Modes, LiveRunTest, ::testing::Values(Mode::kInline, Mode::kThreaded),
+                         [](const auto& test) {
+                           return test.param == Mode::kInline ? "Inline" : "Threaded";
+                         });
+
+TEST_P(LiveRunTest, PausedItTracksOneFrameForEachStep) {
+  steering->pauses = true;
+  std::thread viewer([&] {
+    fixture.journal.wait_for("source 0");  // after begin()
+    for (std::uint32_t frame = 0; frame < 2; ++frame) {
+      fixture.journal.write("step", frame);
+      steering->run->step();
+      fixture.journal.wait_for("output " + std::to_string(frame));
+    }
+    fixture.journal.write("go on", 2);
+    steering->pause.reset();
+  });
+  engine().run();
+  viewer.join();
+  Strings steps;
+  for (const std::string& entry : fixture.journal.entries())
+    if (entry.starts_with("track ") || entry.starts_with("step ") || entry.starts_with("go on "))
+      steps.push_back(entry);
+  EXPECT_EQ(steps,
+            (Strings{"step 0", "track 0", "step 1", "track 1", "go on 2", "track 2", "track 3"}));
+  EXPECT_TRUE(fixture.output->complete);
+}
+
+TEST_P(LiveRunTest, GoesOnWhenTheLastPauseIsGone) {
+  steering->on_begin = [this] {
+    LiveRun::Pause another = steering->run->pause();
+    steering->pause = steering->run->pause();
+    another.reset();
+  };
+  std::thread viewer([&] {
+    fixture.journal.wait_for("source 0");
+    fixture.journal.write("go on", 0);
+    steering->pause.reset();
+  });
+  engine().run();
+  viewer.join();
+  const Strings entries = fixture.journal.entries();
+  EXPECT_LT(std::ranges::find(entries, "go on 0"), std::ranges::find(entries, "track 0"));
+  EXPECT_EQ(fixture.journal.entries("track").size(), 4u);
+}
+
+TEST_P(LiveRunTest, AStepWithoutAPauseIsNoneLater) {
+  steering->pauses = true;
+  steering->on_begin = [this] {
+    steering->run->step();
+    steering->pause.reset();  // the step was for this pause
+    steering->run->step();
+    steering->pause = steering->run->pause();
+  };
+  std::stop_source stop;
+  std::thread viewer([&] {
+    fixture.journal.wait_for("source 0");
+    stop.request_stop();
+  });
+  engine().run(stop.get_token());
+  viewer.join();
+  EXPECT_THAT(fixture.journal.entries("track"), ::testing::IsEmpty());
+}
+
+TEST_P(LiveRunTest, StopsAsAfterCtrlCAndAlsoWhenPaused) {
+  steering->pauses = true;
+  steering->on_begin = [this] { steering->run->stop(); };
+  engine().run();
+  EXPECT_THAT(fixture.journal.entries("track"), ::testing::IsEmpty());
+  EXPECT_FALSE(fixture.output->complete);
+  EXPECT_EQ(fixture.output->failure, "");
+  EXPECT_EQ(fixture.output->finished, 1);
+}
+
+TEST_P(LiveRunTest, SavesTheMapWhereTheProgramSays) {
+  fs::remove(map_file);
+  steering->on_frame = [this] { steering->run->save_map(); };
+  engine().run();
+  EXPECT_EQ(steering->run->map_file(), map_file);
+  EXPECT_GT(load_map(map_file).keyframe_id_end(), 0u);
+  fs::remove(map_file);
+}
+
+TEST_P(LiveRunTest, ReachesNothingAfterTheEnd) {
+  engine().run();  // the engine is gone, the run is kept
+  EXPECT_THROW(steering->run->save_map(), Error);
+  EXPECT_FALSE(steering->run->dense_map());
+  EXPECT_TRUE(steering->run->pause());
+  steering->run->step();
+  steering->run->stop();
+}
+
+TEST_P(LiveRunTest, SavesNothingWithoutAFile) {
+  map_file.clear();
+  std::string message;
+  steering->on_begin = [&] {
+    try {
+      steering->run->save_map();
+    } catch (const Error& error) {
+      message = error.what();
+    }
+  };
+  engine().run();
+  EXPECT_THAT(message, ::testing::HasSubstr("no file"));
+}
+
+TEST_P(LiveRunTest, AFailureOfBeginIsNamed) {
+  steering->on_begin = [] { throw std::runtime_error("no port"); };
+  try {
+    engine().run();
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_THAT(error.what(), ::testing::HasSubstr("output (steering) failed: no port"));
+  }
+  EXPECT_EQ(fixture.output->finished, 1);
+}
+
+TEST_P(LiveRunTest, IsNotForFramesThatAProgramGives) {
+  Engine engine = this->engine();
+  engine.process(testing::make_frame(0));
+  engine.finish();
+  EXPECT_FALSE(steering->run);
+}
+
+}  // namespace
+}  // namespace stillpoint
