@@ -46,7 +46,7 @@ class MappingSystem {
   int loops() const { return loops_; }
   /// What the dense map holds now. From any thread.
   std::vector<LabelledPoint> dense_points();
-  /// Writes the dense map into `directory`; false: there is none. Only after end().
+  /// Writes the dense map as it is now into `directory`; false: there is none. From any thread.
   bool save(const std::filesystem::path& directory);
 
  private:
