@@ -45,13 +45,13 @@ octomap_msgs::Octomap octomap_message(const std::filesystem::path& file) {
   std::ifstream in(file, std::ios::binary);
   octomap_msgs::Octomap message;
   message.binary = true;
+  message.id = "OcTree";  // as which viewers take it, whatever else the tree could hold
   std::string line;
   while (std::getline(in, line) && line != "data") {
-    if (line.rfind("id ", 0) == 0) message.id = line.substr(3);
     if (line.rfind("res ", 0) == 0) message.resolution = std::strtod(line.c_str() + 4, nullptr);
   }
   message.data.assign(std::istreambuf_iterator<char>(in), {});
-  if (message.id.empty() || !(message.resolution > 0) || message.data.empty())
+  if (!(message.resolution > 0) || message.data.empty())
     throw Error(Fault::kData, "is no .bt file of OctoMap", file.string());
   return message;
 }

@@ -60,7 +60,8 @@ TEST_F(DenseMapFiles, WhatIsNoGridIsRefused) {
 }
 
 TEST_F(DenseMapFiles, AnOctomapIsWhatFollowsItsHeader) {
-  const std::string header = "# Octomap OcTree binary file\nid OcTree\nsize 1\nres 0.05\ndata\n";
+  const std::string header =
+      "# Octomap OcTree binary file\nid ColorOcTree\nsize 1\nres 0.05\ndata\n";
   const octomap_msgs::Octomap octomap = octomap_message(write("map.bt", header + "\x01\n\x02"));
   EXPECT_TRUE(octomap.binary);
   EXPECT_EQ(octomap.id, "OcTree");

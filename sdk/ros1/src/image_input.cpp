@@ -17,6 +17,7 @@ ImageInput::ImageInput(ros::NodeHandle node, bool approximate, std::size_t queue
           "rgb/camera_info", 1, [this](const sensor_msgs::CameraInfoConstPtr& info) {
             const std::lock_guard lock(mutex_);
             info_ = info;
+            changed_.notify_one();
           })) {
   if (approximate) {
     using Policy = message_filters::sync_policies::ApproximateTime<Image, Image>;
@@ -31,9 +32,10 @@ ImageInput::ImageInput(ros::NodeHandle node, bool approximate, std::size_t queue
 
 std::optional<ImagePair> ImageInput::take() {
   std::unique_lock lock(mutex_);
-  changed_.wait(lock, [this] { return stopped_ || !pairs_.empty(); });
+  changed_.wait(lock, [this] { return stopped_ || (info_ && !pairs_.empty()); });
   if (stopped_) return std::nullopt;
   ImagePair pair = std::move(pairs_.front());
+  pair.info = info_;
   pairs_.pop_front();
   return pair;
 }
@@ -52,16 +54,14 @@ int ImageInput::dropped() const {
 void ImageInput::add(const sensor_msgs::ImageConstPtr& color,
                      const sensor_msgs::ImageConstPtr& depth) {
   const std::lock_guard lock(mutex_);
-  if (!info_) {
-    ROS_WARN_THROTTLE(10, "images come, but no CameraInfo on %s; they are not used",
-                      info_subscriber_.getTopic().c_str());
-    return;
-  }
+  if (!info_)
+    ROS_WARN_DELAYED_THROTTLE(10, "images come, but no CameraInfo on %s; they are not used",
+                              info_subscriber_.getTopic().c_str());
   if (pairs_.size() == queue_size_) {
     pairs_.pop_front();
     ++dropped_;
   }
-  pairs_.push_back({color, depth, info_});
+  pairs_.push_back({color, depth, nullptr});
   changed_.notify_one();
 }
 

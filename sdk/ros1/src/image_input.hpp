@@ -28,7 +28,7 @@ class ImageInput {
  public:
   ImageInput(ros::NodeHandle node, bool approximate, std::size_t queue_size);
 
-  /// Waits for the next pair; nothing after stop().
+  /// Waits for the next pair and the first CameraInfo; nothing after stop().
   std::optional<ImagePair> take();
   void stop();
   /// Pairs that came and were not taken in time.

@@ -43,7 +43,7 @@ cv::Mat view_of(const sensor_msgs::Image& image, int type) {
   const std::size_t row = std::size_t{image.width} * CV_ELEM_SIZE(type);
   const bool has_size = image.width >= 1 && image.height >= 1 && image.width <= kLargestSide &&
                         image.height <= kLargestSide;
-  if (!has_size || image.step < row ||
+  if (!has_size || image.step < row || image.step % CV_ELEM_SIZE1(type) != 0 ||
       image.data.size() < std::size_t{image.step} * (image.height - 1) + row)
     throw Error(Fault::kData,
                 "an image's bytes do not fit its size of " + std::to_string(image.width) + " x " +

@@ -8,7 +8,7 @@
 namespace stillpoint_ros {
 namespace {
 
-/// Rows of `bytes` with two bytes of padding each.
+/// Rows of `bytes` with four bytes of padding each.
 sensor_msgs::Image message(const std::string& encoding, std::uint32_t width, std::uint32_t height,
                            const std::vector<std::uint8_t>& bytes) {
   sensor_msgs::Image image;
@@ -16,11 +16,11 @@ sensor_msgs::Image message(const std::string& encoding, std::uint32_t width, std
   image.width = width;
   image.height = height;
   const std::size_t row = bytes.size() / height;
-  image.step = static_cast<std::uint32_t>(row + 2);
+  image.step = static_cast<std::uint32_t>(row + 4);
   for (std::size_t y = 0; y < height; ++y) {
     image.data.insert(image.data.end(), bytes.begin() + static_cast<std::ptrdiff_t>(y * row),
                       bytes.begin() + static_cast<std::ptrdiff_t>((y + 1) * row));
-    image.data.insert(image.data.end(), {77, 77});
+    image.data.insert(image.data.end(), {77, 77, 77, 77});
   }
   return image;
 }
@@ -63,14 +63,17 @@ TEST(DepthPixels, AreAsSentInTheByteOrderOfThisMachine) {
 TEST(Pixels, OfNumbersThatDoNotFitTheBytesAreRefused) {
   sensor_msgs::Image image = message("bgr8", 1, 2, {0, 0, 0, 1, 2, 3});
   for (const auto& spoil : std::vector<std::function<void(sensor_msgs::Image&)>>{
-           [](auto& its) { its.data.resize(7); }, [](auto& its) { its.height = 3; },
-           [](auto& its) { its.width = 2; }, [](auto& its) { its.step = 2; },
+           [](auto& its) { its.data.resize(9); }, [](auto& its) { its.height = 3; },
+           [](auto& its) { its.width = 3; }, [](auto& its) { its.step = 2; },
            [](auto& its) { its.width = 0; }, [](auto& its) { its.height = 0xffffffffu; },
            [](auto& its) { its.step = 0xffffffffu; }}) {
     sensor_msgs::Image spoilt = image;
     spoil(spoilt);
     EXPECT_THROW(color_pixels(spoilt), stillpoint::Error);
   }
+  image = message("16UC1", 2, 1, {1, 2, 3, 4});
+  image.step = 5;
+  EXPECT_THROW(depth_pixels(image), stillpoint::Error);
 }
 
 }  // namespace
