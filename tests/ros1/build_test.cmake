@@ -13,3 +13,4 @@ run(${CMAKE_COMMAND} -S ${SOURCE_DIR}/sdk/ros1 -B ${work}/ros1 -G ${GENERATOR}
 run(${CMAKE_COMMAND} --build ${work}/ros1)
 run(${CMAKE_CTEST_COMMAND} --test-dir ${work}/ros1 --output-on-failure)
 expect_in_output("100% tests passed")
+run(${CMAKE_COMMAND} --install ${work}/ros1 --prefix ${work}/ros1_prefix)

@@ -1,4 +1,5 @@
 """Processes that all end with the test, whatever happens."""
+import ctypes
 import os
 import signal
 import subprocess
@@ -23,7 +24,7 @@ class Processes:
         with open(self.folder / f"{name}.log", "ab") as log:
             self.running[name] = subprocess.Popen(
                 [str(word) for word in command], env=self.environment, stdin=subprocess.DEVNULL,
-                stdout=log, stderr=subprocess.STDOUT, start_new_session=True)
+                stdout=log, stderr=subprocess.STDOUT, start_new_session=True, preexec_fn=end_with_parent)
 
     def wait(self, name, seconds):
         """The exit code of a process that ends by itself."""
@@ -45,6 +46,12 @@ class Processes:
 
     def log(self, name):
         return (self.folder / f"{name}.log").read_text(errors="replace")
+
+
+def end_with_parent():
+    """For a test that is killed and cannot stop what it has started."""
+    set_parent_death_signal = 1  # PR_SET_PDEATHSIG of prctl(2)
+    ctypes.CDLL(None).prctl(set_parent_death_signal, signal.SIGTERM)
 
 
 def signal_group(process, number):

@@ -8,6 +8,7 @@ import rospy
 from sensor_msgs.msg import CameraInfo, Image
 
 CAMERA_FRAME = "camera_color_optical_frame"
+CAMERA = "/camera"
 
 
 def stamp_of(text, offset=0.0):
@@ -54,9 +55,9 @@ def write_bag(recording, file, metres=False, offset=0.0, depth_offset=0.0):
             values = numpy.asarray(PIL.Image.open(recording / depth)).astype(numpy.uint16)
             depth_pixels = values / numpy.float32(5000) if metres else values
             rgb = numpy.asarray(PIL.Image.open(recording / color).convert("RGB"))
-            bag.write("/rgb/camera_info", info_message(camera, stamp), stamp)
-            bag.write("/rgb/image_raw", image_message(rgb, "rgb8", stamp), stamp)
-            bag.write("/depth_registered/image_raw",
+            bag.write(CAMERA + "/color/camera_info", info_message(camera, stamp), stamp)
+            bag.write(CAMERA + "/color/image_raw", image_message(rgb, "rgb8", stamp), stamp)
+            bag.write(CAMERA + "/aligned_depth_to_color/image_raw",
                       image_message(depth_pixels, "32FC1" if metres else "16UC1", depth_stamp), depth_stamp)
     return float(lines_of(recording / "rgb.txt")[0][0])
 

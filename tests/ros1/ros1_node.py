@@ -1,7 +1,9 @@
 #!/usr/bin/python3
 """The node of sdk/ros1 in a ROS of its own: a bag is played, and what the node publishes compared with the truth.
 
-usage: ros1_node.py NODE RECORDING FOLDER
+usage: ros1_node.py PACKAGE RECORDING FOLDER
+
+PACKAGE is the folder of the installed node.
 
 Exits with 77, skipped, where the node was not built or a package of ROS is missing."""
 import os
@@ -10,7 +12,6 @@ import shutil
 import signal
 import socket
 import sys
-import threading
 
 try:
     import genpy.dynamic
@@ -18,20 +19,18 @@ try:
     import rospy
     import tf2_ros
     from diagnostic_msgs.msg import DiagnosticStatus
-    from geometry_msgs.msg import PoseStamped, TransformStamped
-    from nav_msgs.msg import OccupancyGrid, Odometry, Path
-    from sensor_msgs.msg import Image, PointCloud2
+    from geometry_msgs.msg import TransformStamped
+    from sensor_msgs.msg import Image
     from std_srvs.srv import Trigger
-    from tf2_msgs.msg import TFMessage
+    from inbox import PATIENCE, Inbox, expect
     from processes import Processes
-    from recording_bag import CAMERA_FRAME, Truth, image_message, matrix, write_bag
+    from recording_bag import CAMERA, CAMERA_FRAME, Truth, image_message, matrix, write_bag
 except ImportError as missing:
     print(f"skipped: {missing}; tools/setup --tests installs the packages")
     sys.exit(77)
 
-NODE, RECORDING, FOLDER = sys.argv[1], pathlib.Path(sys.argv[2]).resolve(), pathlib.Path(sys.argv[3]).resolve()
+PACKAGE, RECORDING, FOLDER = (pathlib.Path(argument).resolve() for argument in sys.argv[1:])
 FRAMES = 60
-PATIENCE = 40  # seconds; a machine may be busy
 LIMIT = 0.03   # metres, of the worst pose, not aligned; it is 0.011
 MD5_OF_OCTOMAP = "9a45536b45c5e409cd49f04bb2d9999f"  # of octomap_msgs/Octomap
 # 1.2 m above the floor, looking forward: z of the camera is x of the base.
@@ -39,46 +38,11 @@ BASE_FROM_CAMERA = matrix([0.1, 0.0, 1.2], [-0.5, 0.5, -0.5, 0.5])
 ODOM_FROM_BASE = matrix([0.5, 0.2, 0.0], [0, 0, 0.1, 0.99])
 PARAMETERS = {"pipeline": "orb_baseline", "set": ["map_backend.type=octomap"], "queue_size": 100,
               "map_period": 0.5, "map_file": str(FOLDER / "room.map")}
+NODE = (PACKAGE / "stillpoint_node", "__name:=stillpoint", f"rgb/image_raw:={CAMERA}/color/image_raw",
+        f"rgb/camera_info:={CAMERA}/color/camera_info",
+        f"depth_registered/image_raw:={CAMERA}/aligned_depth_to_color/image_raw")
+LAUNCH = ("roslaunch", "--wait", "stillpoint_ros", "stillpoint.launch", "pipeline:=orb_baseline")
 WITH_ROBOT = {"base_frame": "base_link", "odom_frame": "odom", "depth_factor": 5000.0}
-
-
-def expect(condition, text):
-    print(("ok      " if condition else "FAILED  ") + text, flush=True)
-    if not condition:
-        raise AssertionError(text)
-
-
-class Inbox:
-    """The messages of each topic, and waiting for them."""
-    TOPICS = {"state": DiagnosticStatus, "pose": PoseStamped, "odom": Odometry, "path": Path, "landmarks": PointCloud2,
-              "dense_map": PointCloud2, "octomap": rospy.AnyMsg, "grid": OccupancyGrid}
-
-    def __init__(self):
-        self.changed = threading.Condition()
-        self.messages = {}
-        self.clear()
-        self.subscribers = [rospy.Subscriber(f"/stillpoint/{name}", kind, self.add, name)
-                            for name, kind in self.TOPICS.items()]
-        self.subscribers.append(rospy.Subscriber("/tf", TFMessage, self.add, "tf"))
-
-    def clear(self):
-        with self.changed:
-            self.messages = {name: [] for name in (*self.TOPICS, "tf")}
-
-    def add(self, message, name):
-        with self.changed:
-            self.messages[name].append(message)
-            self.changed.notify_all()
-
-    def wait(self, name, fits, what):
-        """The first message that fits."""
-        def found():
-            return next((message for message in self.messages[name] if fits(message)), None)
-        with self.changed:
-            self.changed.wait_for(lambda: found() is not None, PATIENCE)
-            message = found()
-        expect(message is not None, what)
-        return message
 
 
 def values(state):
@@ -106,11 +70,11 @@ def static_transform(target, source, target_from_source):
     return message
 
 
-def start_node(processes, parameters):
+def start_node(processes, parameters, command=NODE):
     if rospy.has_param("/stillpoint"):
         rospy.delete_param("/stillpoint")
     rospy.set_param("/stillpoint", parameters)
-    processes.start("node", NODE, "__name:=stillpoint")
+    processes.start("node", *command)
     rospy.wait_for_service("/stillpoint/reset", PATIENCE)
 
 
@@ -225,7 +189,7 @@ def check_services(processes, inbox, truth, map_from_room):
 
 def check_refused_images(inbox):
     publishers = [rospy.Publisher(topic, Image, queue_size=1, latch=True)
-                  for topic in ("/rgb/image_raw", "/depth_registered/image_raw")]
+                  for topic in (f"{CAMERA}/color/image_raw", f"{CAMERA}/aligned_depth_to_color/image_raw")]
     stamp = rospy.Time(2000)
     publishers[0].publish(image_message(numpy.zeros((240, 320, 2), numpy.uint8), "yuv422", stamp))
     publishers[1].publish(image_message(numpy.zeros((240, 320), numpy.uint16), "16UC1", stamp))
@@ -254,7 +218,7 @@ def robot_with_odometry(processes, inbox, truth, tf_buffer):
 def camera_alone(processes, inbox, truth):
     bag = FOLDER / "approximate.bag"
     first = write_bag(RECORDING, bag, metres=True, depth_offset=0.004)
-    start_node(processes, {**PARAMETERS, "approximate": True})
+    start_node(processes, {"approximate": True, "queue_size": 100}, LAUNCH)
     play(processes, inbox, bag, FRAMES - 2)  # the last pair waits for a later one that might fit better
     optical = numpy.eye(4)
     optical[:3, :3] = [[0, 0, 1], [-1, 0, 0], [0, -1, 0]]
@@ -262,7 +226,7 @@ def camera_alone(processes, inbox, truth):
                         numpy.eye(4))
     expect(error < LIMIT, f"depth in metres, 4 ms later: the camera's poses are right, to {error * 1000:.1f} mm")
     expect(inbox.messages["tf"][-1].transforms[0].child_frame_id == CAMERA_FRAME, "tf goes from map to the camera")
-    expect(processes.stop("node") == 0, "the node ends at Ctrl-C")
+    expect(processes.stop("node") == 0, "the launched node ends at Ctrl-C")
 
 
 def faulty_parameters(processes):
@@ -272,7 +236,7 @@ def faulty_parameters(processes):
                                 ({"queue_size": "many"}, "/stillpoint/queue_size: the parameter has another type")):
         rospy.delete_param("/stillpoint")
         rospy.set_param("/stillpoint", parameters)
-        processes.start("faulty", NODE, "__name:=stillpoint")
+        processes.start("faulty", *NODE)
         expect(processes.wait("faulty", PATIENCE) == 2 and message in processes.log("faulty"), message)
 
 
@@ -281,7 +245,7 @@ def environment():
         free.bind(("127.0.0.1", 0))
         port = free.getsockname()[1]
     return port, {"ROS_MASTER_URI": f"http://127.0.0.1:{port}", "ROS_IP": "127.0.0.1", "ROS_HOME": str(FOLDER / "home"),
-                  "ROS_LOG_DIR": str(FOLDER / "home/log"), "PATH": "/usr/bin:/bin"}
+                  "ROS_LOG_DIR": str(FOLDER / "home/log"), "ROS_PACKAGE_PATH": str(PACKAGE.parent), "PATH": "/usr/bin:/bin"}
 
 
 def main():
@@ -312,8 +276,8 @@ def give_up(*_):
     raise TimeoutError("the test takes too long")
 
 
-if not pathlib.Path(NODE).exists():
-    print(f"skipped: {NODE} was not built")
+if not NODE[0].exists():
+    print(f"skipped: {NODE[0]} was not built")
     sys.exit(77)
 signal.signal(signal.SIGALRM, give_up)
 signal.signal(signal.SIGTERM, give_up)

@@ -19,6 +19,8 @@ ImageInput::ImageInput(ros::NodeHandle node, bool approximate, std::size_t queue
             info_ = info;
             changed_.notify_one();
           })) {
+  ROS_INFO("waiting for images on %s, %s and %s", color_.getTopic().c_str(),
+           depth_.getTopic().c_str(), info_subscriber_.getTopic().c_str());
   if (approximate) {
     using Policy = message_filters::sync_policies::ApproximateTime<Image, Image>;
     approximate_ = std::make_unique<Approximate>(Policy(kUnpaired), color_, depth_);
