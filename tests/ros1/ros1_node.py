@@ -41,7 +41,7 @@ PARAMETERS = {"pipeline": "orb_baseline", "set": ["map_backend.type=octomap"], "
 NODE = (PACKAGE / "stillpoint_node", "__name:=stillpoint", f"rgb/image_raw:={CAMERA}/color/image_raw",
         f"rgb/camera_info:={CAMERA}/color/camera_info",
         f"depth_registered/image_raw:={CAMERA}/aligned_depth_to_color/image_raw")
-LAUNCH = ("roslaunch", "--wait", "stillpoint_ros", "stillpoint.launch", "pipeline:=orb_baseline")
+LAUNCH = ("roslaunch", "--wait", "stillpoint_ros", "stillpoint.launch", "pipeline:=orb_baseline", "base_frame:=")
 WITH_ROBOT = {"base_frame": "base_link", "odom_frame": "odom", "depth_factor": 5000.0}
 
 
@@ -230,14 +230,15 @@ def camera_alone(processes, inbox, truth):
 
 
 def faulty_parameters(processes):
-    for parameters, message in (({"pipeline": "stillpiont"}, "did you mean 'stillpoint'?"),
-                                ({"aproximate": True}, "/stillpoint/aproximate: there is no such parameter; "
-                                                       "did you mean 'approximate'?"),
-                                ({"queue_size": "many"}, "/stillpoint/queue_size: the parameter has another type")):
+    for code, parameters, message in (
+            (2, {"pipeline": "stillpiont"}, "did you mean 'stillpoint'?"),
+            (2, {"aproximate": True}, "aproximate: there is no such parameter; did you mean 'approximate'?"),
+            (2, {"queue_size": "many"}, "/stillpoint/queue_size: the parameter has another type"),
+            (3, {"load_map": True, "map_file": "/no/such.map"}, "/no/such.map: this map cannot be used")):
         rospy.delete_param("/stillpoint")
         rospy.set_param("/stillpoint", parameters)
         processes.start("faulty", *NODE)
-        expect(processes.wait("faulty", PATIENCE) == 2 and message in processes.log("faulty"), message)
+        expect(processes.wait("faulty", PATIENCE) == code and message in processes.log("faulty"), message)
 
 
 def environment():
