@@ -41,7 +41,7 @@ PARAMETERS = {"pipeline": "orb_baseline", "set": ["map_backend.type=octomap"], "
 NODE = (PACKAGE / "stillpoint_node", "__name:=stillpoint", f"rgb/image_raw:={CAMERA}/color/image_raw",
         f"rgb/camera_info:={CAMERA}/color/camera_info",
         f"depth_registered/image_raw:={CAMERA}/aligned_depth_to_color/image_raw")
-LAUNCH = ("roslaunch", "--wait", "stillpoint_ros", "stillpoint.launch", "pipeline:=orb_baseline", "base_frame:=")
+LAUNCH = ("roslaunch", "--wait", "stillpoint_ros", "stillpoint.launch", "pipeline:=orb_baseline")
 WITH_ROBOT = {"base_frame": "base_link", "odom_frame": "odom", "depth_factor": 5000.0}
 
 
