@@ -187,12 +187,18 @@ def check_services(processes, inbox, truth, map_from_room):
            f"{len(inbox.messages['pose'])} frames are found in the loaded map, to {error * 1000:.1f} mm")
 
 
-def check_refused_images(inbox):
+def check_other_images(inbox):
+    inbox.clear()
     publishers = [rospy.Publisher(topic, Image, queue_size=1, latch=True)
                   for topic in (f"{CAMERA}/color/image_raw", f"{CAMERA}/aligned_depth_to_color/image_raw")]
-    stamp = rospy.Time(2000)
-    publishers[0].publish(image_message(numpy.zeros((240, 320, 2), numpy.uint8), "yuv422", stamp))
-    publishers[1].publish(image_message(numpy.zeros((240, 320), numpy.uint16), "16UC1", stamp))
+    depth = numpy.full((240, 320), 5000, numpy.uint16)
+    publishers[0].publish(image_message(numpy.zeros((240, 320, 3), numpy.uint8), "rgb8", rospy.Time(2000)))
+    publishers[1].publish(image_message(depth, "16UC1", rospy.Time(2000)))
+    state = inbox.wait("state", lambda its: True, "a black image is answered")
+    expect(state.message == "lost" and state.level == DiagnosticStatus.WARN and not inbox.messages["pose"] and
+           not inbox.messages["tf"], "the camera is lost, and there is no pose")
+    publishers[0].publish(image_message(numpy.zeros((240, 320, 2), numpy.uint8), "yuv422", rospy.Time(2001)))
+    publishers[1].publish(image_message(depth, "16UC1", rospy.Time(2001)))
     state = inbox.wait("state", lambda its: its.level == DiagnosticStatus.ERROR, "an encoding is refused")
     expect("'yuv422'" in state.message, state.message)
     for publisher in publishers:
@@ -211,7 +217,7 @@ def robot_with_odometry(processes, inbox, truth, tf_buffer):
     check_poses(inbox, map_from_room, truth, tf_buffer)
     check_maps(inbox, map_from_room)
     check_services(processes, inbox, truth, map_from_room)
-    check_refused_images(inbox)
+    check_other_images(inbox)
     expect(processes.stop("node") == 0, "the node ends at Ctrl-C")
 
 

@@ -9,8 +9,7 @@
 
 namespace stillpoint_ros {
 
-Services::Services(ros::NodeHandle node, Session& session)
-    : node_(std::move(node)), session_(session) {
+Services::Services(const ros::NodeHandle& node, Session& session) : node_(node), session_(session) {
   add("save_map", [this] { return session_.save_map(map_file(node_)); });
   add("load_map", [this] { return session_.load_map(map_file(node_)); });
   add("reset", [this] { return session_.reset(); });

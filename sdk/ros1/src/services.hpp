@@ -16,7 +16,7 @@ namespace stillpoint_ros {
 class Services {
  public:
   /// `session` must outlive it. The file of the map is the node's parameter `map_file`.
-  Services(ros::NodeHandle node, Session& session);
+  Services(const ros::NodeHandle& node, Session& session);
 
  private:
   void add(const std::string& name, std::function<std::string()> action);
