@@ -58,6 +58,10 @@ std::shared_ptr<const SparseMap> Engine::map() const { return pipeline_->map(); 
 
 std::vector<LabelledPoint> Engine::dense_map() const { return pipeline_->dense_map(); }
 
+bool Engine::save_dense_map(const std::filesystem::path& directory) const {
+  return pipeline_->save_dense_map(directory);
+}
+
 const ClassNames& Engine::classes() const { return pipeline_->classes(); }
 
 const std::vector<TrackedPose>& Engine::poses() const { return pipeline_->poses(); }

@@ -90,12 +90,18 @@ TEST(PushedRecording, IsTrackedOnThreadsAndItsMapCanBeGoneOnWith) {
     std::jthread viewer([&](const std::stop_token& stop) {
       for (std::size_t landmarks = 0; !stop.stop_requested();) {
         landmarks = std::max(landmarks, engine.map()->landmark_count());
-        if (landmarks > 0) engine.dense_map();
+        if (landmarks == 0) continue;
+        engine.dense_map();
+        if (!fs::exists(folder.path() / "meanwhile/map.ot"))
+          engine.save_dense_map(folder.path() / "meanwhile");
       }
     });
     push_all(engine, recording);
     viewer.request_stop();
     EXPECT_GT(engine.dense_map().size(), 1000u);
+    EXPECT_TRUE(engine.save_dense_map(folder.path() / "at_the_end"));
+    EXPECT_EQ(text_of(folder.path() / "at_the_end/map.ot"), text_of(folder.path() / "map/map.ot"));
+    EXPECT_TRUE(fs::exists(folder.path() / "meanwhile/map.ot"));
     EXPECT_EQ(engine.trajectory().size(), pairs_of(recording).size());
     save_map(*engine.map(), folder.path() / "room.map");
   }

@@ -81,6 +81,10 @@ class STILLPOINT_EXPORT Engine {
   /// What the dense map holds now, in the world; it is some key frames behind. Nothing without a
   /// map back end. From any thread, at any time; waits for the key frame that is being mapped.
   std::vector<LabelledPoint> dense_map() const;
+  /// Writes the files of the dense map as it is now into `directory`, which is created when
+  /// missing. False: there is no map back end. Throws Error when they cannot be written. From any
+  /// thread, at any time; dense mapping waits meanwhile.
+  bool save_dense_map(const std::filesystem::path& directory) const;
   /// Of the segmenter, by label: of images, objects and the dense map. Empty without one.
   const ClassNames& classes() const;
   /// Of every frame processed, in order.

@@ -49,7 +49,7 @@ class MappingSystem {
   std::vector<LabelledPoint> dense_points();
   /// The same, but nothing while a key frame is being mapped, or without a dense map.
   std::optional<std::vector<LabelledPoint>> dense_points_if_idle();
-  /// Writes the dense map into `directory`; false: there is none. Only after end().
+  /// Writes the dense map as it is now into `directory`; false: there is none. From any thread.
   bool save(const std::filesystem::path& directory);
 
  private:

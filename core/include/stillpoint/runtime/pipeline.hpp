@@ -36,6 +36,7 @@ class Pipeline {
 
   MapStore::Snapshot map() const { return mapping_.snapshot(); }
   std::vector<LabelledPoint> dense_map() { return mapping_.dense_points(); }
+  bool save_dense_map(const std::filesystem::path& directory) { return mapping_.save(directory); }
   const ClassNames& classes() const { return classes_; }
   const std::vector<TrackedPose>& poses() const { return poses_; }
 
