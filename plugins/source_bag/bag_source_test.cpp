@@ -3,11 +3,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <functional>
 #include <opencv2/imgcodecs.hpp>
 
 #include "support/bag_writer.hpp"
+#include "support/error_text.hpp"
 #include "support/recording_writer.hpp"
+#include "support/source_frames.hpp"
 
 namespace stillpoint::source_bag {
 namespace {
@@ -17,22 +18,23 @@ using testing::BagBytes;
 using testing::BagStyle;
 using testing::BagWriter;
 using testing::camera_info_message;
+using testing::color_image;
 using testing::compressed_message;
+using testing::depth_image;
 using ::testing::ElementsAre;
+using testing::error_text;
+using testing::frames_of;
 using ::testing::HasSubstr;
 using testing::image_message;
+using testing::kImageHeight;
+using testing::kImageWidth;
 using testing::TemporaryFolder;
 using testing::TestCameraInfo;
 
-constexpr int kWidth = 64;
-constexpr int kHeight = 48;
 constexpr std::int64_t kStart = 1'305'031'102'175'304'000;  // ns
 constexpr std::int64_t kInterval = 33'333'000;              // ns
 constexpr const char* kColor = "/camera/color/image_raw";
 constexpr const char* kDepth = "/camera/depth_registered/image_raw";
-
-cv::Mat color_image(int value) { return {kHeight, kWidth, CV_8UC3, cv::Scalar(value, 100, 200)}; }
-cv::Mat depth_image(int value) { return {kHeight, kWidth, CV_16UC1, cv::Scalar(value)}; }
 
 BagBytes encoded(const cv::Mat& image, const std::string& ending = ".png") {
   BagBytes bytes;
@@ -78,21 +80,6 @@ class BagSourceTest : public ::testing::TestWithParam<BagStyle> {
     return BagSource(options, context);
   }
   static std::int64_t stamp(int i) { return kStart + kInterval * i; }
-  static std::vector<Frame> read_all(BagSource& source) {
-    std::vector<Frame> frames;
-    while (auto frame = source.next()) frames.push_back(*frame);
-    return frames;
-  }
-  static std::string message_of(const std::function<void()>& action, Fault fault) {
-    try {
-      action();
-    } catch (const Error& error) {
-      EXPECT_EQ(error.fault(), fault);
-      return error.what();
-    }
-    return "nothing was thrown";
-  }
-
   TemporaryFolder folder_;
   std::filesystem::path file_;
   std::unique_ptr<BagWriter> writer_;
@@ -103,14 +90,14 @@ TEST_P(BagSourceTest, GivesFramesWithTheCameraOfTheBag) {
   write(5);
   BagSource source = open();
   EXPECT_EQ(source.size(), 5U);
-  const auto frames = read_all(source);
+  const auto frames = frames_of(source);
   ASSERT_EQ(frames.size(), 5U);
   EXPECT_EQ(frames[3].index, 3U);
   EXPECT_DOUBLE_EQ(frames[3].time, 1305031102.275303);  // of the exposure
   EXPECT_EQ(frames[3].bgr.at<cv::Vec3b>(5, 7), cv::Vec3b(3, 100, 200));
   EXPECT_FLOAT_EQ(frames[3].depth.at<float>(5, 7), 1.003F);  // millimetres
   EXPECT_EQ(frames[3].camera->fx, 50);
-  EXPECT_EQ(frames[3].camera->width, kWidth);
+  EXPECT_EQ(frames[3].camera->width, kImageWidth);
   EXPECT_TRUE(source.report().warnings.empty());
   EXPECT_FALSE(source.next().has_value());
 }
@@ -121,7 +108,7 @@ TEST_P(BagSourceTest, ReadsATruncatedBagAsFarAsItGoes) {
   writer_.reset();
   testing::truncate_file(file_, 0.6);
   BagSource source = open();
-  const auto frames = read_all(source);
+  const auto frames = frames_of(source);
   EXPECT_GE(frames.size(), 8U);
   EXPECT_LE(frames.size(), 13U);
   EXPECT_FALSE(source.report().warnings.empty());
@@ -141,7 +128,7 @@ TEST_F(OneBagSourceTest, TakesAnotherCameraAndItsDepthFactor) {
   write(2);
   StageContext context;
   context.camera = CameraModel{
-      .name = "mine", .width = kWidth, .height = kHeight, .fx = 60, .depth_factor = 2000};
+      .name = "mine", .width = kImageWidth, .height = kImageHeight, .fx = 60, .depth_factor = 2000};
   BagSource source = open({}, context);
   const auto frame = source.next();
   ASSERT_TRUE(frame.has_value());
@@ -173,7 +160,7 @@ TEST_F(OneBagSourceTest, ReadsCompressedImages) {
                depth_file);
   }
   BagSource source = open();
-  const auto frames = read_all(source);
+  const auto frames = frames_of(source);
   ASSERT_EQ(frames.size(), 2U);
   EXPECT_NEAR(frames[0].bgr.at<cv::Vec3b>(5, 7)[0], 90, 3);
   EXPECT_EQ(frames[1].bgr.at<cv::Vec3b>(5, 7), cv::Vec3b(91, 100, 200));
@@ -191,7 +178,7 @@ TEST_F(OneBagSourceTest, SkipsImagesThatCannotBeUsed) {
     depth(i);
   }
   BagSource source = open();
-  EXPECT_EQ(read_all(source).size(), 4U);
+  EXPECT_EQ(frames_of(source).size(), 4U);
   EXPECT_EQ(source.report().skipped, 1U);
   EXPECT_THAT(source.report().warnings,
               ElementsAre(AllOf(HasSubstr("skipped: /camera/color/image_raw at 1305031102.2"),
@@ -202,7 +189,7 @@ TEST_F(OneBagSourceTest, LeavesOutRepeatedStamps) {
   write(3);
   color(2);
   BagSource source = open();
-  EXPECT_EQ(read_all(source).size(), 3U);
+  EXPECT_EQ(frames_of(source).size(), 3U);
   EXPECT_THAT(source.report().warnings,
               ElementsAre(HasSubstr("1 message is left out for a repeated")));
 }
@@ -211,7 +198,7 @@ TEST_F(OneBagSourceTest, RefusesDepthThatIsNotRegistered) {
   info();
   color(0);
   depth(0, "depth_frame", "/camera/depth/image_raw");
-  EXPECT_THAT(message_of([&] { open(); }, Fault::kUsage),
+  EXPECT_THAT(error_text(Fault::kUsage, [&] { open(); }),
               AllOf(HasSubstr("is in the frame 'depth_frame'"), HasSubstr("not registered"),
                     HasSubstr("source.registered=true")));
   EXPECT_EQ(open({.registered = true}).size(), 1U);
@@ -220,13 +207,13 @@ TEST_F(OneBagSourceTest, RefusesDepthThatIsNotRegistered) {
 TEST_F(OneBagSourceTest, AsksForACamera) {
   color(0);
   depth(0);
-  EXPECT_THAT(message_of([&] { open(); }, Fault::kUsage),
+  EXPECT_THAT(error_text(Fault::kUsage, [&] { open(); }),
               AllOf(HasSubstr("has no CameraInfo"), HasSubstr("--camera")));
 }
 
 TEST_F(OneBagSourceTest, SaysWhenNothingPairs) {
   write(2);
-  EXPECT_THAT(message_of([&] { open({.max_difference = 0.001}); }, Fault::kData),
+  EXPECT_THAT(error_text(Fault::kData, [&] { open({.max_difference = 0.001}); }),
               AllOf(HasSubstr("within 0.001"), HasSubstr("change max_difference")));
   EXPECT_EQ(open({.max_difference = 0.001, .time_offset = -0.004}).size(), 2U);
 }

@@ -6,6 +6,7 @@
 #include <fstream>
 
 #include "support/bag_writer.hpp"
+#include "support/error_text.hpp"
 #include "support/recording_writer.hpp"
 
 namespace stillpoint::bag {
@@ -14,6 +15,7 @@ namespace {
 using stillpoint::testing::BagBytes;
 using stillpoint::testing::BagStyle;
 using stillpoint::testing::BagWriter;
+using stillpoint::testing::error_text;
 using stillpoint::testing::make_bag_writer;
 using stillpoint::testing::TemporaryFolder;
 using ::testing::AllOf;
@@ -149,24 +151,18 @@ INSTANTIATE_TEST_SUITE_P(Formats, BagReaderTest,
                                   (style.finished ? "" : "_unfinished");
                          });
 
-std::string message_of(const std::filesystem::path& path) {
-  try {
-    open_bag(path);
-  } catch (const Error& error) {
-    EXPECT_EQ(error.fault(), Fault::kData);
-    return error.what();
-  }
-  return "nothing was thrown";
+std::string refusal_of(const std::filesystem::path& path) {
+  return error_text(Fault::kData, [&] { open_bag(path); });
 }
 
 TEST(OpenBag, RefusesWhatIsNoBag) {
   const TemporaryFolder folder;
-  EXPECT_THAT(message_of(folder.path() / "missing.bag"), HasSubstr("no such file"));
-  EXPECT_THAT(message_of(folder.path()), HasSubstr("holds no bag"));
-  EXPECT_THAT(message_of(folder.write("a.bag", "")), HasSubstr("is empty"));
-  EXPECT_THAT(message_of(folder.write("a.bag", "hello")), HasSubstr("is neither a ROS 1 bag"));
-  EXPECT_THAT(message_of(folder.write("a.bag", "#ROSBAG V1.2\n")), HasSubstr("rosbag fix"));
-  EXPECT_THAT(message_of(folder.write("a.db3.zstd", "\x28\xb5\x2f\xfd....")), HasSubstr("zstd -d"));
+  EXPECT_THAT(refusal_of(folder.path() / "missing.bag"), HasSubstr("no such file"));
+  EXPECT_THAT(refusal_of(folder.path()), HasSubstr("holds no bag"));
+  EXPECT_THAT(refusal_of(folder.write("a.bag", "")), HasSubstr("is empty"));
+  EXPECT_THAT(refusal_of(folder.write("a.bag", "hello")), HasSubstr("is neither a ROS 1 bag"));
+  EXPECT_THAT(refusal_of(folder.write("a.bag", "#ROSBAG V1.2\n")), HasSubstr("rosbag fix"));
+  EXPECT_THAT(refusal_of(folder.write("a.db3.zstd", "\x28\xb5\x2f\xfd....")), HasSubstr("zstd -d"));
 }
 
 TEST(OpenBag, RefusesOtherDatabases) {
@@ -175,7 +171,7 @@ TEST(OpenBag, RefusesOtherDatabases) {
   ASSERT_EQ(sqlite3_open((folder.path() / "a.db3").c_str(), &database), SQLITE_OK);
   sqlite3_exec(database, "CREATE TABLE people(name)", nullptr, nullptr, nullptr);
   sqlite3_close(database);
-  EXPECT_THAT(message_of(folder.path() / "a.db3"), HasSubstr("is no bag of ROS 2: no such table"));
+  EXPECT_THAT(refusal_of(folder.path() / "a.db3"), HasSubstr("is no bag of ROS 2: no such table"));
 }
 
 TEST(OpenBag, RunsNoSqlOfTheFile) {
@@ -189,7 +185,7 @@ TEST(OpenBag, RunsNoSqlOfTheFile) {
                          nullptr, nullptr, nullptr),
             SQLITE_OK);
   sqlite3_close(database);
-  EXPECT_THAT(message_of(folder.path() / "a.db3"), HasSubstr("is no bag of ROS 2"));
+  EXPECT_THAT(refusal_of(folder.path() / "a.db3"), HasSubstr("is no bag of ROS 2"));
 }
 
 // The sizes of a chunk and of a message are numbers that anybody can write.
