@@ -30,11 +30,13 @@ using testing::kImageHeight;
 using testing::kImageWidth;
 using testing::TemporaryFolder;
 using testing::TestCameraInfo;
+using testing::transforms_message;
 
 constexpr std::int64_t kStart = 1'305'031'102'175'304'000;  // ns
 constexpr std::int64_t kInterval = 33'333'000;              // ns
 constexpr const char* kColor = "/camera/color/image_raw";
 constexpr const char* kDepth = "/camera/depth_registered/image_raw";
+constexpr const char* kUnregistered = "/camera/depth/image_raw";
 
 BagBytes encoded(const cv::Mat& image, const std::string& ending = ".png") {
   BagBytes bytes;
@@ -65,6 +67,16 @@ class BagSourceTest : public ::testing::TestWithParam<BagStyle> {
   void info(const TestCameraInfo& camera = {}) {
     add("/camera/color/camera_info", "sensor_msgs/CameraInfo", stamp(0),
         camera_info_message(serialisation_, camera));
+  }
+  void depth_info() {
+    add("/camera/depth/camera_info", "sensor_msgs/CameraInfo", stamp(0),
+        camera_info_message(serialisation_, {.frame = "depth_frame"}));
+  }
+  /// The depth camera is 10 cm to the left of the colour camera.
+  void tf() {
+    const Pose color_from_depth(Eigen::Translation3d(0.1, 0, 0));
+    add("/tf_static", "tf2_msgs/TFMessage", stamp(0),
+        transforms_message(serialisation_, {{"color_frame", "depth_frame", color_from_depth}}));
   }
   void write(int count) {
     info();
@@ -194,14 +206,58 @@ TEST_F(OneBagSourceTest, LeavesOutRepeatedStamps) {
               ElementsAre(HasSubstr("1 message is left out for a repeated")));
 }
 
-TEST_F(OneBagSourceTest, RefusesDepthThatIsNotRegistered) {
+TEST_F(OneBagSourceTest, RefusesDepthOfWhichNothingSaysWhereItIs) {
   info();
   color(0);
-  depth(0, "depth_frame", "/camera/depth/image_raw");
+  depth(0, "depth_frame", kUnregistered);
   EXPECT_THAT(error_text(Fault::kUsage, [&] { open(); }),
-              AllOf(HasSubstr("is in the frame 'depth_frame'"), HasSubstr("not registered"),
-                    HasSubstr("source.registered=true")));
+              AllOf(HasSubstr("is in the frame 'depth_frame'"),
+                    HasSubstr("the bag has no CameraInfo of /camera/depth/image_raw"),
+                    HasSubstr("source.depth_info_topic"), HasSubstr("source.registered=true")));
   EXPECT_EQ(open({.registered = true}).size(), 1U);
+}
+
+TEST_F(OneBagSourceTest, RefusesDepthThatTfDoesNotConnect) {
+  info();
+  depth_info();
+  color(0);
+  depth(0, "depth_frame", kUnregistered);
+  EXPECT_THAT(error_text(Fault::kUsage, [&] { open(); }),
+              AllOf(HasSubstr("cannot be registered to the colour images"),
+                    HasSubstr("tf does not say how 'depth_frame' lies to 'color_frame'"),
+                    HasSubstr("/tf_static"), HasSubstr("source.registered=true")));
+}
+
+// A patch a metre away, seen by a camera 10 cm to the left of the colour camera: with a focal
+// length of 50 px, it is 5 px farther right in the colour image.
+TEST_F(OneBagSourceTest, RegistersDepthByTf) {
+  info();
+  depth_info();
+  tf();
+  color(0);
+  cv::Mat patch = depth_image(0);
+  patch(cv::Rect(20, 15, 10, 8)) = 1000;
+  add(kUnregistered, "sensor_msgs/Image", stamp(0),
+      image_message(serialisation_, stamp(0), "depth_frame", patch, "16UC1"));
+  color(1);
+  add(kUnregistered, "sensor_msgs/Image", stamp(1),
+      image_message(serialisation_, stamp(1), "depth_frame", patch.rowRange(0, 20), "16UC1"));
+  cv::Mat metres;
+  patch.convertTo(metres, CV_32F, 0.001);
+  color(2);
+  add(kUnregistered, "sensor_msgs/Image", stamp(2),
+      image_message(serialisation_, stamp(2), "depth_frame", metres, "32FC1"));
+  BagSource source = open();
+  const auto frames = frames_of(source);
+  cv::Mat expected = cv::Mat::zeros(kImageHeight, kImageWidth, CV_32FC1);
+  expected(cv::Rect(25, 15, 10, 8)) = 1;
+  ASSERT_EQ(frames.size(), 2U);
+  for (const Frame& frame : frames) {
+    EXPECT_EQ(cv::norm(frame.depth, expected, cv::NORM_INF), 0);
+    EXPECT_EQ(frame.bgr.size(), frame.depth.size());
+  }
+  EXPECT_THAT(source.report().warnings,
+              ElementsAre(HasSubstr("the depth image has 64 x 20 pixels, but its camera")));
 }
 
 TEST_F(OneBagSourceTest, AsksForACamera) {

@@ -19,7 +19,7 @@ using stillpoint::testing::error_text;
 using stillpoint::testing::make_bag_writer;
 using stillpoint::testing::TemporaryFolder;
 using ::testing::AllOf;
-using ::testing::Each;
+using ::testing::Contains;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
@@ -60,6 +60,19 @@ std::vector<int> numbers_in(BagReader& bag) {
     }
   }
   return numbers;
+}
+
+/// What is not checked by anything is read as it is.
+std::size_t count_readable(BagReader& bag) {
+  std::size_t readable = 0;
+  for (const MessagePlace& place : bag.messages()) {
+    try {
+      bag.read(place);
+      ++readable;
+    } catch (const Error&) {
+    }
+  }
+  return readable;
 }
 
 class BagReaderTest : public ::testing::TestWithParam<BagStyle> {
@@ -109,23 +122,30 @@ TEST_P(BagReaderTest, ReadsAroundADamagedPlace) {
     stream << std::string(GetParam().format == "db3" ? 4096 : 64, '\xff');
   }
   const auto bag = open_bag(file());
-  // What is not checked by anything is read as it is.
-  std::size_t readable = 0;
-  for (const MessagePlace& place : bag->messages()) {
-    try {
-      bag->read(place);
-      ++readable;
-    } catch (const Error&) {
-    }
-  }
   // Without chunks, nothing says where to go on behind a record with a damaged length.
-  EXPECT_GE(readable, GetParam().messages_in_chunk == 0 ? kCount / 2U : kCount - 8U);
+  EXPECT_GE(count_readable(*bag), GetParam().messages_in_chunk == 0 ? kCount / 2U : kCount - 8U);
+}
+
+// Lengths, indices, names, numbers of topics: eight bytes of 0xff, everywhere in turn.
+TEST_P(BagReaderTest, DamageAnywhereCostsTheChunksThatItIsIn) {
+  if (!GetParam().finished || GetParam().messages_in_chunk != 4 || GetParam().format == "db3")
+    GTEST_SKIP() << "there are no chunks, or no index that says where they are";
+  write_bag(file(), GetParam());
+  std::ifstream stream(file(), std::ios::binary);
+  const std::string whole(std::istreambuf_iterator<char>(stream), {});
+  for (std::size_t at = 16; at + 8 < whole.size(); at += whole.size() / 150) {
+    std::string damaged = whole;
+    damaged.replace(at, 8, 8, '\xff');
+    const auto bag = open_bag(folder_.write("damaged", damaged));
+    EXPECT_GE(count_readable(*bag), kCount - 8U) << "damaged at byte " << at;
+  }
 }
 
 TEST_P(BagReaderTest, JoinsTheFilesOfAFolder) {
   const std::string& ending = GetParam().format;
   write_bag(folder_.path() / ("part_10." + ending), GetParam(), 8, kCount);
   write_bag(folder_.path() / ("part_9." + ending), GetParam(), 1, 8);
+  folder_.write("part_11." + ending, "");  // of a recorder that was killed
   folder_.write("metadata.yaml", "rosbag2_bagfile_information: {}\n");
   const auto bag = open_bag(folder_.path());
   ASSERT_THAT(bag->topics(), SizeIs(2));
@@ -133,6 +153,7 @@ TEST_P(BagReaderTest, JoinsTheFilesOfAFolder) {
   ASSERT_THAT(numbers, SizeIs(kCount - 1));
   EXPECT_TRUE(std::ranges::is_sorted(numbers));
   EXPECT_THAT(bag->format(), HasSubstr("2 files"));
+  EXPECT_THAT(bag->damage(), Contains(AllOf(HasSubstr("part_11"), HasSubstr("is empty"))));
 }
 
 INSTANTIATE_TEST_SUITE_P(Formats, BagReaderTest,
@@ -159,6 +180,10 @@ TEST(OpenBag, RefusesWhatIsNoBag) {
   const TemporaryFolder folder;
   EXPECT_THAT(refusal_of(folder.path() / "missing.bag"), HasSubstr("no such file"));
   EXPECT_THAT(refusal_of(folder.path()), HasSubstr("holds no bag"));
+  folder.write("two/a.bag", "");
+  folder.write("two/b.bag", "");
+  EXPECT_THAT(refusal_of(folder.path() / "two"),
+              HasSubstr("none of its bags can be read; first: "));
   EXPECT_THAT(refusal_of(folder.write("a.bag", "")), HasSubstr("is empty"));
   EXPECT_THAT(refusal_of(folder.write("a.bag", "hello")), HasSubstr("is neither a ROS 1 bag"));
   EXPECT_THAT(refusal_of(folder.write("a.bag", "#ROSBAG V1.2\n")), HasSubstr("rosbag fix"));

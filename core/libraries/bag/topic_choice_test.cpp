@@ -46,11 +46,11 @@ class TopicChoiceTest : public ::testing::Test {
   }
   TopicChoice choose(const TopicNames& names = {}) { return choose_topics(bag(), names); }
 
- private:
   void add(const std::string& topic, const std::string& type, const std::vector<std::uint8_t>& m) {
     writer_->add(topic, type, 1'000'000'000 + ++time_, m);
   }
 
+ private:
   TemporaryFolder folder_;
   std::filesystem::path file_ = folder_.path() / "a.bag";
   std::unique_ptr<stillpoint::testing::BagWriter> writer_ = make_bag_writer(file_, {});
@@ -72,6 +72,10 @@ TEST_F(TopicChoiceTest, FindsThoseOfARealSense) {
   EXPECT_EQ(bag().topics()[choice.color.info.value()].name, "/camera/color/camera_info");
   EXPECT_TRUE(choice.registered());
   EXPECT_FALSE(choice.color.rectified());
+  const TopicChoice other = choose({.depth = "/camera/depth/image_rect_raw"});
+  EXPECT_FALSE(other.registered());
+  EXPECT_TRUE(other.depth.rectified());
+  EXPECT_EQ(bag().topics()[other.depth.info.value()].name, "/camera/depth/camera_info");
 }
 
 TEST_F(TopicChoiceTest, FindsThoseOfTheTumBenchmark) {
@@ -149,6 +153,14 @@ TEST_F(TopicChoiceTest, TheCameraIsThatOfTheImages) {
       camera_in_bag(bag(), choose({.color = "/color/image_rect_color"}).color);
   EXPECT_EQ(rectified.fx, 45);
   EXPECT_TRUE(rectified.distortion.empty());
+}
+
+TEST_F(TopicChoiceTest, TheCameraIsThatOfTheFirstMessageThatIsWhole) {
+  image("/color/image", "c", "rgb8");
+  image("/depth/image", "c", "16UC1");
+  add("/color/camera_info", "sensor_msgs/CameraInfo", {1, 2, 3});
+  info("/color/camera_info");
+  EXPECT_EQ(camera_in_bag(bag(), choose().color).fx, 50);
 }
 
 TEST_F(TopicChoiceTest, RefusesCamerasItDoesNotHave) {
