@@ -102,6 +102,7 @@ class Run(unittest.TestCase):
                           "/tracking_state": "std_msgs/msg/String", "/keyframe": "geometry_msgs/msg/PoseStamped",
                           "/path": "nav_msgs/msg/Path", "/keyframes": "nav_msgs/msg/Path",
                           "/landmarks": "sensor_msgs/msg/PointCloud2", "/dense_map": "sensor_msgs/msg/PointCloud2",
+                          "/voxels": "visualization_msgs/msg/Marker",
                           "/cost_map": "nav_msgs/msg/OccupancyGrid",
                           "/camera/color/image_raw/compressed": "sensor_msgs/msg/CompressedImage",
                           "/camera/color/camera_info": "sensor_msgs/msg/CameraInfo"})
@@ -176,6 +177,20 @@ class Run(unittest.TestCase):
                for x, y, z, b, g, r, _, label in struct.iter_unpack("<fffBBBBB", cloud["data"])}
         self.assertEqual(got, points)
         self.assertGreater(len(points), 100)
+
+    def test_voxels_are_the_points_of_the_dense_map_as_cubes(self):
+        (_, cloud), = self.messages["/dense_map"]
+        points = sorted((round(x, 4), round(y, 4), round(z, 4), r, g, b)
+                        for x, y, z, b, g, r, _, _ in struct.iter_unpack("<fffBBBBB", cloud["data"]))
+        (_, marker), = self.messages["/voxels"]
+        self.assertEqual((marker["header"], marker["type"], marker["action"]), (cloud["header"], 6, 0))  # CUBE_LIST, ADD
+        self.assertEqual((marker["pose"]["orientation"]["w"], set(marker["scale"].values()), marker["color"]["a"]),
+                         (1, {0.05}, 1))
+        cubes = sorted((round(at["x"], 4), round(at["y"], 4), round(at["z"], 4),
+                        *(round(255 * color[key]) for key in "rgb"))
+                       for at, color in zip(marker["points"], marker["colors"]))
+        self.assertEqual(cubes, points)
+        self.assertEqual(len(marker["colors"]), len(points))
 
     def test_the_cost_map_is_that_of_its_file(self):
         (_, grid), = self.messages["/cost_map"]

@@ -85,10 +85,10 @@ TEST_F(BagAuditTest, ReadsImages) {
   const BagAudit result = audit();
   EXPECT_EQ(result.sampled, 20U);
   EXPECT_THAT(result.color_kinds,
-              ElementsAre(testing::Pair("64 x 48, 8 bit, 3 channels, rgb8", 19)));
+              ElementsAre(::testing::Pair("64 x 48, 8 bit, 3 channels, rgb8", 19)));
   EXPECT_THAT(result.depth_kinds,
-              ElementsAre(testing::Pair("64 x 48, 16 bit, 1 channel, 16UC1", 19),
-                          testing::Pair("64 x 48, 32 bit, 1 channel, 16UC1", 1)));
+              ElementsAre(::testing::Pair("64 x 48, 16 bit, 1 channel, 16UC1", 19),
+                          ::testing::Pair("64 x 48, 32 bit, 1 channel, 16UC1", 1)));
   EXPECT_DOUBLE_EQ(result.depth_values.valid_share(), 39.0 / 40);
   EXPECT_EQ(result.depth_values.quantile(0.5), 2000);
   EXPECT_THAT(result.unreadable, ElementsAre(AllOf(HasSubstr("/color/image at 2.8"),
