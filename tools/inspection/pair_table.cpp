@@ -52,8 +52,9 @@ void print_histogram(std::ostream& out, const PairAudit& audit) {
     shares[i] = audit.depth_values.share_between(kEdges[i], kEdges[i + 1], audit.depth_factor);
   const double largest = std::max(1e-9, *std::ranges::max_element(shares));
   for (std::size_t i = 0; i < kBins; ++i) {
-    out << "    " << bin_text(i) << right(percent(shares[i]), 10) << "  ";
-    for (long k = std::lround(kBarLength * shares[i] / largest); k > 0; --k) out << "█";
+    const long blocks = std::lround(kBarLength * shares[i] / largest);
+    out << "    " << bin_text(i) << right(percent(shares[i]), 10) << (blocks > 0 ? "  " : "");
+    for (long k = 0; k < blocks; ++k) out << "█";
     out << '\n';
   }
 }
