@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""specification_test.py PROGRAM FOLDER: records and runs a small simulated scene, and compares what is in the MCAP
-files with the other files of the same run. The MCAP files stay in the folder, for foreign_reader_test.py."""
+"""specification_test.py PROGRAM FOLDER: records a small simulated scene, runs the recording, and compares what is in
+the MCAP files with the other files of the same run. The MCAP files stay in the folder, for foreign_reader_test.py."""
 import pathlib
 import shutil
 import struct
@@ -17,7 +17,9 @@ SCENE = f"""version: 1
 source: {{type: simulation, frames: {FRAMES}, people: [], balls: []}}
 camera: {{name: small, width: 320, height: 240, fx: 267.7, fy: 269.6, cx: 159.8, cy: 123.6}}
 """
-RUN = SCENE + """tracker: {type: orb}
+RECORDED = f"version: 1\nsource: {{type: tum_rgbd, path: {FOLDER / 'recording'}}}\n"
+CAMERA = "--camera", FOLDER / "recording/camera.yaml"
+RUN = RECORDED + """tracker: {type: orb}
 local_mapper: {type: orb}
 map_backend: {type: octomap, cost_map: {floor: [0, -1, 0, -1]}}
 outputs:
@@ -233,8 +235,8 @@ class FullDisk(unittest.TestCase):
         shutil.rmtree(out, ignore_errors=True)
         out.mkdir()
         (out / "full.mcap").symlink_to("/dev/full")
-        (FOLDER / "full.yaml").write_text(SCENE + FULL)
-        done = stillpoint("run", FOLDER / "full.yaml", "-o", out, exit_code=1)
+        (FOLDER / "full.yaml").write_text(RECORDED + FULL)
+        done = stillpoint("run", FOLDER / "full.yaml", *CAMERA, "-o", out, exit_code=1)
         self.assertEqual(done.stderr.count("No space left on device"), 1, done.stderr)
         self.assertIn("error: output (mcap) failed", done.stderr)
         self.assertIn("full.mcap: cannot write", done.stderr)
@@ -276,7 +278,7 @@ def write_files():
     (FOLDER / "run.yaml").write_text(RUN)
     stillpoint("record", FOLDER / "scene.yaml", "-o", FOLDER / "recording")
     stillpoint("record", FOLDER / "scene.yaml", "-o", FOLDER / "recording.mcap")
-    stillpoint("run", FOLDER / "run.yaml", "-o", FOLDER / "run")
+    stillpoint("run", FOLDER / "run.yaml", *CAMERA, "-o", FOLDER / "run")
 
 
 if __name__ == "__main__":
