@@ -6,6 +6,7 @@
 
 #include "mcap_writer/frames.hpp"
 #include "output_mcap/cost_map_file.hpp"
+#include "semantic_octree/octree_reader.hpp"
 #include "stillpoint/support/trajectory.hpp"
 
 namespace stillpoint::output_mcap {
@@ -53,6 +54,7 @@ McapOutput::McapOutput(const Options& options, const StageContext& context)
               .keyframes = writer_.add_channel<mcap_writer::Path>("/keyframes"),
               .landmarks = writer_.add_channel<mcap_writer::PointCloud>("/landmarks"),
               .dense_map = writer_.add_channel<mcap_writer::PointCloud>("/dense_map"),
+              .voxels = writer_.add_channel<mcap_writer::Voxels>("/voxels"),
               .cost_map = writer_.add_channel<mcap_writer::OccupancyGrid>("/cost_map")},
       image_topics_(
           options.images
@@ -102,6 +104,8 @@ void McapOutput::finish(const RunSummary& summary) {
     write_keyframes(summary.map, header);
     write_landmarks(summary.map, header);
     write_dense_map(summary, header);
+    write_voxels(summary, header);
+    write_cost_map(summary, header);
   }
   writer_.finish();
 }
@@ -131,15 +135,31 @@ void McapOutput::write_landmarks(const SparseMap& map, const Header& header) {
 }
 
 void McapOutput::write_dense_map(const RunSummary& summary, const Header& header) {
-  if (const std::vector<LabelledPoint> points = summary.dense_map(); !points.empty()) {
-    mcap_writer::PointCloud cloud{header, {}, {}, {}};
-    for (const LabelledPoint& point : points) {
-      cloud.points.push_back(point_in_map(point.position.cast<double>()));
-      cloud.rgb.push_back(rgb_of(point));
-      cloud.classes.push_back(point.label);
-    }
-    writer_.write(topics_.dense_map, header.time, cloud);
+  const std::vector<LabelledPoint> points = summary.dense_map();
+  if (points.empty()) return;
+  mcap_writer::PointCloud cloud{header, {}, {}, {}};
+  for (const LabelledPoint& point : points) {
+    cloud.points.push_back(point_in_map(point.position.cast<double>()));
+    cloud.rgb.push_back(rgb_of(point));
+    cloud.classes.push_back(point.label);
   }
+  writer_.write(topics_.dense_map, header.time, cloud);
+}
+
+/// Of the octree's file: how large they are, only that says.
+void McapOutput::write_voxels(const RunSummary& summary, const Header& header) {
+  const std::filesystem::path file = summary.map_directory / "map.ot";
+  if (summary.map_directory.empty() || !std::filesystem::exists(file)) return;
+  const semantic_octree::SavedOctree map = semantic_octree::read_octree(file);
+  mcap_writer::Voxels voxels{header, map.tree->getResolution(), {}, {}};
+  for (const LabelledPoint& point : semantic_octree::occupied_points(*map.tree)) {
+    voxels.centres.push_back(point_in_map(point.position.cast<double>()));
+    voxels.rgb.push_back(rgb_of(point));
+  }
+  writer_.write(topics_.voxels, header.time, voxels);
+}
+
+void McapOutput::write_cost_map(const RunSummary& summary, const Header& header) {
   if (auto grid = read_cost_map(summary.map_directory)) {
     grid->header = header;
     grid->header_from_origin = map_from_world() * grid->header_from_origin;

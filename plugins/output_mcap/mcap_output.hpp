@@ -17,7 +17,7 @@ using mcap_writer::McapWriter;
 
 /// Written as the run goes: tf, odometry and state of every frame, a pose for each key frame,
 /// images on request. At the end, with the time of the last frame: path, key frames, landmarks,
-/// dense map and cost map as they have become.
+/// dense map, voxels and cost map as they have become.
 class McapOutput final : public Output {
  public:
   struct Options {
@@ -42,7 +42,8 @@ class McapOutput final : public Output {
 
  private:
   struct Topics {
-    ChannelId transform, odometry, state, keyframe, path, keyframes, landmarks, dense_map, cost_map;
+    ChannelId transform, odometry, state, keyframe, path, keyframes, landmarks, dense_map, voxels,
+        cost_map;
   };
   struct ImageTopics {
     ChannelId image, camera;
@@ -54,6 +55,8 @@ class McapOutput final : public Output {
   void write_keyframes(const SparseMap& map, const Header& header);
   void write_landmarks(const SparseMap& map, const Header& header);
   void write_dense_map(const RunSummary& summary, const Header& header);
+  void write_voxels(const RunSummary& summary, const Header& header);
+  void write_cost_map(const RunSummary& summary, const Header& header);
 
   McapWriter writer_;
   const Topics topics_;

@@ -106,6 +106,21 @@ TEST_F(McapOutputTest, ACostMapIsReadWithItsPlaceInTheWorld) {
   EXPECT_LT((grid->header_from_origin.translation() - Eigen::Vector3d(-2, 1.5, -1)).norm(), 1e-9);
 }
 
+TEST_F(McapOutputTest, ADamagedOctreeIsNamed) {
+  folder_.write("map.ot", "# Octomap OcTree file\nid ColorOcTree\nsize 7\nres 0.05\ndata\n");
+  poses_.push_back({.time = 1});
+  McapOutput output({}, context_);
+  RunSummary run = summary();
+  run.map_directory = folder_.path();
+  try {
+    output.finish(run);
+    FAIL() << "no exception";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.fault(), Fault::kData);
+    EXPECT_THAT(error.what(), HasSubstr("map.ot"));
+  }
+}
+
 TEST_F(McapOutputTest, WithoutACostMapThereIsNone) {
   EXPECT_FALSE(read_cost_map(folder_.path()));
   EXPECT_FALSE(read_cost_map({}));

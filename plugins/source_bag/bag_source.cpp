@@ -3,7 +3,7 @@
 #include <opencv2/core.hpp>
 
 #include "bag/camera_model.hpp"
-#include "bag/messages.hpp"
+#include "bag/depth_extrinsics.hpp"
 #include "tum_recording/pairing.hpp"
 
 namespace stillpoint::source_bag {
@@ -15,24 +15,16 @@ std::unique_ptr<bag::BagReader> opened(const std::string& path) {
   return bag::open_bag(path);
 }
 
-/// Depth must be seen from the colour camera.
-bag::TopicChoice checked_choice(bag::BagReader& bag, const BagSource::Options& options) {
-  bag::TopicChoice choice = bag::choose_topics(bag, options.topics);
-  if (choice.registered() || options.registered) return choice;
-  throw Error(Fault::kUsage,
-              "depth of " + choice.depth.name + " is in the frame '" +
-                  choice.depth.first.header.frame + "', colour of " + choice.color.name + " in '" +
-                  choice.color.first.header.frame + "': it is not registered to the colour images",
-              options.path,
-              "record registered depth (align_depth, depth_registered), or, if it is, set "
-              "source.registered=true");
-}
-
-CameraModel camera_of(bag::BagReader& bag, const bag::TopicChoice& choice,
-                      const BagSource::Options& options, const StageContext& context) {
-  CameraModel model = context.camera ? *context.camera : bag::camera_in_bag(bag, choice);
-  if (options.depth_factor > 0) model.depth_factor = options.depth_factor;
-  return model;
+FrameMaker maker_of(bag::BagReader& bag, const bag::TopicChoice& choice,
+                    const BagSource::Options& options, const StageContext& context) {
+  CameraModel color = context.camera ? *context.camera : bag::camera_in_bag(bag, choice.color);
+  if (options.depth_factor > 0) color.depth_factor = options.depth_factor;
+  if (choice.registered() || options.registered) return FrameMaker(color);
+  bag::DepthExtrinsics depth = bag::depth_extrinsics(bag, choice);
+  depth.camera.depth_factor = color.depth_factor;
+  depth.camera.min_depth = color.min_depth;
+  depth.camera.max_depth = color.max_depth;
+  return FrameMaker(color, depth.camera, depth.color_from_depth);
 }
 
 std::vector<double> times_of(const std::vector<bag::ImageStamp>& stamps) {
@@ -49,6 +41,8 @@ void BagSource::Options::visit(OptionVisitor& v) {
   v("color_topic", topics.color, {.help = "colour images; empty: found"});
   v("depth_topic", topics.depth, {.help = "depth images; empty: found"});
   v("info_topic", topics.info, {.help = "the colour camera's CameraInfo; empty: found"});
+  v("depth_info_topic", topics.depth_info,
+    {.help = "the depth camera's CameraInfo, of depth that is not registered; empty: found"});
   v("max_difference", max_difference,
     {.min = 0, .max = 10, .unit = "s", .help = "largest time difference of an associated pair"});
   v("time_offset", time_offset,
@@ -64,14 +58,17 @@ void BagSource::Options::visit(OptionVisitor& v) {
 
 BagSource::BagSource(Options options, const StageContext& context)
     : bag_(opened(options.path)),
-      choice_(checked_choice(*bag_, options)),
-      rectifier_(camera_of(*bag_, choice_, options, context)),
+      choice_(bag::choose_topics(*bag_, options.topics)),
+      maker_(maker_of(*bag_, choice_, options, context)),
       pairs_(make_pairs(options)),
-      skipped_(pairs_.size(), options.path, context.log) {
-  context.log(LogLevel::kInfo, "colour of " + choice_.color.name + ", depth of " +
-                                   choice_.depth.name + ", camera " +
-                                   (context.camera ? "'" + context.camera->name + "'"
-                                                   : "of " + bag_->topics()[*choice_.info].name));
+      skipped_(pairs_.size(), options.path, context.log),
+      images_(*bag_, choice_) {
+  context.log(LogLevel::kInfo,
+              "colour of " + choice_.color.name + ", depth of " + choice_.depth.name +
+                  (maker_.registers() ? ", registered to the colour images by tf" : "") +
+                  ", camera " +
+                  (context.camera ? "'" + context.camera->name + "'"
+                                  : "of " + bag_->topics()[*choice_.color.info].name));
   for (const std::string& damage : bag_->damage()) skipped_.warn(damage);
   for (const std::string& note : notes_) skipped_.warn(note);
 }
@@ -111,24 +108,11 @@ std::optional<Frame> BagSource::next() {
 }
 
 Frame BagSource::load(const Pair& pair) {
-  const cv::Mat color = image_of(choice_.color, pair.color);
-  const cv::Mat depth = image_of(choice_.depth, pair.depth);
-  Frame frame = rectifier_.frame(pair.color.time, color, depth);
+  Frame frame = maker_.frame(pair.color.time, images_.color(pair.color), images_.depth(pair.depth));
   if (cv::countNonZero(frame.depth) == 0)
     throw Error(Fault::kData, "the depth image has no measurement in the range of the camera",
                 choice_.depth.name + " at " + std::to_string(pair.depth.time) + " s");
   return frame;
-}
-
-cv::Mat BagSource::image_of(const bag::ImageTopic& topic, const bag::ImageStamp& stamp) {
-  try {
-    const bag::ImageMessage message = bag::read_image(
-        bag_->read(stamp.place), bag_->topics()[topic.index].serialisation, topic.first.compressed);
-    return topic.index == choice_.color.index ? images_.color(message) : images_.depth(message);
-  } catch (const Error& error) {
-    throw Error(error.fault(), error.what(),
-                topic.name + " at " + std::to_string(stamp.time) + " s");
-  }
 }
 
 }  // namespace stillpoint::source_bag

@@ -6,12 +6,11 @@
 #include <string>
 #include <vector>
 
+#include "bag/bag_images.hpp"
 #include "bag/bag_reader.hpp"
-#include "bag/image_stamps.hpp"
-#include "bag/topic_choice.hpp"
-#include "source_bag/message_images.hpp"
+#include "source_bag/frame_maker.hpp"
 #include "stillpoint/sdk.hpp"
-#include "stillpoint/support/rectifier.hpp"
+#include "tum_recording/image_decoder.hpp"
 #include "tum_recording/pair_selection.hpp"
 #include "tum_recording/skipped_pairs.hpp"
 
@@ -46,15 +45,14 @@ class BagSource final : public Source {
 
   std::vector<Pair> make_pairs(const Options& options);
   Frame load(const Pair& pair);
-  cv::Mat image_of(const bag::ImageTopic& topic, const bag::ImageStamp& stamp);
 
   std::unique_ptr<bag::BagReader> bag_;
   bag::TopicChoice choice_;
-  Rectifier rectifier_;
+  FrameMaker maker_;
   std::vector<std::string> notes_;  // of what making the pairs left out
   std::vector<Pair> pairs_;
   tum_recording::SkippedPairs skipped_;
-  MessageImages images_;
+  bag::BagImages<tum_recording::ImageDecoder> images_;
   std::size_t position_ = 0;  // in pairs_
   std::uint32_t given_ = 0;   // frames returned by next()
 };

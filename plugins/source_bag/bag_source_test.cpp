@@ -3,11 +3,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <functional>
 #include <opencv2/imgcodecs.hpp>
 
 #include "support/bag_writer.hpp"
+#include "support/error_text.hpp"
 #include "support/recording_writer.hpp"
+#include "support/source_frames.hpp"
 
 namespace stillpoint::source_bag {
 namespace {
@@ -17,22 +18,25 @@ using testing::BagBytes;
 using testing::BagStyle;
 using testing::BagWriter;
 using testing::camera_info_message;
+using testing::color_image;
 using testing::compressed_message;
+using testing::depth_image;
 using ::testing::ElementsAre;
+using testing::error_text;
+using testing::frames_of;
 using ::testing::HasSubstr;
 using testing::image_message;
+using testing::kImageHeight;
+using testing::kImageWidth;
 using testing::TemporaryFolder;
 using testing::TestCameraInfo;
+using testing::transforms_message;
 
-constexpr int kWidth = 64;
-constexpr int kHeight = 48;
 constexpr std::int64_t kStart = 1'305'031'102'175'304'000;  // ns
 constexpr std::int64_t kInterval = 33'333'000;              // ns
 constexpr const char* kColor = "/camera/color/image_raw";
 constexpr const char* kDepth = "/camera/depth_registered/image_raw";
-
-cv::Mat color_image(int value) { return {kHeight, kWidth, CV_8UC3, cv::Scalar(value, 100, 200)}; }
-cv::Mat depth_image(int value) { return {kHeight, kWidth, CV_16UC1, cv::Scalar(value)}; }
+constexpr const char* kUnregistered = "/camera/depth/image_raw";
 
 BagBytes encoded(const cv::Mat& image, const std::string& ending = ".png") {
   BagBytes bytes;
@@ -64,6 +68,16 @@ class BagSourceTest : public ::testing::TestWithParam<BagStyle> {
     add("/camera/color/camera_info", "sensor_msgs/CameraInfo", stamp(0),
         camera_info_message(serialisation_, camera));
   }
+  void depth_info() {
+    add("/camera/depth/camera_info", "sensor_msgs/CameraInfo", stamp(0),
+        camera_info_message(serialisation_, {.frame = "depth_frame"}));
+  }
+  /// The depth camera is 10 cm to the left of the colour camera.
+  void tf() {
+    const Pose color_from_depth(Eigen::Translation3d(0.1, 0, 0));
+    add("/tf_static", "tf2_msgs/TFMessage", stamp(0),
+        transforms_message(serialisation_, {{"color_frame", "depth_frame", color_from_depth}}));
+  }
   void write(int count) {
     info();
     for (int i = 0; i < count; ++i) {
@@ -78,21 +92,6 @@ class BagSourceTest : public ::testing::TestWithParam<BagStyle> {
     return BagSource(options, context);
   }
   static std::int64_t stamp(int i) { return kStart + kInterval * i; }
-  static std::vector<Frame> read_all(BagSource& source) {
-    std::vector<Frame> frames;
-    while (auto frame = source.next()) frames.push_back(*frame);
-    return frames;
-  }
-  static std::string message_of(const std::function<void()>& action, Fault fault) {
-    try {
-      action();
-    } catch (const Error& error) {
-      EXPECT_EQ(error.fault(), fault);
-      return error.what();
-    }
-    return "nothing was thrown";
-  }
-
   TemporaryFolder folder_;
   std::filesystem::path file_;
   std::unique_ptr<BagWriter> writer_;
@@ -103,14 +102,14 @@ TEST_P(BagSourceTest, GivesFramesWithTheCameraOfTheBag) {
   write(5);
   BagSource source = open();
   EXPECT_EQ(source.size(), 5U);
-  const auto frames = read_all(source);
+  const auto frames = frames_of(source);
   ASSERT_EQ(frames.size(), 5U);
   EXPECT_EQ(frames[3].index, 3U);
   EXPECT_DOUBLE_EQ(frames[3].time, 1305031102.275303);  // of the exposure
   EXPECT_EQ(frames[3].bgr.at<cv::Vec3b>(5, 7), cv::Vec3b(3, 100, 200));
   EXPECT_FLOAT_EQ(frames[3].depth.at<float>(5, 7), 1.003F);  // millimetres
   EXPECT_EQ(frames[3].camera->fx, 50);
-  EXPECT_EQ(frames[3].camera->width, kWidth);
+  EXPECT_EQ(frames[3].camera->width, kImageWidth);
   EXPECT_TRUE(source.report().warnings.empty());
   EXPECT_FALSE(source.next().has_value());
 }
@@ -121,7 +120,7 @@ TEST_P(BagSourceTest, ReadsATruncatedBagAsFarAsItGoes) {
   writer_.reset();
   testing::truncate_file(file_, 0.6);
   BagSource source = open();
-  const auto frames = read_all(source);
+  const auto frames = frames_of(source);
   EXPECT_GE(frames.size(), 8U);
   EXPECT_LE(frames.size(), 13U);
   EXPECT_FALSE(source.report().warnings.empty());
@@ -141,7 +140,7 @@ TEST_F(OneBagSourceTest, TakesAnotherCameraAndItsDepthFactor) {
   write(2);
   StageContext context;
   context.camera = CameraModel{
-      .name = "mine", .width = kWidth, .height = kHeight, .fx = 60, .depth_factor = 2000};
+      .name = "mine", .width = kImageWidth, .height = kImageHeight, .fx = 60, .depth_factor = 2000};
   BagSource source = open({}, context);
   const auto frame = source.next();
   ASSERT_TRUE(frame.has_value());
@@ -173,7 +172,7 @@ TEST_F(OneBagSourceTest, ReadsCompressedImages) {
                depth_file);
   }
   BagSource source = open();
-  const auto frames = read_all(source);
+  const auto frames = frames_of(source);
   ASSERT_EQ(frames.size(), 2U);
   EXPECT_NEAR(frames[0].bgr.at<cv::Vec3b>(5, 7)[0], 90, 3);
   EXPECT_EQ(frames[1].bgr.at<cv::Vec3b>(5, 7), cv::Vec3b(91, 100, 200));
@@ -191,7 +190,7 @@ TEST_F(OneBagSourceTest, SkipsImagesThatCannotBeUsed) {
     depth(i);
   }
   BagSource source = open();
-  EXPECT_EQ(read_all(source).size(), 4U);
+  EXPECT_EQ(frames_of(source).size(), 4U);
   EXPECT_EQ(source.report().skipped, 1U);
   EXPECT_THAT(source.report().warnings,
               ElementsAre(AllOf(HasSubstr("skipped: /camera/color/image_raw at 1305031102.2"),
@@ -202,31 +201,75 @@ TEST_F(OneBagSourceTest, LeavesOutRepeatedStamps) {
   write(3);
   color(2);
   BagSource source = open();
-  EXPECT_EQ(read_all(source).size(), 3U);
+  EXPECT_EQ(frames_of(source).size(), 3U);
   EXPECT_THAT(source.report().warnings,
               ElementsAre(HasSubstr("1 message is left out for a repeated")));
 }
 
-TEST_F(OneBagSourceTest, RefusesDepthThatIsNotRegistered) {
+TEST_F(OneBagSourceTest, RefusesDepthOfWhichNothingSaysWhereItIs) {
   info();
   color(0);
-  depth(0, "depth_frame", "/camera/depth/image_raw");
-  EXPECT_THAT(message_of([&] { open(); }, Fault::kUsage),
-              AllOf(HasSubstr("is in the frame 'depth_frame'"), HasSubstr("not registered"),
-                    HasSubstr("source.registered=true")));
+  depth(0, "depth_frame", kUnregistered);
+  EXPECT_THAT(error_text(Fault::kUsage, [&] { open(); }),
+              AllOf(HasSubstr("is in the frame 'depth_frame'"),
+                    HasSubstr("the bag has no CameraInfo of /camera/depth/image_raw"),
+                    HasSubstr("source.depth_info_topic"), HasSubstr("source.registered=true")));
   EXPECT_EQ(open({.registered = true}).size(), 1U);
+}
+
+TEST_F(OneBagSourceTest, RefusesDepthThatTfDoesNotConnect) {
+  info();
+  depth_info();
+  color(0);
+  depth(0, "depth_frame", kUnregistered);
+  EXPECT_THAT(error_text(Fault::kUsage, [&] { open(); }),
+              AllOf(HasSubstr("cannot be registered to the colour images"),
+                    HasSubstr("tf does not say how 'depth_frame' lies to 'color_frame'"),
+                    HasSubstr("/tf_static"), HasSubstr("source.registered=true")));
+}
+
+// A patch a metre away, seen by a camera 10 cm to the left of the colour camera: with a focal
+// length of 50 px, it is 5 px farther right in the colour image.
+TEST_F(OneBagSourceTest, RegistersDepthByTf) {
+  info();
+  depth_info();
+  tf();
+  color(0);
+  cv::Mat patch = depth_image(0);
+  patch(cv::Rect(20, 15, 10, 8)) = 1000;
+  add(kUnregistered, "sensor_msgs/Image", stamp(0),
+      image_message(serialisation_, stamp(0), "depth_frame", patch, "16UC1"));
+  color(1);
+  add(kUnregistered, "sensor_msgs/Image", stamp(1),
+      image_message(serialisation_, stamp(1), "depth_frame", patch.rowRange(0, 20), "16UC1"));
+  cv::Mat metres;
+  patch.convertTo(metres, CV_32F, 0.001);
+  color(2);
+  add(kUnregistered, "sensor_msgs/Image", stamp(2),
+      image_message(serialisation_, stamp(2), "depth_frame", metres, "32FC1"));
+  BagSource source = open();
+  const auto frames = frames_of(source);
+  cv::Mat expected = cv::Mat::zeros(kImageHeight, kImageWidth, CV_32FC1);
+  expected(cv::Rect(25, 15, 10, 8)) = 1;
+  ASSERT_EQ(frames.size(), 2U);
+  for (const Frame& frame : frames) {
+    EXPECT_EQ(cv::norm(frame.depth, expected, cv::NORM_INF), 0);
+    EXPECT_EQ(frame.bgr.size(), frame.depth.size());
+  }
+  EXPECT_THAT(source.report().warnings,
+              ElementsAre(HasSubstr("the depth image has 64 x 20 pixels, but its camera")));
 }
 
 TEST_F(OneBagSourceTest, AsksForACamera) {
   color(0);
   depth(0);
-  EXPECT_THAT(message_of([&] { open(); }, Fault::kUsage),
+  EXPECT_THAT(error_text(Fault::kUsage, [&] { open(); }),
               AllOf(HasSubstr("has no CameraInfo"), HasSubstr("--camera")));
 }
 
 TEST_F(OneBagSourceTest, SaysWhenNothingPairs) {
   write(2);
-  EXPECT_THAT(message_of([&] { open({.max_difference = 0.001}); }, Fault::kData),
+  EXPECT_THAT(error_text(Fault::kData, [&] { open({.max_difference = 0.001}); }),
               AllOf(HasSubstr("within 0.001"), HasSubstr("change max_difference")));
   EXPECT_EQ(open({.max_difference = 0.001, .time_offset = -0.004}).size(), 2U);
 }

@@ -5,12 +5,13 @@
 #include <sys/stat.h>
 
 #include <algorithm>
-#include <functional>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
+#include "support/error_text.hpp"
 #include "support/recording_writer.hpp"
 #include "support/shared_data.hpp"
+#include "support/source_frames.hpp"
 
 namespace stillpoint::source_tum {
 namespace {
@@ -19,22 +20,22 @@ using tum_recording::open_recording;
 using tum_recording::PairsFrom;
 
 using ::testing::AllOf;
+using testing::color_image;
+using testing::depth_image;
+using testing::error_text;
+using testing::frames_of;
 using ::testing::HasSubstr;
+using testing::kImageHeight;
+using testing::kImageWidth;
 using testing::RecordingWriter;
 using testing::TemporaryFolder;
 using testing::truncate_file;
 
-constexpr int kWidth = 64;
-constexpr int kHeight = 48;
-
 StageContext small_camera() {
   StageContext context;
-  context.camera = CameraModel{.name = "tiny", .width = kWidth, .height = kHeight};
+  context.camera = CameraModel{.name = "tiny", .width = kImageWidth, .height = kImageHeight};
   return context;
 }
-
-cv::Mat color_image(int value) { return {kHeight, kWidth, CV_8UC3, cv::Scalar(value, 100, 200)}; }
-cv::Mat depth_image(int value) { return {kHeight, kWidth, CV_16UC1, cv::Scalar(value)}; }
 
 TumSource::Options options_for(const std::filesystem::path& folder) {
   TumSource::Options options;
@@ -57,24 +58,10 @@ class TumSourceTest : public ::testing::Test {
   }
   TumSource open() { return open(options_for(folder_.path())); }
 
-  std::vector<Frame> read_all(TumSource& source) {
-    std::vector<Frame> frames;
-    while (auto frame = source.next()) frames.push_back(*frame);
-    return frames;
-  }
-  std::string message_of(const std::function<void()>& action, Fault fault = Fault::kData) {
-    try {
-      action();
-    } catch (const Error& error) {
-      EXPECT_EQ(error.fault(), fault);
-      return error.what();
-    }
-    return "nothing was thrown";
-  }
   /// Expects that the middle one of five pairs is left out, with this reason.
   void expect_skipped(const std::string& reason) {
     TumSource source = open();
-    const auto frames = read_all(source);
+    const auto frames = frames_of(source);
     ASSERT_EQ(frames.size(), 4u);
     for (std::uint32_t i = 0; i < 4; ++i) EXPECT_EQ(frames[i].index, i);
     EXPECT_NEAR(frames[2].time, 1.3, 1e-9);
@@ -94,24 +81,24 @@ TEST_F(TumSourceTest, GivesFramesInOrder) {
   write(3);
   TumSource source = open();
   EXPECT_EQ(source.size(), 3u);
-  const auto frames = read_all(source);
+  const auto frames = frames_of(source);
   ASSERT_EQ(frames.size(), 3u);
   EXPECT_EQ(frames[2].index, 2u);
   EXPECT_NEAR(frames[2].time, 1.2, 1e-9);
   EXPECT_EQ(frames[2].bgr.at<cv::Vec3b>(5, 7), cv::Vec3b(2, 100, 200));
   EXPECT_EQ(frames[2].gray.type(), CV_8UC1);
   EXPECT_EQ(frames[2].depth.at<float>(5, 7), 5002.f / 5000.f);
-  EXPECT_EQ(frames[2].camera->width, kWidth);
+  EXPECT_EQ(frames[2].camera->width, kImageWidth);
   EXPECT_EQ(source.report().skipped, 0u);
   EXPECT_FALSE(source.next().has_value());
 }
 
 TEST_F(TumSourceTest, AcceptsJpegAndGrayColourImages) {
   writer_.color(1.0, color_image(90), ".jpg");
-  writer_.color(2.0, cv::Mat(kHeight, kWidth, CV_8UC1, cv::Scalar(77)));
+  writer_.color(2.0, cv::Mat(kImageHeight, kImageWidth, CV_8UC1, cv::Scalar(77)));
   for (const double time : {1.0, 2.0}) writer_.depth(time, depth_image(5000));
   TumSource source = open();
-  const auto frames = read_all(source);
+  const auto frames = frames_of(source);
   ASSERT_EQ(frames.size(), 2u);
   EXPECT_NEAR(frames[0].bgr.at<cv::Vec3b>(5, 7)[0], 90, 3);
   EXPECT_EQ(frames[1].bgr.at<cv::Vec3b>(5, 7), cv::Vec3b(77, 77, 77));
@@ -125,11 +112,11 @@ TEST_F(TumSourceTest, SelectsPairs) {
   options.selection.stride = 3;
   TumSource source = open(options);
   EXPECT_EQ(source.size(), 3u);
-  EXPECT_NEAR(read_all(source).back().time, 1.7, 1e-9);
+  EXPECT_NEAR(frames_of(source).back().time, 1.7, 1e-9);
   options.selection.limit = 2;
   EXPECT_EQ(open(options).size(), 2u);
   options.selection.start = 8;
-  EXPECT_THAT(message_of([&] { open(options); }, Fault::kUsage),
+  EXPECT_THAT(error_text(Fault::kUsage, [&] { open(options); }),
               HasSubstr("no frames are selected of the 10 pairs"));
 }
 
@@ -137,7 +124,7 @@ TEST_F(TumSourceTest, AsksForACamera) {
   write(1);
   writer_.finish();
   EXPECT_THAT(
-      message_of([&] { TumSource(options_for(folder_.path()), StageContext{}); }, Fault::kUsage),
+      error_text(Fault::kUsage, [&] { TumSource(options_for(folder_.path()), StageContext{}); }),
       AllOf(HasSubstr("no camera is given"), HasSubstr("configs/cameras"), HasSubstr("--camera")));
 }
 
@@ -161,7 +148,7 @@ TEST_F(TumSourceTest, SkipsATruncatedImage) {
 
 TEST_F(TumSourceTest, SkipsATruncatedJpeg) {
   write(5);
-  cv::Mat noise(kHeight, kWidth, CV_8UC3);
+  cv::Mat noise(kImageHeight, kImageWidth, CV_8UC3);
   cv::randu(noise, 0, 256);
   std::vector<std::uint8_t> bytes;
   cv::imencode(".jpg", noise, bytes);
@@ -224,7 +211,7 @@ TEST_F(TumSourceTest, SkipsWhatIsNoImage) {
 
 TEST_F(TumSourceTest, SkipsAnEightBitDepthImage) {
   write(5);
-  cv::imwrite(depth_files_[2].string(), cv::Mat(kHeight, kWidth, CV_8UC1, cv::Scalar(9)));
+  cv::imwrite(depth_files_[2].string(), cv::Mat(kImageHeight, kImageWidth, CV_8UC1, cv::Scalar(9)));
   expect_skipped(
       "a depth image must be 16-bit with 1 channel, this is an 8-bit image with 1 channel");
 }
@@ -251,7 +238,7 @@ TEST_F(TumSourceTest, GivesUpWhenTheFirstTenPairsFail) {
   write(30);
   for (int i = 0; i < 10; ++i) truncate_file(color_files_[i], 0.5);
   TumSource source = open();
-  EXPECT_THAT(message_of([&] { source.next(); }),
+  EXPECT_THAT(error_text(Fault::kData, [&] { source.next(); }),
               AllOf(HasSubstr("none of the first 10 image pairs can be used"),
                     HasSubstr(color_files_[9].string() + ": truncated PNG")));
 }
@@ -260,7 +247,7 @@ TEST_F(TumSourceTest, GivesUpWhenMoreThanHalfFail) {
   write(8);
   for (int i = 1; i < 6; ++i) std::filesystem::remove(depth_files_[i]);
   TumSource source = open();
-  EXPECT_THAT(message_of([&] { read_all(source); }),
+  EXPECT_THAT(error_text(Fault::kData, [&] { frames_of(source); }),
               AllOf(HasSubstr("more than half of the 8 image pairs cannot be used"),
                     HasSubstr("no such file")));
 }
@@ -268,14 +255,15 @@ TEST_F(TumSourceTest, GivesUpWhenMoreThanHalfFail) {
 TEST_F(TumSourceTest, GivesUpWhenNoFrameHasDepth) {
   for (int i = 0; i < 4; ++i) writer_.pair(1.0 + i, color_image(i), depth_image(0));
   TumSource source = open();
-  EXPECT_THAT(message_of([&] { source.next(); }), HasSubstr("the depth image has no measurement"));
+  EXPECT_THAT(error_text(Fault::kData, [&] { source.next(); }),
+              HasSubstr("the depth image has no measurement"));
 }
 
 TEST_F(TumSourceTest, ReportsOnlyTheFirstOfManySkippedImages) {
   write(100);
   for (int i = 1; i < 50; ++i) std::filesystem::remove(depth_files_[i]);
   TumSource source = open();
-  EXPECT_EQ(read_all(source).size(), 51u);
+  EXPECT_EQ(frames_of(source).size(), 51u);
   EXPECT_EQ(source.report().skipped, 49u);
   EXPECT_EQ(source.report().warnings.size(), 21u);
 }

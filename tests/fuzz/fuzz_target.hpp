@@ -3,12 +3,16 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <fstream>
 #include <functional>
+#include <iterator>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace stillpoint::testing {
 
+namespace fs = std::filesystem;
 using Bytes = std::vector<std::uint8_t>;
 
 struct FuzzTarget {
@@ -24,6 +28,20 @@ struct NamedFuzzTarget {
   const char* name;
   FuzzTarget (*make)();
 };
-std::vector<NamedFuzzTarget> fuzz_targets();
+
+// A kind of input each, in the file of that name.
+std::vector<NamedFuzzTarget> bag_targets();
+std::vector<NamedFuzzTarget> configuration_targets();
+std::vector<NamedFuzzTarget> image_targets();
+std::vector<NamedFuzzTarget> live_view_targets();
+std::vector<NamedFuzzTarget> map_targets();
+std::vector<NamedFuzzTarget> network_targets();
+std::vector<NamedFuzzTarget> recording_targets();
+
+inline Bytes bytes_of(const std::filesystem::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+inline Bytes bytes_of_text(std::string_view text) { return {text.begin(), text.end()}; }
 
 }  // namespace stillpoint::testing

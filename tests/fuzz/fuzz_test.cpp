@@ -10,6 +10,7 @@
 #include <fstream>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 #include "fuzz/coverage.hpp"
 #include "fuzz/fuzz_target.hpp"
@@ -21,14 +22,21 @@ extern "C" const char* __asan_default_options() { return "max_allocation_size_mb
 namespace stillpoint::testing {
 namespace {
 
-namespace fs = std::filesystem;
-
 // Most mistakes do no visible harm without AddressSanitizer.
 #ifdef __SANITIZE_ADDRESS__
 constexpr std::uint64_t kCases = 10'000;
 #else
 constexpr std::uint64_t kCases = 1'000;
 #endif
+
+std::vector<NamedFuzzTarget> all_targets() {
+  std::vector<NamedFuzzTarget> all;
+  for (const auto& targets :
+       {bag_targets(), configuration_targets(), image_targets(), live_view_targets(), map_targets(),
+        network_targets(), recording_targets()})
+    all.insert(all.end(), targets.begin(), targets.end());
+  return all;
+}
 
 std::uint64_t number_of(const char* variable, std::uint64_t otherwise) {
   const char* text = std::getenv(variable);
@@ -78,7 +86,7 @@ TEST_P(Fuzz, EndsWithAResultOrInWords) {
   if (!HasFailure()) fs::remove(file_);
 }
 
-INSTANTIATE_TEST_SUITE_P(Parsers, Fuzz, ::testing::ValuesIn(fuzz_targets()),
+INSTANTIATE_TEST_SUITE_P(Parsers, Fuzz, ::testing::ValuesIn(all_targets()),
                          [](const auto& test) { return std::string(test.param.name); });
 
 }  // namespace

@@ -108,6 +108,7 @@ TEST_F(Record, ARecordingOfARecordingIsTheSame) {
   EXPECT_EQ(trajectory_of_recording(), trajectory(pipeline_for(original)));
 }
 
+// As a folder, and as an MCAP file, which the source `bag` reads.
 TEST_F(Record, ARecordingOfTheSimulatorGivesItsTrajectory) {
   const std::string pipeline = simulated_pipeline(kRecordedFrames);
   const Outcome outcome = record({pipeline});
@@ -117,6 +118,12 @@ TEST_F(Record, ARecordingOfTheSimulatorGivesItsTrajectory) {
   const std::string direct = trajectory({pipeline});
   EXPECT_EQ(std::count(direct.begin(), direct.end(), '\n'), kRecordedFrames + 1);
   EXPECT_EQ(trajectory_of_recording(), direct);
+
+  const fs::path mcap = folder_.path() / "out.mcap";
+  const Outcome as_mcap = record_to(mcap, {pipeline});
+  ASSERT_EQ(as_mcap.exit_code, 0) << as_mcap.err;
+  EXPECT_THAT(as_mcap.out, HasSubstr("run PIPELINE --dataset " + mcap.string() + "\n"));
+  EXPECT_EQ(trajectory({"orb_baseline", "--dataset", mcap.string()}), direct);
 }
 
 TEST_F(Record, AtTheSensorsPaceEveryFrameIsWrittenOrCounted) {

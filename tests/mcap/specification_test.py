@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""specification_test.py PROGRAM FOLDER: records and runs a small simulated scene, and compares what is in the MCAP
-files with the other files of the same run. The MCAP files stay in the folder, for foreign_reader_test.py."""
+"""specification_test.py PROGRAM FOLDER: records a small simulated scene, runs the recording, and compares what is in
+the MCAP files with the other files of the same run. The MCAP files stay in the folder, for foreign_reader_test.py."""
 import pathlib
 import shutil
 import struct
@@ -17,7 +17,9 @@ SCENE = f"""version: 1
 source: {{type: simulation, frames: {FRAMES}, people: [], balls: []}}
 camera: {{name: small, width: 320, height: 240, fx: 267.7, fy: 269.6, cx: 159.8, cy: 123.6}}
 """
-RUN = SCENE + """tracker: {type: orb}
+RECORDED = f"version: 1\nsource: {{type: tum_rgbd, path: {FOLDER / 'recording'}}}\n"
+CAMERA = "--camera", FOLDER / "recording/camera.yaml"
+RUN = RECORDED + """tracker: {type: orb}
 local_mapper: {type: orb}
 map_backend: {type: octomap, cost_map: {floor: [0, -1, 0, -1]}}
 outputs:
@@ -102,6 +104,7 @@ class Run(unittest.TestCase):
                           "/tracking_state": "std_msgs/msg/String", "/keyframe": "geometry_msgs/msg/PoseStamped",
                           "/path": "nav_msgs/msg/Path", "/keyframes": "nav_msgs/msg/Path",
                           "/landmarks": "sensor_msgs/msg/PointCloud2", "/dense_map": "sensor_msgs/msg/PointCloud2",
+                          "/voxels": "visualization_msgs/msg/Marker",
                           "/cost_map": "nav_msgs/msg/OccupancyGrid",
                           "/camera/color/image_raw/compressed": "sensor_msgs/msg/CompressedImage",
                           "/camera/color/camera_info": "sensor_msgs/msg/CameraInfo"})
@@ -177,6 +180,20 @@ class Run(unittest.TestCase):
         self.assertEqual(got, points)
         self.assertGreater(len(points), 100)
 
+    def test_voxels_are_the_points_of_the_dense_map_as_cubes(self):
+        (_, cloud), = self.messages["/dense_map"]
+        points = sorted((round(x, 4), round(y, 4), round(z, 4), r, g, b)
+                        for x, y, z, b, g, r, _, _ in struct.iter_unpack("<fffBBBBB", cloud["data"]))
+        (_, marker), = self.messages["/voxels"]
+        self.assertEqual((marker["header"], marker["type"], marker["action"]), (cloud["header"], 6, 0))  # CUBE_LIST, ADD
+        self.assertEqual((marker["pose"]["orientation"]["w"], set(marker["scale"].values()), marker["color"]["a"]),
+                         (1, {0.05}, 1))
+        cubes = sorted((round(at["x"], 4), round(at["y"], 4), round(at["z"], 4),
+                        *(round(255 * color[key]) for key in "rgb"))
+                       for at, color in zip(marker["points"], marker["colors"]))
+        self.assertEqual(cubes, points)
+        self.assertEqual(len(marker["colors"]), len(points))
+
     def test_the_cost_map_is_that_of_its_file(self):
         (_, grid), = self.messages["/cost_map"]
         header, pixels = (FOLDER / "run/map/map.pgm").read_bytes().split(b"\n255\n", 1)
@@ -218,8 +235,8 @@ class FullDisk(unittest.TestCase):
         shutil.rmtree(out, ignore_errors=True)
         out.mkdir()
         (out / "full.mcap").symlink_to("/dev/full")
-        (FOLDER / "full.yaml").write_text(SCENE + FULL)
-        done = stillpoint("run", FOLDER / "full.yaml", "-o", out, exit_code=1)
+        (FOLDER / "full.yaml").write_text(RECORDED + FULL)
+        done = stillpoint("run", FOLDER / "full.yaml", *CAMERA, "-o", out, exit_code=1)
         self.assertEqual(done.stderr.count("No space left on device"), 1, done.stderr)
         self.assertIn("error: output (mcap) failed", done.stderr)
         self.assertIn("full.mcap: cannot write", done.stderr)
@@ -261,7 +278,7 @@ def write_files():
     (FOLDER / "run.yaml").write_text(RUN)
     stillpoint("record", FOLDER / "scene.yaml", "-o", FOLDER / "recording")
     stillpoint("record", FOLDER / "scene.yaml", "-o", FOLDER / "recording.mcap")
-    stillpoint("run", FOLDER / "run.yaml", "-o", FOLDER / "run")
+    stillpoint("run", FOLDER / "run.yaml", *CAMERA, "-o", FOLDER / "run")
 
 
 if __name__ == "__main__":

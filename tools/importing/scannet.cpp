@@ -6,7 +6,7 @@
 #include <string>
 #include <utility>
 
-#include "importing/depth_registration.hpp"
+#include "depth_registration/depth_registration.hpp"
 #include "importing/images.hpp"
 #include "importing/sens_file.hpp"
 #include "stillpoint/error.hpp"
@@ -16,6 +16,8 @@
 
 namespace stillpoint::importing {
 namespace {
+
+using depth_registration::DepthRegistration;
 
 constexpr double kScanNetRate = 30;  // Hz, where the stamps cannot be used
 constexpr int kJpegQuality = 95;

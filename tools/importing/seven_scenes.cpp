@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-#include "importing/depth_registration.hpp"
+#include "depth_registration/depth_registration.hpp"
 #include "importing/images.hpp"
 #include "importing/matrix_pose.hpp"
 #include "stillpoint/error.hpp"
@@ -14,6 +14,8 @@
 
 namespace stillpoint::importing {
 namespace {
+
+using depth_registration::DepthRegistration;
 
 constexpr std::string_view kFramePrefix = "frame-";
 constexpr double kSevenScenesRate = 30;    // Hz; the data set has numbers instead of times

@@ -3,31 +3,35 @@
 #include <cmath>
 
 #include "inspection/number_text.hpp"
+#include "stillpoint/support/size_text.hpp"
 
 namespace stillpoint::inspection {
 namespace {
 
 using Warnings = std::vector<std::string>;
 
-void check_images(const RecordingAudit& audit, Warnings& warnings) {
+void check_sizes(const std::map<std::string, int>& kinds, const std::optional<CameraModel>& camera,
+                 Warnings& warnings) {
+  if (!camera) return;
+  const std::string size = size_text({camera->width, camera->height});
+  for (const auto& [kind, count] : kinds)
+    if (!kind.starts_with(size + ","))
+      warnings.push_back(std::to_string(count) + " sampled images are " + kind + ", but camera '" +
+                         camera->name + "' has " + size + "; choose another camera");
+}
+
+void check_images(const PairAudit& audit, Warnings& warnings) {
   if (!audit.unreadable.empty())
     warnings.push_back(std::to_string(audit.unreadable.size()) + " of " +
                        std::to_string(2 * audit.sampled) +
                        " sampled images cannot be used; first: " + audit.unreadable.front());
   if (audit.color_kinds.size() > 1) warnings.push_back("colour images differ in size or type");
   if (audit.depth_kinds.size() > 1) warnings.push_back("depth images differ in size or type");
-  if (!audit.camera) return;
-  const std::string size =
-      std::to_string(audit.camera->width) + " x " + std::to_string(audit.camera->height);
-  for (const auto* kinds : {&audit.color_kinds, &audit.depth_kinds})
-    for (const auto& [kind, count] : *kinds)
-      if (kind.rfind(size + ",", 0) != 0)
-        warnings.push_back(std::to_string(count) + " sampled images are " + kind +
-                           ", but camera '" + audit.camera->name + "' has " + size +
-                           "; choose another camera");
+  check_sizes(audit.color_kinds, audit.camera, warnings);
+  check_sizes(audit.depth_kinds, audit.depth_camera ? audit.depth_camera : audit.camera, warnings);
 }
 
-void check_exposure(const RecordingAudit& audit, Warnings& warnings) {
+void check_exposure(const PairAudit& audit, Warnings& warnings) {
   const std::string all = " of " + std::to_string(audit.sampled) + " sampled colour images are ";
   if (audit.dark_images > 0)
     warnings.push_back(std::to_string(audit.dark_images) + all +
@@ -37,7 +41,7 @@ void check_exposure(const RecordingAudit& audit, Warnings& warnings) {
                        "over-exposed, a third or more of them white; nothing can be tracked there");
 }
 
-void check_depth(const RecordingAudit& audit, Warnings& warnings) {
+void check_depth(const PairAudit& audit, Warnings& warnings) {
   const DepthStatistics& depth = audit.depth_values;
   if (depth.images() == 0) return;
   if (depth.empty_images() > 0)
@@ -61,29 +65,22 @@ void check_depth(const RecordingAudit& audit, Warnings& warnings) {
                      " m, 95 % nearer than " + fixed(far, 2) + " m; " + advice);
 }
 
-void check_times(const RecordingAudit& audit, const RecordingOptions& pairing, Warnings& warnings) {
+void check_times(const PairAudit& audit, double max_difference, Warnings& warnings) {
   const std::size_t unpaired = audit.color.images - audit.pairs.images;
   if (unpaired * 20 > audit.color.images)
     warnings.push_back(std::to_string(unpaired) + " of " + std::to_string(audit.color.images) +
                        " colour images have no depth image within " +
-                       fixed(1e3 * pairing.max_difference, 0) +
+                       fixed(1e3 * max_difference, 0) +
                        " ms; change max_difference or time_offset of the source");
   if (audit.pairs.gaps.empty() || audit.pairs.gaps[0].length < 0.5) return;
   warnings.push_back("no frames for " + fixed(audit.pairs.gaps[0].length, 2) + " s from " +
                      fixed(audit.pairs.gaps[0].begin, 3) + " s; tracking may get lost there");
 }
 
-void check_offset(const RecordingAudit& audit, const RecordingOptions& pairing,
-                  Warnings& warnings) {
+void check_offset(const PairAudit& audit, const std::string& advice, Warnings& warnings) {
   const TimeOffset& offset = audit.time_offset;
   const double worth_telling = std::max(0.010, 3 * offset.deviation);  // seconds
   if (!offset.known || std::abs(offset.offset) < worth_telling) return;
-  const std::string advice =
-      audit.recording.pairs_from.empty()
-          ? "try time_offset: " + fixed(pairing.time_offset + offset.offset, 3) +
-                " in the source section"
-          : "with rgb.txt and depth.txt instead of " +
-                audit.recording.pairs_from.filename().string() + ", time_offset could correct it";
   warnings.push_back("depth is stamped " + fixed(1e3 * std::abs(offset.offset), 0) + " ms too " +
                      (offset.offset < 0 ? "late; " : "early; ") + advice);
 }
@@ -100,13 +97,28 @@ void check_truth(const RecordingAudit& audit, Warnings& warnings) {
 
 }  // namespace
 
-Warnings audit_warnings(const RecordingAudit& audit, const RecordingOptions& pairing) {
+Warnings pair_warnings(const PairAudit& audit, double max_difference,
+                       const std::string& offset_advice) {
   Warnings warnings;
   check_images(audit, warnings);
   check_exposure(audit, warnings);
   check_depth(audit, warnings);
-  check_times(audit, pairing, warnings);
-  check_offset(audit, pairing, warnings);
+  check_times(audit, max_difference, warnings);
+  check_offset(audit, offset_advice, warnings);
+  return warnings;
+}
+
+std::string time_offset_advice(double time_offset) {
+  return "try time_offset: " + fixed(time_offset, 3) + " in the source section";
+}
+
+Warnings audit_warnings(const RecordingAudit& audit, const RecordingOptions& pairing) {
+  const std::string from = audit.recording.pairs_from.filename().string();
+  Warnings warnings = pair_warnings(
+      audit, pairing.max_difference,
+      from.empty()
+          ? time_offset_advice(pairing.time_offset + audit.time_offset.offset)
+          : "with rgb.txt and depth.txt instead of " + from + ", time_offset could correct it");
   check_truth(audit, warnings);
   warnings.insert(warnings.end(), audit.recording.warnings.begin(), audit.recording.warnings.end());
   return warnings;

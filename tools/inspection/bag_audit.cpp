@@ -1,14 +1,15 @@
 #include "inspection/bag_audit.hpp"
 
 #include <algorithm>
-#include <cmath>
 
+#include "bag/bag_images.hpp"
 #include "bag/camera_model.hpp"
-#include "bag/image_stamps.hpp"
-#include "inspection/number_text.hpp"
+#include "bag/depth_extrinsics.hpp"
+#include "inspection/audit_warnings.hpp"
 #include "stillpoint/error.hpp"
 #include "stillpoint/support/bag_files.hpp"
 #include "stillpoint/support/size_text.hpp"
+#include "tum_recording/image_decoder.hpp"
 #include "tum_recording/pairing.hpp"
 
 namespace stillpoint::inspection {
@@ -30,71 +31,88 @@ std::vector<TopicAudit> audit_topics(bag::BagReader& bag) {
   return topics;
 }
 
-std::vector<double> stamps_of(const bag::ImageStamps& stamps, double offset) {
+std::vector<double> times_of(const std::vector<bag::ImageStamp>& images) {
   std::vector<double> times;
-  for (const bag::ImageStamp& stamp : stamps.images) times.push_back(stamp.time + offset);
+  for (const bag::ImageStamp& image : images) times.push_back(image.time);
   return times;
 }
 
-void audit_pairs(const std::vector<double>& color, const std::vector<double>& depth,
-                 double max_difference, BagAudit& audit) {
-  std::vector<double> times;
-  for (const auto& pair : tum_recording::pair_by_time(color, depth, max_difference)) {
-    const double difference = std::abs(color[pair.color] - depth[pair.depth]);
-    audit.max_difference = std::max(audit.max_difference, difference);
-    audit.mean_difference += difference;
-    times.push_back(color[pair.color]);
-  }
-  audit.mean_difference /= static_cast<double>(std::max<std::size_t>(1, times.size()));
-  audit.pairs = audit_stream(times);
+void add_warnings(const std::vector<std::string>& lines, BagAudit& audit) {
+  audit.warnings.insert(audit.warnings.end(), lines.begin(), lines.end());
 }
 
-void warn_of_pairs(double max_difference, BagAudit& audit) {
-  const std::size_t unpaired = audit.color.images - audit.pairs.images;
-  if (unpaired * 20 > audit.color.images)
-    audit.warnings.push_back(
-        std::to_string(unpaired) + " of " + std::to_string(audit.color.images) +
-        " colour images have no depth image within " + fixed(1e3 * max_difference, 0) +
-        " ms; change max_difference or time_offset of the source");
-  if (audit.pairs.gaps.empty() || audit.pairs.gaps[0].length < 0.5) return;
-  audit.warnings.push_back("no frames for " + fixed(audit.pairs.gaps[0].length, 2) + " s from " +
-                           fixed(audit.pairs.gaps[0].begin, 3) + " s; tracking may get lost there");
+/// What `find` lacks is a warning.
+template <class Function>
+void unless_missing(BagAudit& audit, Function find) {
+  try {
+    find();
+  } catch (const Error& error) {
+    audit.warnings.emplace_back(error.what());
+  }
+}
+
+void find_cameras(bag::BagReader& bag, const BagAuditOptions& options, BagAudit& audit) {
+  constexpr double kMillimetres = 1000;
+  unless_missing(audit, [&] {
+    audit.camera = options.camera ? *options.camera : bag::camera_in_bag(bag, audit.choice->color);
+  });
+  audit.depth_factor = audit.camera ? audit.camera->depth_factor : kMillimetres;
+  if (audit.choice->registered()) return;
+  unless_missing(audit, [&] {
+    const bag::DepthExtrinsics depth = bag::depth_extrinsics(bag, *audit.choice);
+    audit.depth_camera = depth.camera;
+    audit.color_from_depth = depth.color_from_depth;
+  });
+}
+
+/// "jpeg compressed bgr8" of "rgb8; jpeg compressed bgr8".
+std::string format_of(const bag::ImageTopic& topic) {
+  const std::string& encoding = topic.first.encoding;
+  const auto end = encoding.find("; ");
+  return end == std::string::npos ? encoding : encoding.substr(end + 2);
 }
 
 /// What a run would do with the bag.
-void audit_images(bag::BagReader& bag, const BagAuditOptions& options, BagAudit& audit) {
+void audit_choice(bag::BagReader& bag, const BagAuditOptions& options, BagAudit& audit) {
   const bag::TopicChoice& choice = *audit.choice;
-  if (!choice.registered())
-    audit.warnings.push_back("depth of " + choice.depth.name + " is in the frame '" +
-                             choice.depth.first.header.frame + "', colour in '" +
-                             choice.color.first.header.frame +
-                             "'; record registered depth, or, if it is, set source.registered");
-  const auto stamps = bag::image_stamps(bag, {choice.color, choice.depth});
-  const auto color = stamps_of(stamps[0], 0.0);
-  const auto depth = stamps_of(stamps[1], options.time_offset);
-  audit.color = audit_stream(color);
-  audit.depth = audit_stream(depth);
-  audit_pairs(color, depth, options.max_difference, audit);
-  for (const auto& lines :
-       {stamps[0].warnings(choice.color.name), stamps[1].warnings(choice.depth.name)})
-    audit.warnings.insert(audit.warnings.end(), lines.begin(), lines.end());
-  warn_of_pairs(options.max_difference, audit);
+  find_cameras(bag, options, audit);
+  auto stamps = bag::image_stamps(bag, {choice.color, choice.depth});
+  const std::vector<bag::ImageStamp>& color = stamps[0].images;
+  std::vector<bag::ImageStamp>& depth = stamps[1].images;
+  for (bag::ImageStamp& image : depth) image.time += options.time_offset;
+  const auto indices =
+      tum_recording::pair_by_time(times_of(color), times_of(depth), options.max_difference);
+  std::vector<PairStamps> pairs;
+  for (const auto& pair : indices)
+    pairs.push_back({color[pair.color].time, depth[pair.depth].time});
+  audit_stamps(times_of(color), times_of(depth), pairs, audit);
+  bag::BagImages<tum_recording::ImageDecoder> images(bag, choice);
+  const auto read_color = [&](std::size_t i) {
+    return RecordedImage{images.color(color[indices[i].color]), format_of(choice.color)};
+  };
+  const auto read_depth = [&](std::size_t i) {
+    return RecordedImage{images.depth(depth[indices[i].depth]), format_of(choice.depth)};
+  };
+  audit_images(pairs, {read_color, read_depth}, options.samples, audit);
+  add_warnings(stamps[0].warnings(choice.color.name), audit);
+  add_warnings(stamps[1].warnings(choice.depth.name), audit);
+  add_warnings(pair_warnings(audit, options.max_difference,
+                             time_offset_advice(options.time_offset + audit.time_offset.offset)),
+               audit);
 }
 
 }  // namespace
 
 BagAudit audit_bag(const std::filesystem::path& path, const BagAuditOptions& options) {
   const auto bag = bag::open_bag(path);
-  BagAudit audit{.path = path, .format = bag->format(), .topics = audit_topics(*bag)};
+  BagAudit audit;
+  audit.path = path;
+  audit.format = bag->format();
+  audit.topics = audit_topics(*bag);
   for (const auto& file : bag_files(path)) audit.bytes += std::filesystem::file_size(file);
-  try {
-    audit.choice = bag::choose_topics(*bag, options.topics);
-    audit_images(*bag, options, audit);
-    audit.camera = options.camera ? *options.camera : bag::camera_in_bag(*bag, *audit.choice);
-  } catch (const Error& error) {
-    audit.warnings.insert(audit.warnings.begin(), error.what());
-  }
-  for (std::string& damage : bag->damage()) audit.warnings.push_back(std::move(damage));
+  unless_missing(audit, [&] { audit.choice = bag::choose_topics(*bag, options.topics); });
+  if (audit.choice) audit_choice(*bag, options, audit);
+  add_warnings(bag->damage(), audit);
   return audit;
 }
 

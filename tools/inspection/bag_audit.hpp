@@ -10,8 +10,8 @@
 
 #include "bag/bag_reader.hpp"
 #include "bag/topic_choice.hpp"
-#include "inspection/stream_audit.hpp"
-#include "stillpoint/contracts/camera.hpp"
+#include "inspection/pair_audit.hpp"
+#include "stillpoint/pose_math.hpp"
 
 namespace stillpoint::inspection {
 
@@ -20,6 +20,7 @@ struct BagAuditOptions {
   std::optional<CameraModel> camera;  ///< instead of the bag's
   double max_difference = 0.02;       ///< seconds
   double time_offset = 0.0;           ///< seconds, added to depth stamps
+  int samples = 200;                  ///< pairs whose images are read
 };
 
 struct TopicAudit {
@@ -28,18 +29,15 @@ struct TopicAudit {
   std::string images;    ///< "640 x 480, rgb8"; empty without images
 };
 
-struct BagAudit {
+/// Images and cameras are those that a run would use, by stamps of exposure; without a choice of
+/// topics, a warning has the reason.
+struct BagAudit : PairAudit {
   std::filesystem::path path;
   std::string format;
   std::uintmax_t bytes = 0;  ///< of all its files
   std::vector<TopicAudit> topics;
-  // What a run would use; without a choice, a warning has the reason.
   std::optional<bag::TopicChoice> choice;
-  std::optional<CameraModel> camera;
-  StreamAudit color, depth, pairs;  ///< by stamps of exposure
-  double mean_difference = 0.0;     ///< seconds between colour and depth of a pair
-  double max_difference = 0.0;      ///< seconds
-  std::vector<std::string> warnings;
+  std::optional<Pose> color_from_depth;  ///< by tf, of depth that is not registered
 };
 
 /// Throws Error(kData) when it is no bag; all else is a finding.

@@ -3,6 +3,7 @@
 
 #include "inspection/bag_audit.hpp"
 #include "inspection/number_text.hpp"
+#include "inspection/pair_report.hpp"
 #include "inspection/report_text.hpp"
 
 namespace stillpoint::inspection {
@@ -12,10 +13,6 @@ using BagJson = nlohmann::ordered_json;
 
 std::string padded(const std::string& text, std::size_t width) {
   return text + std::string(width - std::min(width, text.size()), ' ');
-}
-
-std::string right(const std::string& text, std::size_t width) {
-  return std::string(width - std::min(width, text.size()), ' ') + text;
 }
 
 std::string size_on_disk(std::uintmax_t bytes) {
@@ -54,17 +51,10 @@ std::string camera_text(const CameraModel& camera) {
   return text;
 }
 
-void print_choice(std::ostream& out, const BagAudit& audit) {
-  const double start = audit.color.begin;
-  row(out, "colour", audit.choice->color.name + ": " + stream_text(audit.color, start));
-  row(out, "depth", audit.choice->depth.name + ": " + stream_text(audit.depth, start));
-  row(out, "pairs", stream_text(audit.pairs, start) + "; by time stamp");
-  row(out, "unpaired",
-      std::to_string(audit.color.images - audit.pairs.images) + " colour, " +
-          std::to_string(audit.depth.images - audit.pairs.images) + " depth");
-  row(out, "stamps of a pair",
-      "differ by " + milliseconds(audit.mean_difference, 1) + " on average, " +
-          milliseconds(audit.max_difference, 1) + " at most");
+std::string depth_camera_text(const BagAudit& audit) {
+  const double distance = audit.color_from_depth->translation().norm();
+  return camera_text(*audit.depth_camera) + "; " + fixed(1e3 * distance, 1) +
+         " mm beside, registered by tf";
 }
 
 BagJson topic_json(const TopicAudit& topic) {
@@ -76,21 +66,6 @@ BagJson topic_json(const TopicAudit& topic) {
           {"duration", topic.messages.duration},
           {"interval", topic.messages.interval},
           {"images", topic.images}};
-}
-
-BagJson gaps_json(const StreamAudit& stream) {
-  BagJson gaps = BagJson::array();
-  for (const Gap& gap : stream.gaps) gaps.push_back({{"begin", gap.begin}, {"length", gap.length}});
-  return gaps;
-}
-
-BagJson image_stream_json(const std::string& topic, const StreamAudit& stream) {
-  return {{"topic", topic},
-          {"images", stream.images},
-          {"begin", stream.begin},
-          {"duration", stream.duration},
-          {"interval", stream.interval},
-          {"gaps", gaps_json(stream)}};
 }
 
 BagJson camera_json(const CameraModel& camera) {
@@ -107,10 +82,14 @@ std::string report_table(const BagAudit& audit) {
   out << audit.path.string() << '\n';
   row(out, "format", audit.format + ", " + size_on_disk(audit.bytes));
   print_topics(out, audit);
-  if (audit.choice) print_choice(out, audit);
+  if (audit.choice)
+    print_streams(out, audit, audit.choice->color.name + ": ", audit.choice->depth.name + ": ",
+                  "by time stamp");
   if (audit.camera) row(out, "camera", camera_text(*audit.camera));
-  for (const std::string& warning : audit.warnings) out << "warning: " << warning << '\n';
-  if (audit.warnings.empty()) out << "No problems found.\n";
+  if (audit.color_from_depth) row(out, "depth camera", depth_camera_text(audit));
+  if (audit.choice) print_images(out, audit);
+  print_depth(out, audit);
+  print_warnings(out, audit);
   return out.str();
 }
 
@@ -122,14 +101,13 @@ BagJson report_json(const BagAudit& audit) {
                   {"bytes", audit.bytes},
                   {"topics", topics}};
   if (audit.choice) {
-    json["color"] = image_stream_json(audit.choice->color.name, audit.color);
-    json["depth"] = image_stream_json(audit.choice->depth.name, audit.depth);
-    json["pairs"] = audit.pairs.images;
-    json["mean_difference"] = audit.mean_difference;
-    json["max_difference"] = audit.max_difference;
+    json.update(pair_json(audit));
+    json["color"]["topic"] = audit.choice->color.name;
+    json["depth"]["topic"] = audit.choice->depth.name;
     json["registered"] = audit.choice->registered();
   }
   json["camera"] = audit.camera ? camera_json(*audit.camera) : BagJson(nullptr);
+  if (audit.depth_camera) json["depth_camera"] = camera_json(*audit.depth_camera);
   json["warnings"] = audit.warnings;
   return json;
 }

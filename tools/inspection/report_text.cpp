@@ -6,6 +6,10 @@
 
 namespace stillpoint::inspection {
 
+std::string right(const std::string& text, std::size_t width) {
+  return std::string(width - std::min(width, text.size()), ' ') + text;
+}
+
 void row(std::ostream& out, const std::string& name, const std::string& value) {
   out << "  " << name << std::string(18 - name.size(), ' ') << value << '\n';
 }

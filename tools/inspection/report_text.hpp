@@ -8,6 +8,9 @@
 
 namespace stillpoint::inspection {
 
+/// With spaces before it, `width` columns; bytes are taken for columns.
+std::string right(const std::string& text, std::size_t width);
+
 /// A line of a name and its value.
 void row(std::ostream& out, const std::string& name, const std::string& value);
 

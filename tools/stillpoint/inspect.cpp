@@ -45,7 +45,8 @@ void print_inspection(InspectArguments arguments) {
                                       {.topics = arguments.topics,
                                        .camera = options.camera,
                                        .max_difference = options.pairing.max_difference,
-                                       .time_offset = options.pairing.time_offset}),
+                                       .time_offset = options.pairing.time_offset,
+                                       .samples = options.samples}),
                 arguments.json);
 }
 
@@ -55,6 +56,10 @@ void add_topic_options(CLI::App& command, bag::TopicNames& topics) {
   command.add_option("--depth-topic", topics.depth, "Depth images of a bag; default: found")
       ->type_name("TOPIC");
   command.add_option("--info-topic", topics.info, "CameraInfo of a bag; default: found")
+      ->type_name("TOPIC");
+  command
+      .add_option("--depth-info-topic", topics.depth_info,
+                  "CameraInfo of depth that is not registered; default: found")
       ->type_name("TOPIC");
 }
 
@@ -84,9 +89,7 @@ void add_inspect(CLI::App& app) {
   command->add_option("--time-offset", pairing.time_offset, "Added to the depth stamps, s")
       ->capture_default_str()
       ->check(CLI::Range(-10.0, 10.0));
-  command
-      ->add_option("--samples", arguments->options.samples,
-                   "Pairs whose images are read; not of bags")
+  command->add_option("--samples", arguments->options.samples, "Pairs whose images are read")
       ->capture_default_str()
       ->check(CLI::PositiveNumber);
   add_topic_options(*command, arguments->topics);

@@ -82,9 +82,11 @@ void print(const RecordingTotals& totals, const RecordArguments& arguments) {
   if (totals.skipped > 0) std::cout << ", " << totals.skipped << " unusable";
   const std::string target = arguments.output.string();
   std::cout << "\nfiles     " << target << '\n';
-  if (fs::is_directory(arguments.output) && totals.recorded > 0)
-    std::cout << "run       stillpoint run PIPELINE --dataset " << target << " --camera " << target
-              << "/camera.yaml\n";
+  if (totals.recorded > 0) {
+    std::cout << "run       stillpoint run PIPELINE --dataset " << target;
+    if (fs::is_directory(arguments.output)) std::cout << " --camera " << target << "/camera.yaml";
+    std::cout << '\n';
+  }
   std::cout << std::flush;
 }
 

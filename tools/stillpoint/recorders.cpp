@@ -1,6 +1,5 @@
 #include "recorders.hpp"
 
-#include <opencv2/core.hpp>
 #include <string>
 #include <utility>
 
@@ -8,6 +7,7 @@
 #include "stillpoint/engine/pipeline_config.hpp"
 #include "stillpoint/error.hpp"
 #include "stillpoint/support/atomic_file.hpp"
+#include "stillpoint/support/raw_depth.hpp"
 #include "stillpoint/support/rectifier.hpp"
 
 namespace stillpoint {
@@ -22,14 +22,6 @@ std::filesystem::path in_made_folder(const std::filesystem::path& file) {
     throw Error(Fault::kUsage, "cannot make the folder (" + error.message() + ")",
                 file.parent_path().string(), "name another one");
   return file;
-}
-
-/// CV_16UC1 in units of the sensor; what is too far for 16 bits becomes no measurement.
-cv::Mat raw_depth(const cv::Mat& metres, double factor) {
-  cv::Mat raw;
-  metres.convertTo(raw, CV_16U, factor);
-  raw.setTo(0, metres * factor > 65535);
-  return raw;
 }
 
 }  // namespace

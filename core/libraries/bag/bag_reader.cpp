@@ -1,8 +1,7 @@
 #include "bag/bag_reader.hpp"
 
 #include <algorithm>
-#include <array>
-#include <tuple>
+#include <utility>
 
 #include "bag/file_reader.hpp"
 #include "bag/joined_bag.hpp"
@@ -38,6 +37,16 @@ std::unique_ptr<BagReader> open_file(const fs::path& path) {
 
 }  // namespace
 
+std::uint32_t BagReader::add_topic(Topic topic) {
+  const auto same = [&](const Topic& other) {
+    return other.name == topic.name && other.type == topic.type && other.encoding == topic.encoding;
+  };
+  const auto known = std::find_if(topics_.begin(), topics_.end(), same);
+  const auto index = static_cast<std::uint32_t>(known - topics_.begin());
+  if (known == topics_.end()) topics_.push_back(std::move(topic));
+  return index;
+}
+
 void BagReader::sort_messages() { std::ranges::stable_sort(messages_, {}, &MessagePlace::time); }
 
 std::unique_ptr<BagReader> open_bag(const fs::path& path) {
@@ -49,8 +58,18 @@ std::unique_ptr<BagReader> open_bag(const fs::path& path) {
                 "expected files that end in .bag, .mcap or .db3");
   if (files.size() == 1) return open_file(files.front());
   std::vector<std::unique_ptr<BagReader>> bags;
-  for (const fs::path& file : files) bags.push_back(open_file(file));
-  return std::make_unique<JoinedBag>(std::move(bags));
+  DamageList unreadable;
+  for (const fs::path& file : files) {
+    try {
+      bags.push_back(open_file(file));
+    } catch (const Error& fault) {  // the last one of a recorder that was killed may be empty
+      unreadable.add(fault.what());
+    }
+  }
+  if (bags.empty())
+    throw Error(Fault::kData, "none of its bags can be read; first: " + unreadable.texts().front(),
+                path.string());
+  return std::make_unique<JoinedBag>(std::move(bags), std::move(unreadable));
 }
 
 std::string ros1_type(std::string type) {

@@ -53,6 +53,9 @@ class BagReader {
                         std::size_t at_most = std::numeric_limits<std::size_t>::max()) = 0;
 
  protected:
+  /// Its index; that of an earlier one with the same name, type and encoding, if any: several
+  /// publishers of a topic are told apart in files.
+  std::uint32_t add_topic(Topic topic);
   /// Once all are known.
   void sort_messages();
 
@@ -61,8 +64,8 @@ class BagReader {
   DamageList damage_;
 };
 
-/// A file, by its content, or a folder with such files (stillpoint::bag_files). Throws Error(kData)
-/// when it is no bag, or nothing of it can be read.
+/// A file, by its content, or a folder with such files (stillpoint::bag_files), of which those that
+/// cannot be read are damage. Throws Error(kData) when it is no bag, or nothing of it can be read.
 std::unique_ptr<BagReader> open_bag(const std::filesystem::path& path);
 
 /// "sensor_msgs/Image" of "sensor_msgs/msg/Image".

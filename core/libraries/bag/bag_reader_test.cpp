@@ -5,7 +5,9 @@
 
 #include <fstream>
 
+#include "bag/mcap_file.hpp"
 #include "support/bag_writer.hpp"
+#include "support/error_text.hpp"
 #include "support/recording_writer.hpp"
 
 namespace stillpoint::bag {
@@ -14,10 +16,11 @@ namespace {
 using stillpoint::testing::BagBytes;
 using stillpoint::testing::BagStyle;
 using stillpoint::testing::BagWriter;
+using stillpoint::testing::error_text;
 using stillpoint::testing::make_bag_writer;
 using stillpoint::testing::TemporaryFolder;
 using ::testing::AllOf;
-using ::testing::Each;
+using ::testing::Contains;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
@@ -58,6 +61,19 @@ std::vector<int> numbers_in(BagReader& bag) {
     }
   }
   return numbers;
+}
+
+/// What is not checked by anything is read as it is.
+std::size_t count_readable(BagReader& bag) {
+  std::size_t readable = 0;
+  for (const MessagePlace& place : bag.messages()) {
+    try {
+      bag.read(place);
+      ++readable;
+    } catch (const Error&) {
+    }
+  }
+  return readable;
 }
 
 class BagReaderTest : public ::testing::TestWithParam<BagStyle> {
@@ -107,23 +123,15 @@ TEST_P(BagReaderTest, ReadsAroundADamagedPlace) {
     stream << std::string(GetParam().format == "db3" ? 4096 : 64, '\xff');
   }
   const auto bag = open_bag(file());
-  // What is not checked by anything is read as it is.
-  std::size_t readable = 0;
-  for (const MessagePlace& place : bag->messages()) {
-    try {
-      bag->read(place);
-      ++readable;
-    } catch (const Error&) {
-    }
-  }
   // Without chunks, nothing says where to go on behind a record with a damaged length.
-  EXPECT_GE(readable, GetParam().messages_in_chunk == 0 ? kCount / 2U : kCount - 8U);
+  EXPECT_GE(count_readable(*bag), GetParam().messages_in_chunk == 0 ? kCount / 2U : kCount - 8U);
 }
 
 TEST_P(BagReaderTest, JoinsTheFilesOfAFolder) {
   const std::string& ending = GetParam().format;
   write_bag(folder_.path() / ("part_10." + ending), GetParam(), 8, kCount);
   write_bag(folder_.path() / ("part_9." + ending), GetParam(), 1, 8);
+  folder_.write("part_11." + ending, "");  // of a recorder that was killed
   folder_.write("metadata.yaml", "rosbag2_bagfile_information: {}\n");
   const auto bag = open_bag(folder_.path());
   ASSERT_THAT(bag->topics(), SizeIs(2));
@@ -131,6 +139,13 @@ TEST_P(BagReaderTest, JoinsTheFilesOfAFolder) {
   ASSERT_THAT(numbers, SizeIs(kCount - 1));
   EXPECT_TRUE(std::ranges::is_sorted(numbers));
   EXPECT_THAT(bag->format(), HasSubstr("2 files"));
+  EXPECT_THAT(bag->damage(), Contains(AllOf(HasSubstr("part_11"), HasSubstr("is empty"))));
+}
+
+std::string name_of(const ::testing::TestParamInfo<BagStyle>& parameter) {
+  const BagStyle& style = parameter.param;
+  return style.format + "_" + style.compression + "_" + std::to_string(style.messages_in_chunk) +
+         (style.finished ? "" : "_unfinished");
 }
 
 INSTANTIATE_TEST_SUITE_P(Formats, BagReaderTest,
@@ -142,31 +157,48 @@ INSTANTIATE_TEST_SUITE_P(Formats, BagReaderTest,
                                            BagStyle{"mcap", "zstd", 4, false},
                                            BagStyle{"mcap", "none", 0, false},
                                            BagStyle{"db3", "none"}, BagStyle{"db3", "zstd"}),
-                         [](const auto& parameter) {
-                           const BagStyle& style = parameter.param;
-                           return style.format + "_" + style.compression + "_" +
-                                  std::to_string(style.messages_in_chunk) +
-                                  (style.finished ? "" : "_unfinished");
-                         });
+                         name_of);
 
-std::string message_of(const std::filesystem::path& path) {
-  try {
-    open_bag(path);
-  } catch (const Error& error) {
-    EXPECT_EQ(error.fault(), Fault::kData);
-    return error.what();
+/// With an index that says where chunks are.
+class IndexedBagTest : public BagReaderTest {};
+
+// Lengths, indices, names, numbers of topics: eight bytes of 0xff, everywhere in turn.
+TEST_P(IndexedBagTest, DamageAnywhereCostsTheChunksThatItIsIn) {
+  write_bag(file(), GetParam());
+  std::ifstream stream(file(), std::ios::binary);
+  const std::string whole(std::istreambuf_iterator<char>(stream), {});
+  // The header of a ROS 1 bag, of some 190 bytes, alone says where its index is.
+  const std::size_t begin = GetParam().format == "bag" ? 256 : kMcapMagic.size();
+  for (std::size_t at = begin; at + 8 < whole.size(); at += whole.size() / 70) {
+    std::string damaged = whole;
+    damaged.replace(at, 8, 8, '\xff');
+    const auto bag = open_bag(folder_.write("damaged", damaged));
+    EXPECT_GE(count_readable(*bag), kCount - 8U) << "damaged at byte " << at;
   }
-  return "nothing was thrown";
+}
+
+INSTANTIATE_TEST_SUITE_P(Formats, IndexedBagTest,
+                         ::testing::Values(BagStyle{"bag", "none"}, BagStyle{"bag", "bz2"},
+                                           BagStyle{"bag", "lz4"}, BagStyle{"mcap", "none"},
+                                           BagStyle{"mcap", "lz4"}, BagStyle{"mcap", "zstd"}),
+                         name_of);
+
+std::string refusal_of(const std::filesystem::path& path) {
+  return error_text(Fault::kData, [&] { open_bag(path); });
 }
 
 TEST(OpenBag, RefusesWhatIsNoBag) {
   const TemporaryFolder folder;
-  EXPECT_THAT(message_of(folder.path() / "missing.bag"), HasSubstr("no such file"));
-  EXPECT_THAT(message_of(folder.path()), HasSubstr("holds no bag"));
-  EXPECT_THAT(message_of(folder.write("a.bag", "")), HasSubstr("is empty"));
-  EXPECT_THAT(message_of(folder.write("a.bag", "hello")), HasSubstr("is neither a ROS 1 bag"));
-  EXPECT_THAT(message_of(folder.write("a.bag", "#ROSBAG V1.2\n")), HasSubstr("rosbag fix"));
-  EXPECT_THAT(message_of(folder.write("a.db3.zstd", "\x28\xb5\x2f\xfd....")), HasSubstr("zstd -d"));
+  EXPECT_THAT(refusal_of(folder.path() / "missing.bag"), HasSubstr("no such file"));
+  EXPECT_THAT(refusal_of(folder.path()), HasSubstr("holds no bag"));
+  folder.write("two/a.bag", "");
+  folder.write("two/b.bag", "");
+  EXPECT_THAT(refusal_of(folder.path() / "two"),
+              HasSubstr("none of its bags can be read; first: "));
+  EXPECT_THAT(refusal_of(folder.write("a.bag", "")), HasSubstr("is empty"));
+  EXPECT_THAT(refusal_of(folder.write("a.bag", "hello")), HasSubstr("is neither a ROS 1 bag"));
+  EXPECT_THAT(refusal_of(folder.write("a.bag", "#ROSBAG V1.2\n")), HasSubstr("rosbag fix"));
+  EXPECT_THAT(refusal_of(folder.write("a.db3.zstd", "\x28\xb5\x2f\xfd....")), HasSubstr("zstd -d"));
 }
 
 TEST(OpenBag, RefusesOtherDatabases) {
@@ -175,7 +207,7 @@ TEST(OpenBag, RefusesOtherDatabases) {
   ASSERT_EQ(sqlite3_open((folder.path() / "a.db3").c_str(), &database), SQLITE_OK);
   sqlite3_exec(database, "CREATE TABLE people(name)", nullptr, nullptr, nullptr);
   sqlite3_close(database);
-  EXPECT_THAT(message_of(folder.path() / "a.db3"), HasSubstr("is no bag of ROS 2: no such table"));
+  EXPECT_THAT(refusal_of(folder.path() / "a.db3"), HasSubstr("is no bag of ROS 2: no such table"));
 }
 
 TEST(OpenBag, RunsNoSqlOfTheFile) {
@@ -189,7 +221,7 @@ TEST(OpenBag, RunsNoSqlOfTheFile) {
                          nullptr, nullptr, nullptr),
             SQLITE_OK);
   sqlite3_close(database);
-  EXPECT_THAT(message_of(folder.path() / "a.db3"), HasSubstr("is no bag of ROS 2"));
+  EXPECT_THAT(refusal_of(folder.path() / "a.db3"), HasSubstr("is no bag of ROS 2"));
 }
 
 // The sizes of a chunk and of a message are numbers that anybody can write.

@@ -1,6 +1,7 @@
 // Numbers and texts out of bytes, as the formats of bags and the messages in them have them.
 #pragma once
 
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -12,6 +13,7 @@
 namespace stillpoint::bag {
 
 using ByteSpan = std::span<const std::uint8_t>;
+static_assert(std::endian::native == std::endian::little, "numbers are copied as they are");
 
 /// How the fields of a message are laid out.
 enum class Serialisation {

@@ -49,15 +49,21 @@ CameraModel camera_model(const CameraInfoMessage& info, bool rectified, const st
   return model;
 }
 
-CameraModel camera_in_bag(BagReader& bag, const TopicChoice& choice) {
+CameraModel camera_in_bag(BagReader& bag, const ImageTopic& images) {
+  std::optional<CameraInfoMessage> info;
   for (const MessagePlace& place : bag.messages()) {
-    if (place.topic != choice.info) continue;
-    const Topic& topic = bag.topics()[place.topic];
-    const CameraInfoMessage info = read_camera_info(bag.read(place), topic.serialisation);
-    return camera_model(info, choice.rectified(), topic.name);
+    if (place.topic != images.info) continue;
+    try {
+      info = read_camera_info(bag.read(place), bag.topics()[place.topic].serialisation);
+      break;
+    } catch (const Error&) {  // a damaged one; the next may do
+    }
   }
-  throw Error(Fault::kUsage, "the bag has no CameraInfo of " + choice.color.name, "",
-              "name its topic with --set source.info_topic=NAME, or a camera with --camera");
+  if (info) return camera_model(*info, images.rectified(), bag.topics()[*images.info].name);
+  const bool depth = images.first.kind() == ImageKind::kDepth;
+  throw Error(Fault::kUsage, "the bag has no CameraInfo of " + images.name, "",
+              std::string("name its topic with --set source.") +
+                  (depth ? "depth_info_topic=NAME" : "info_topic=NAME, or a camera with --camera"));
 }
 
 }  // namespace stillpoint::bag

@@ -13,7 +13,8 @@ namespace stillpoint::bag {
 /// CameraModel has.
 CameraModel camera_model(const CameraInfoMessage& info, bool rectified, const std::string& name);
 
-/// That of the first message which says it. Throws Error(kUsage) when the bag has none.
-CameraModel camera_in_bag(BagReader& bag, const TopicChoice& choice);
+/// That of the images' first CameraInfo that can be read. Throws Error(kUsage) when the bag has
+/// none.
+CameraModel camera_in_bag(BagReader& bag, const ImageTopic& images);
 
 }  // namespace stillpoint::bag

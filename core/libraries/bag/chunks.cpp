@@ -17,6 +17,18 @@ std::uint32_t Chunks::add(const Chunk& chunk) {
   return static_cast<std::uint32_t>(chunks_.size() - 1);
 }
 
+std::uint64_t Chunks::next_start(std::uint64_t at) const {
+  const auto next = starts_.upper_bound(at);
+  return next == starts_.end() ? file_.size() : std::min(*next, file_.size());
+}
+
+std::uint64_t Chunks::skip_damage(std::uint64_t at) {
+  const std::uint64_t next = next_start(at);
+  damage_.add("bytes " + std::to_string(at) + " to " + std::to_string(next) + " cannot be read" +
+              (next == file_.size() ? ": the file is cut off or damaged" : ""));
+  return next;
+}
+
 ByteSpan Chunks::bytes(std::uint32_t number, std::uint64_t offset, std::size_t count) {
   const Chunk& chunk = chunks_[number];
   if (offset >= chunk.size) return {};

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <set>
 #include <vector>
 
 #include "bag/compression.hpp"
@@ -37,6 +38,13 @@ class Chunks {
   /// The number of a chunk that is new.
   std::uint32_t add(const Chunk& chunk);
 
+  /// Where a chunk begins in the file, by the index at its end.
+  void add_start(std::uint64_t begin) { starts_.insert(begin); }
+  /// Of the first chunk of the index behind `at`; the end of the file without one.
+  std::uint64_t next_start(std::uint64_t at) const;
+  /// The same, where reading goes on behind a record at `at` that is told as damaged.
+  std::uint64_t skip_damage(std::uint64_t at);
+
   const std::filesystem::path& path() const { return file_.path(); }
   /// As stated; what of it is there, bytes() says.
   std::uint64_t size(std::uint32_t chunk) const { return chunks_[chunk].size; }
@@ -61,6 +69,7 @@ class Chunks {
   FileReader file_;
   DamageList& damage_;
   std::vector<Chunk> chunks_;
+  std::set<std::uint64_t> starts_;
   std::vector<bool> checked_;
   // Colour and depth of a moment may lie in neighbouring chunks that take turns.
   std::array<Cached, 3> cache_;

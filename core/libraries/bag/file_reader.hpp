@@ -27,6 +27,8 @@ class FileReader {
   ByteSpan bytes(std::uint64_t offset, std::size_t count);
 
  private:
+  void fill(std::uint64_t offset, std::size_t count);
+
   std::filesystem::path path_;
   int descriptor_ = -1;
   std::uint64_t size_ = 0;

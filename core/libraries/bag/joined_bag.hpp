@@ -11,7 +11,8 @@ namespace stillpoint::bag {
 
 class JoinedBag final : public BagReader {
  public:
-  explicit JoinedBag(std::vector<std::unique_ptr<BagReader>> bags);
+  /// `unreadable`: those of the recording that are left out.
+  JoinedBag(std::vector<std::unique_ptr<BagReader>> bags, DamageList unreadable);
 
   std::string format() const override;
   std::vector<std::string> damage() const override;

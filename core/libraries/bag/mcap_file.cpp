@@ -84,26 +84,24 @@ void McapFile::read_data() {
   bool ended = false;
   for (std::uint64_t at = kMcapMagic.size(); at < size && !ended;) {
     const auto record = record_at(Chunks::kFile, at);
-    if (!record) {
-      const auto next = chunk_starts_.upper_bound(at);
-      const std::uint64_t resumed = next == chunk_starts_.end() ? size : *next;
-      damage_.add("bytes " + std::to_string(at) + " to " + std::to_string(resumed) +
-                  " cannot be read" + (resumed == size ? ": the file is cut off or damaged" : ""));
-      if (resumed == size) return;
-      at = resumed;
+    const bool is_chunk = record && record->opcode == Opcode::kChunk;
+    if (!record || (!is_chunk && record->end() > chunks_.next_start(at))) {
+      at = chunks_.skip_damage(at);
+      if (at == size) return;
       continue;
     }
     ended = record->opcode == Opcode::kDataEnd || record->opcode == Opcode::kFooter;
-    if (record->opcode != Opcode::kChunk) read_small_record(Chunks::kFile, *record);
-    at = record->opcode == Opcode::kChunk ? read_chunk(*record) : record->end();
+    if (!is_chunk) read_small_record(Chunks::kFile, *record);
+    at = is_chunk ? read_chunk(*record) : record->end();
   }
   if (!ended) damage_.add("the recording was not finished, or its end is missing");
 }
 
 /// Returns where to go on.
 std::uint64_t McapFile::read_chunk(const Record& record) {
-  const auto chunk = add_chunk(record);
-  std::uint64_t at = record.end();
+  const std::uint64_t limit = chunks_.next_start(record.begin);
+  const auto chunk = add_chunk(record, limit);
+  std::uint64_t at = std::min(record.end(), limit);
   if (!chunk) return at;
   const std::size_t before = messages_.size();
   bool indexed = false;
@@ -120,7 +118,8 @@ std::uint64_t McapFile::read_chunk(const Record& record) {
   return at;
 }
 
-std::optional<std::uint32_t> McapFile::add_chunk(const Record& record) {
+/// Its bytes are those before `limit`.
+std::optional<std::uint32_t> McapFile::add_chunk(const Record& record, std::uint64_t limit) {
   const std::string where = "the chunk at byte " + std::to_string(record.begin);
   try {
     constexpr std::size_t kHeader = 64;  // bytes: enough for what stands before its records
@@ -132,7 +131,7 @@ std::optional<std::uint32_t> McapFile::add_chunk(const Record& record) {
     const auto compression = compression_named(name);
     const auto stored = reader.number<std::uint64_t>();
     chunk.begin = record.content() + reader.position();
-    const std::uint64_t left = chunks_.size(Chunks::kFile) - chunk.begin;
+    const std::uint64_t left = limit - std::min(limit, chunk.begin);
     chunk.stored = std::min(stored, left);
     if (!compression || chunk.begin > record.end() || stored > record.end() - chunk.begin ||
         chunk.size > kLargestChunk) {
@@ -142,7 +141,8 @@ std::optional<std::uint32_t> McapFile::add_chunk(const Record& record) {
     }
     chunk.compression = *compression;
     if (chunk.compression == Compression::kNone) chunk.size = chunk.stored;
-    if (stored > left) damage_.add("the file is cut off in " + where);
+    if (stored > left || record.end() > limit)
+      damage_.add("the file is cut off or damaged in " + where);
     return chunks_.add(chunk);
   } catch (const Error&) {  // of ByteReader
     damage_.add(where + " is damaged");
@@ -189,7 +189,7 @@ void McapFile::read_small_record(std::uint32_t chunk, const Record& record) {
     } else if (record.opcode == Opcode::kChunkIndex) {
       ByteReader reader = content(chunk, record);
       reader.skip(8 + 8);  // first and last time
-      chunk_starts_.insert(reader.number<std::uint64_t>());
+      chunks_.add_start(reader.number<std::uint64_t>());
     } else if (record.opcode == Opcode::kMessage) {
       ByteReader reader(chunks_.bytes(chunk, record.content(), kMessageHeader));
       const auto topic = topic_of_.find(reader.number<std::uint16_t>());
@@ -210,8 +210,7 @@ void McapFile::add_channel(ByteReader reader) {
   Topic topic{.name = reader.text(), .type = type_of_[schema]};
   topic.encoding = reader.text();
   topic.serialisation = serialisation_of(topic.encoding);
-  topic_of_[number] = static_cast<std::uint32_t>(topics_.size());
-  topics_.push_back(std::move(topic));
+  topic_of_[number] = add_topic(std::move(topic));
 }
 
 ByteSpan McapFile::read(const MessagePlace& place, std::size_t at_most) {

@@ -3,7 +3,6 @@
 
 #include <filesystem>
 #include <optional>
-#include <set>
 #include <string>
 #include <string_view>
 #include <unordered_map>
@@ -31,7 +30,7 @@ class McapFile final : public BagReader {
   void read_summary();
   void read_data();
   std::uint64_t read_chunk(const Record& record);
-  std::optional<std::uint32_t> add_chunk(const Record& record);
+  std::optional<std::uint32_t> add_chunk(const Record& record, std::uint64_t limit);
   bool add_indexed(const Record& record, std::uint32_t chunk);
   void scan(std::uint32_t chunk);
   void read_small_record(std::uint32_t chunk, const Record& record);
@@ -40,7 +39,6 @@ class McapFile final : public BagReader {
   Chunks chunks_;
   std::unordered_map<std::uint16_t, std::string> type_of_;     // by number of the schema
   std::unordered_map<std::uint16_t, std::uint32_t> topic_of_;  // by number of the channel
-  std::set<std::uint64_t> chunk_starts_;                       // as the summary has them
 };
 
 }  // namespace stillpoint::bag

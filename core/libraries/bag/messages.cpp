@@ -1,17 +1,24 @@
 #include "bag/messages.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace stillpoint::bag {
 namespace {
+
+/// Of tf: a slash before it is left out.
+std::string read_frame(ByteReader& reader) {
+  std::string frame = reader.text();
+  if (frame.starts_with('/')) frame.erase(0, 1);
+  return frame;
+}
 
 MessageHeader read_header(ByteReader& reader, Serialisation serialisation) {
   if (serialisation == Serialisation::kRos1) reader.skip(4);  // seq, which ROS 2 has not
   MessageHeader header;
   const std::int64_t whole = reader.number<std::uint32_t>();
   header.stamp = whole * 1'000'000'000 + reader.number<std::uint32_t>();
-  header.frame = reader.text();
-  if (header.frame.starts_with('/')) header.frame.erase(0, 1);
+  header.frame = read_frame(reader);
   return header;
 }
 
@@ -84,6 +91,27 @@ CameraInfoMessage read_camera_info(ByteSpan message, Serialisation serialisation
   read_numbers(reader, rectification);
   read_numbers(reader, info.projection);
   return info;
+}
+
+std::vector<TransformMessage> read_transforms(ByteSpan message, Serialisation serialisation) {
+  constexpr double kUnit = 0.01;  // that the norm of a quaternion may be off
+  ByteReader reader(message, serialisation);
+  std::vector<TransformMessage> transforms;
+  for (auto left = reader.number<std::uint32_t>(); left > 0; --left) {
+    TransformMessage transform{.parent = read_header(reader, serialisation).frame,
+                               .child = read_frame(reader)};
+    std::array<double, 3> translation;
+    std::array<double, 4> rotation;  // x, y, z, w
+    read_numbers(reader, translation);
+    read_numbers(reader, rotation);
+    const Eigen::Quaterniond quaternion(rotation.data());
+    const Eigen::Vector3d position(translation.data());
+    if (!position.allFinite() || !(std::abs(quaternion.norm() - 1) < kUnit)) continue;
+    transform.parent_from_child.linear() = quaternion.normalized().toRotationMatrix();
+    transform.parent_from_child.translation() = position;
+    transforms.push_back(std::move(transform));
+  }
+  return transforms;
 }
 
 }  // namespace stillpoint::bag

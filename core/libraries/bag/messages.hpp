@@ -1,4 +1,4 @@
-// The messages of sensor_msgs that hold images and cameras, of ROS 1 and of ROS 2.
+// The messages that hold images, cameras and how their frames lie, of ROS 1 and of ROS 2.
 #pragma once
 
 #include <array>
@@ -8,12 +8,14 @@
 #include <vector>
 
 #include "bag/byte_reader.hpp"
+#include "stillpoint/pose_math.hpp"
 
 namespace stillpoint::bag {
 
 inline constexpr std::string_view kImageType = "sensor_msgs/Image";
 inline constexpr std::string_view kCompressedImageType = "sensor_msgs/CompressedImage";
 inline constexpr std::string_view kCameraInfoType = "sensor_msgs/CameraInfo";
+inline constexpr std::string_view kTransformTypes[] = {"tf2_msgs/TFMessage", "tf/tfMessage"};
 
 /// std_msgs/Header.
 struct MessageHeader {
@@ -50,10 +52,18 @@ struct CameraInfoMessage {
   std::array<double, 12> projection = {};  ///< P, row by row, of the rectified image
 };
 
+/// geometry_msgs/TransformStamped, as tf has it.
+struct TransformMessage {
+  std::string parent, child;  ///< frames
+  Pose parent_from_child = Pose::Identity();
+};
+
 /// All of these throw Error(kData) when the bytes end too early, which a description needs few of.
 MessageHeader header_of(ByteSpan message, Serialisation serialisation);
 ImageDescription describe_image(ByteSpan message, Serialisation serialisation, bool compressed);
 ImageMessage read_image(ByteSpan message, Serialisation serialisation, bool compressed);
 CameraInfoMessage read_camera_info(ByteSpan message, Serialisation serialisation);
+/// Without those whose numbers are no rigid transform.
+std::vector<TransformMessage> read_transforms(ByteSpan message, Serialisation serialisation);
 
 }  // namespace stillpoint::bag

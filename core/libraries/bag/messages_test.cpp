@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <limits>
+
 #include "bag/raw_image.hpp"
 #include "support/bag_writer.hpp"
 
@@ -13,7 +15,9 @@ using stillpoint::testing::ByteWriter;
 using stillpoint::testing::camera_info_message;
 using stillpoint::testing::compressed_message;
 using stillpoint::testing::image_message;
+using stillpoint::testing::transforms_message;
 using ::testing::ElementsAre;
+using ::testing::ElementsAreArray;
 using ::testing::HasSubstr;
 
 class MessagesTest : public ::testing::TestWithParam<Serialisation> {};
@@ -47,6 +51,21 @@ TEST_P(MessagesTest, CameraInfosHaveTheirNumbers) {
   EXPECT_EQ(info.projection[6], 24);
 }
 
+TEST_P(MessagesTest, TransformsHaveTheirFrames) {
+  Pose pose(Eigen::Quaterniond(0.5, 0.5, -0.5, 0.5));
+  pose.translation() = Eigen::Vector3d(1, -2, 0.25);
+  Pose scaled = pose;
+  scaled.translation().x() = std::numeric_limits<double>::quiet_NaN();
+  const auto bytes = transforms_message(
+      GetParam(), {{"/base", "/arm", pose}, {"base", "lost", scaled}, {"arm", "hand", pose}});
+  const auto transforms = read_transforms(bytes, GetParam());
+  ASSERT_EQ(transforms.size(), 2U);
+  EXPECT_EQ(transforms[0].parent, "base");
+  EXPECT_EQ(transforms[0].child, "arm");
+  EXPECT_EQ(transforms[1].child, "hand");
+  EXPECT_TRUE(transforms[1].parent_from_child.isApprox(pose));
+}
+
 TEST_P(MessagesTest, ThatEndTooEarlyAreRefused) {
   const auto image = image_message(GetParam(), 5, "f", cv::Mat::zeros(3, 5, CV_8UC3), "bgr8");
   const auto info = camera_info_message(GetParam());
@@ -54,6 +73,9 @@ TEST_P(MessagesTest, ThatEndTooEarlyAreRefused) {
     EXPECT_THROW(read_image(ByteSpan(image).first(size), GetParam(), false), Error) << size;
   for (std::size_t size = 0; size < info.size(); ++size)
     EXPECT_THROW(read_camera_info(ByteSpan(info).first(size), GetParam()), Error) << size;
+  const auto transforms = transforms_message(GetParam(), {{"a", "b", Pose::Identity()}});
+  for (std::size_t size = 0; size < transforms.size(); ++size)
+    EXPECT_THROW(read_transforms(ByteSpan(transforms).first(size), GetParam()), Error) << size;
 }
 
 INSTANTIATE_TEST_SUITE_P(Serialisations, MessagesTest,
@@ -128,10 +150,27 @@ TEST(RawImages, WhoseNumbersDoNotFitAreRefused) {
   const std::vector<std::uint8_t> data(24);
   EXPECT_THROW(color_pixels(image_with(data, 4, 3, "bgr8", 12)), Error);  // too few bytes
   EXPECT_THROW(color_pixels(image_with(data, 4, 2, "bgr8", 11)), Error);  // rows overlap
+  EXPECT_THROW(depth_pixels(image_with(data, 4, 2, "16UC1", 9)), Error);  // half a pixel apart
   EXPECT_THROW(color_pixels(image_with(data, -4, 2, "bgr8", 12)), Error);
   EXPECT_THROW(color_pixels(image_with(data, 2, 2, "16UC1", 4)), Error);
   EXPECT_THROW(depth_pixels(image_with(data, 4, 2, "bgr8", 12)), Error);
   EXPECT_THROW(depth_pixels(image_with(data, 1 << 30, 1 << 30, "16UC1", 12)), Error);
+}
+
+TEST(CompressedDepth, IsAPngFileMostOftenBehindAHeader) {
+  const std::vector<std::uint8_t> png = {0x89, 'P', 'N', 'G', 1, 2};
+  std::vector<std::uint8_t> behind(12, 7);
+  behind.insert(behind.end(), png.begin(), png.end());
+  const auto parts = [](const std::vector<std::uint8_t>& data, const char* format) {
+    return compressed_depth(
+        {.description = {.compressed = true, .encoding = format}, .data = data});
+  };
+  EXPECT_THAT(parts(png, "16UC1; png compressed").png, ElementsAreArray(png));
+  EXPECT_THAT(parts(behind, "16UC1; compressedDepth png").png, ElementsAreArray(png));
+  EXPECT_TRUE(parts(behind, "16UC1; compressedDepth png").inverse_header.empty());
+  EXPECT_EQ(parts(behind, "32FC1; compressedDepth png").inverse_header.size(), 12U);
+  EXPECT_THROW(parts(std::vector<std::uint8_t>(40, 7), "16UC1; compressedDepth rvl"), Error);
+  EXPECT_THROW(parts({1, 2}, "16UC1; compressedDepth png"), Error);
 }
 
 TEST(InverseDepth, BecomesMetres) {

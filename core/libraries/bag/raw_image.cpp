@@ -36,6 +36,12 @@ constexpr ColorEncoding kColorEncodings[] = {
     {"bayer_grbg8", CV_8UC1, cv::COLOR_BayerGB2BGR},
 };
 
+bool is_png(ByteSpan file) {
+  constexpr std::uint8_t kMagic[] = {0x89, 'P', 'N', 'G'};
+  return file.size() >= std::size(kMagic) &&
+         std::equal(std::begin(kMagic), std::end(kMagic), file.begin());
+}
+
 [[noreturn]] void refuse(const std::string& problem) { throw Error(Fault::kData, problem); }
 
 /// The message's own bytes as a matrix.
@@ -48,6 +54,8 @@ cv::Mat view_of(const ImageMessage& image, int type) {
   const std::size_t step = std::max(image.step, row);
   if (image.step < row || image.data.size() < step * static_cast<std::size_t>(is.height - 1) + row)
     refuse("the image has fewer bytes than its size and encoding ask for");
+  if (step % CV_ELEM_SIZE1(type) != 0)
+    refuse("rows of " + std::to_string(step) + " bytes do not fit the encoding");
   return {is.height, is.width, type, const_cast<std::uint8_t*>(image.data.data()), step};
 }
 
@@ -86,6 +94,17 @@ cv::Mat depth_pixels(const ImageMessage& image) {
   cv::Mat depth = view_of(image, metres ? CV_32FC1 : CV_16UC1).clone();
   if (image.big_endian != (std::endian::native == std::endian::big)) swap_bytes(depth);
   return depth;
+}
+
+CompressedDepth compressed_depth(const ImageMessage& image) {
+  constexpr std::size_t kHeader = 12;  // bytes: kind, two numbers
+  const std::string& format = image.description.encoding;
+  if (is_png(image.data)) return {.png = image.data, .inverse_header = {}};
+  if (image.data.size() < kHeader || !is_png(image.data.subspan(kHeader)))
+    refuse("depth of the format '" + format + "' is read as PNG only, which this is not");
+  const bool inverse = format.starts_with("32FC1");
+  return {.png = image.data.subspan(kHeader),
+          .inverse_header = inverse ? image.data.first(kHeader) : ByteSpan()};
 }
 
 cv::Mat metres_of_inverse_depth(const cv::Mat& quantised, ByteSpan header) {

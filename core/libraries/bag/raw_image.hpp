@@ -1,4 +1,4 @@
-// The pixels of sensor_msgs/Image.
+// The pixels of messages with images, but for those in files such as PNG.
 #pragma once
 
 #include <opencv2/core/mat.hpp>
@@ -15,8 +15,17 @@ cv::Mat color_pixels(const ImageMessage& image);
 /// Error(kData) as above.
 cv::Mat depth_pixels(const ImageMessage& image);
 
-/// Depth in metres of what compressed_depth_image_transport makes of a 32FC1 image: 16 bits with
-/// inverse depth. `header`: the 12 bytes before the PNG file.
+/// What is in a compressed depth image.
+struct CompressedDepth {
+  ByteSpan png;             ///< of 16 bits
+  ByteSpan inverse_header;  ///< of inverse depth, as metres_of_inverse_depth() takes it; or empty
+};
+
+/// A PNG file, most often behind a header of compressed_depth_image_transport, which makes inverse
+/// depth of 32FC1 images. Throws Error(kData) when it is something else.
+CompressedDepth compressed_depth(const ImageMessage& image);
+
+/// CV_32FC1 in metres, 0 where there is none, of 16 bits with inverse depth.
 cv::Mat metres_of_inverse_depth(const cv::Mat& quantised, ByteSpan header);
 
 }  // namespace stillpoint::bag

@@ -102,7 +102,7 @@ void Ros1Bag::read_index(std::uint64_t begin) {
     const auto record = record_at(Chunks::kFile, at);
     if (!record) return damage_.add("the index at the end is damaged");
     if (record->operation == Operation::kConnection) add_connection(Chunks::kFile, *record);
-    if (record->operation == Operation::kChunkInfo) chunk_starts_.insert(record->place);
+    if (record->operation == Operation::kChunkInfo) chunks_.add_start(record->place);
     at = record->end();
   }
 }
@@ -113,50 +113,53 @@ void Ros1Bag::read_file() {
     const auto record = record_at(Chunks::kFile, at);
     if (record && record->operation == Operation::kChunk) {
       at = read_chunk(*record);
-    } else if (record && record->end() <= size) {
+    } else if (record && record->end() <= chunks_.next_start(at)) {
       if (record->operation == Operation::kConnection) add_connection(Chunks::kFile, *record);
       if (record->operation == Operation::kMessage) add_message(Chunks::kFile, *record);
       at = record->end();
     } else {
-      const auto next = chunk_starts_.upper_bound(at);
-      const std::uint64_t resumed = next == chunk_starts_.end() ? size : *next;
-      damage_.add("bytes " + std::to_string(at) + " to " + std::to_string(resumed) +
-                  " cannot be read" + (resumed == size ? ": the file is cut off or damaged" : ""));
-      at = resumed;
+      at = chunks_.skip_damage(at);
     }
   }
 }
 
 /// Returns where to go on.
 std::uint64_t Ros1Bag::read_chunk(const Record& record) {
-  const auto compression = compression_named(record.compression);
-  const std::uint64_t stored = std::min(record.stored, chunks_.size(Chunks::kFile) - record.data);
-  const std::uint64_t size = compression == Compression::kNone ? stored : record.size;
-  if (!compression || std::max(stored, size) > kLargestChunk) {
-    damage_.add("the chunk at byte " + std::to_string(record.begin) + " has " +
-                (compression ? "an impossible size"
-                             : "a compression that is not known, '" + record.compression + "'"));
-    return record.end();
-  }
-  if (stored < record.stored)
-    damage_.add("the file is cut off in the chunk at byte " + std::to_string(record.begin));
-  const std::uint32_t chunk = chunks_.add(
-      {.begin = record.data, .stored = stored, .size = size, .compression = *compression});
+  const std::uint64_t limit = chunks_.next_start(record.begin);
+  const auto chunk = add_chunk(record, limit);
+  std::uint64_t at = std::min(record.end(), limit);
+  if (!chunk) return at;
   const std::size_t before = messages_.size();
-  std::uint64_t at = record.end();
   bool indexed = false;
   bool complete = true;  // all that is in the chunk is known
   while (const auto index = record_at(Chunks::kFile, at)) {
     if (index->operation != Operation::kIndexData || index->end() > chunks_.size(Chunks::kFile))
       break;
     indexed = true;
-    complete = complete && add_indexed(*index, chunk);
+    complete = complete && add_indexed(*index, *chunk);
     at = index->end();
   }
   if (indexed && complete) return at;
   messages_.resize(before);
-  scan(chunk);
+  scan(*chunk);
   return at;
+}
+
+/// Its bytes are those before `limit`.
+std::optional<std::uint32_t> Ros1Bag::add_chunk(const Record& record, std::uint64_t limit) {
+  const std::string where = "the chunk at byte " + std::to_string(record.begin);
+  const auto compression = compression_named(record.compression);
+  const std::uint64_t stored = std::min(record.stored, limit - std::min(limit, record.data));
+  const std::uint64_t size = compression == Compression::kNone ? stored : record.size;
+  if (!compression || std::max(stored, size) > kLargestChunk) {
+    damage_.add(where + (compression ? " has an impossible size"
+                                     : " has a compression that is not known, '" +
+                                           record.compression + "'"));
+    return std::nullopt;
+  }
+  if (stored < record.stored) damage_.add("the file is cut off or damaged in " + where);
+  return chunks_.add(
+      {.begin = record.data, .stored = stored, .size = size, .compression = *compression});
 }
 
 /// The messages of one connection in a chunk; nothing when the connection is not known.
@@ -196,13 +199,7 @@ void Ros1Bag::add_connection(std::uint32_t chunk, const Record& record) {
   } catch (const Error&) {
     return damage_.add("the connection at byte " + std::to_string(record.begin) + " is damaged");
   }
-  // Several publishers of one topic have a connection each.
-  const auto same = [&](const Topic& other) {
-    return other.name == topic.name && other.type == topic.type;
-  };
-  const auto known = std::find_if(topics_.begin(), topics_.end(), same);
-  topic_of_[record.connection] = static_cast<std::uint32_t>(known - topics_.begin());
-  if (known == topics_.end()) topics_.push_back(std::move(topic));
+  topic_of_[record.connection] = add_topic(std::move(topic));
 }
 
 void Ros1Bag::add_message(std::uint32_t chunk, const Record& record) {

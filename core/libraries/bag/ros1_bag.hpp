@@ -3,7 +3,6 @@
 
 #include <filesystem>
 #include <optional>
-#include <set>
 #include <string>
 #include <string_view>
 #include <unordered_map>
@@ -30,6 +29,7 @@ class Ros1Bag final : public BagReader {
   void read_index(std::uint64_t begin);
   void read_file();
   std::uint64_t read_chunk(const Record& record);
+  std::optional<std::uint32_t> add_chunk(const Record& record, std::uint64_t limit);
   bool add_indexed(const Record& record, std::uint32_t chunk);
   void scan(std::uint32_t chunk);
   void add_connection(std::uint32_t chunk, const Record& record);
@@ -37,7 +37,6 @@ class Ros1Bag final : public BagReader {
 
   Chunks chunks_;
   std::unordered_map<std::uint32_t, std::uint32_t> topic_of_;  // by number of the connection
-  std::set<std::uint64_t> chunk_starts_;                       // as the index at the end has them
 };
 
 }  // namespace stillpoint::bag

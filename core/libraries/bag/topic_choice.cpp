@@ -25,8 +25,6 @@ std::string leaf_of(const ImageTopic& topic) {
   return base.substr(base.rfind('/') + 1);
 }
 
-bool is_rectified(const ImageTopic& topic) { return contains(leaf_of(topic), "rect"); }
-
 bool says_registered(const std::string& name) {
   return contains(name, "registered") || contains(name, "aligned");
 }
@@ -86,8 +84,8 @@ ImageTopic choose_color(const std::vector<ImageTopic>& topics) {
     const std::string& name = topic.name;
     const bool other = contains(name, "infra") || contains(name, "fisheye") ||
                        contains(name, "depth") || contains(name, "/ir/");
-    return std::tuple(!other, contains(name, "color") || contains(name, "rgb"),
-                      !is_rectified(topic), !topic.first.compressed);
+    return std::tuple(!other, contains(name, "color") || contains(name, "rgb"), !topic.rectified(),
+                      !topic.first.compressed);
   });
 }
 
@@ -100,14 +98,14 @@ ImageTopic choose_depth(const std::vector<ImageTopic>& topics, const ImageTopic&
     return std::tuple(contains(topic.name, "depth"),
                       topic.first.header.frame == color.first.header.frame,
                       says_registered(topic.name), shared_parts(topic.name, color.name),
-                      is_rectified(topic) == is_rectified(color), !topic.first.compressed);
+                      topic.rectified() == color.rectified(), !topic.first.compressed);
   });
 }
 
-/// The camera info beside the colour images; or the only one of their frame.
-std::optional<std::uint32_t> choose_info(BagReader& bag, const ImageTopic& color,
+/// The camera info beside the images, or that of the given name.
+std::optional<std::uint32_t> choose_info(BagReader& bag, const ImageTopic& images,
                                          const std::string& name) {
-  const std::string wanted = name.empty() ? parent_of(base_of(color)) + "/camera_info" : name;
+  const std::string wanted = name.empty() ? parent_of(base_of(images)) + "/camera_info" : name;
   std::vector<std::string> names;
   for (std::uint32_t i = 0; i < bag.topics().size(); ++i) {
     const Topic& topic = bag.topics()[i];
@@ -128,7 +126,7 @@ bool TopicChoice::registered() const {
   return color.first.header.frame == depth.first.header.frame || says_registered(depth.name);
 }
 
-bool TopicChoice::rectified() const { return is_rectified(color); }
+bool ImageTopic::rectified() const { return contains(leaf_of(*this), "rect"); }
 
 std::vector<ImageTopic> image_topics(BagReader& bag) {
   constexpr std::size_t kBegin = 4096;  // bytes: a description and more
@@ -159,7 +157,8 @@ TopicChoice choose_topics(BagReader& bag, const TopicNames& names) {
   choice.color = names.color.empty() ? choose_color(topics) : named(topics, names.color);
   choice.depth =
       names.depth.empty() ? choose_depth(topics, choice.color) : named(topics, names.depth);
-  choice.info = choose_info(bag, choice.color, names.info);
+  choice.color.info = choose_info(bag, choice.color, names.info);
+  choice.depth.info = choose_info(bag, choice.depth, names.depth_info);
   return choice;
 }
 

@@ -1,4 +1,4 @@
-// Which topics of a bag are the colour and depth images and the camera.
+// Which topics of a bag are the colour and depth images and their cameras.
 #pragma once
 
 #include <optional>
@@ -12,7 +12,8 @@ namespace stillpoint::bag {
 
 /// Names of topics; those that are empty are found.
 struct TopicNames {
-  std::string color, depth, info;
+  std::string color, depth;
+  std::string info, depth_info;  ///< the CameraInfo of either
 };
 
 /// A topic with images, by its first one.
@@ -20,19 +21,20 @@ struct ImageTopic {
   std::uint32_t index = 0;  ///< in BagReader::topics()
   std::string name;
   ImageDescription first;
+  std::optional<std::uint32_t> info = {};  ///< index of their CameraInfo; nothing: there is none
+
+  /// By the name ("image_rect_color").
+  bool rectified() const;
 };
 
 struct TopicChoice {
   ImageTopic color, depth;
-  std::optional<std::uint32_t> info;  ///< index of the topic; nothing when there is none
 
   /// Whether depth is seen from the colour camera, by the frames of both or by the name of depth.
   bool registered() const;
-  /// Whether the colour images are rectified, by their name ("image_rect_color").
-  bool rectified() const;
 };
 
-/// The topics with images that can be read.
+/// The topics with images that can be read; their cameras are not looked for.
 std::vector<ImageTopic> image_topics(BagReader& bag);
 
 /// Prefers depth that is registered to the colour images, and images that are not compressed.

@@ -3,11 +3,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <functional>
 #include <opencv2/core.hpp>
 
 #include "bag/camera_model.hpp"
 #include "support/bag_writer.hpp"
+#include "support/error_text.hpp"
 #include "support/recording_writer.hpp"
 
 namespace stillpoint::bag {
@@ -15,6 +15,7 @@ namespace {
 
 using stillpoint::testing::camera_info_message;
 using stillpoint::testing::compressed_message;
+using stillpoint::testing::error_text;
 using stillpoint::testing::image_message;
 using stillpoint::testing::make_bag_writer;
 using stillpoint::testing::TemporaryFolder;
@@ -44,21 +45,12 @@ class TopicChoiceTest : public ::testing::Test {
     return *bag_;
   }
   TopicChoice choose(const TopicNames& names = {}) { return choose_topics(bag(), names); }
-  std::string refusal(const std::function<void()>& action, Fault fault = Fault::kUsage) {
-    try {
-      action();
-    } catch (const Error& error) {
-      EXPECT_EQ(error.fault(), fault);
-      return error.what();
-    }
-    return "nothing was thrown";
-  }
 
- private:
   void add(const std::string& topic, const std::string& type, const std::vector<std::uint8_t>& m) {
     writer_->add(topic, type, 1'000'000'000 + ++time_, m);
   }
 
+ private:
   TemporaryFolder folder_;
   std::filesystem::path file_ = folder_.path() / "a.bag";
   std::unique_ptr<stillpoint::testing::BagWriter> writer_ = make_bag_writer(file_, {});
@@ -77,9 +69,13 @@ TEST_F(TopicChoiceTest, FindsThoseOfARealSense) {
   const TopicChoice choice = choose();
   EXPECT_EQ(choice.color.name, "/camera/color/image_raw");
   EXPECT_EQ(choice.depth.name, "/camera/aligned_depth_to_color/image_raw");
-  EXPECT_EQ(bag().topics()[choice.info.value()].name, "/camera/color/camera_info");
+  EXPECT_EQ(bag().topics()[choice.color.info.value()].name, "/camera/color/camera_info");
   EXPECT_TRUE(choice.registered());
-  EXPECT_FALSE(choice.rectified());
+  EXPECT_FALSE(choice.color.rectified());
+  const TopicChoice other = choose({.depth = "/camera/depth/image_rect_raw"});
+  EXPECT_FALSE(other.registered());
+  EXPECT_TRUE(other.depth.rectified());
+  EXPECT_EQ(bag().topics()[other.depth.info.value()].name, "/camera/depth/camera_info");
 }
 
 TEST_F(TopicChoiceTest, FindsThoseOfTheTumBenchmark) {
@@ -89,7 +85,7 @@ TEST_F(TopicChoiceTest, FindsThoseOfTheTumBenchmark) {
   info("/camera/depth/camera_info");
   const TopicChoice choice = choose();
   EXPECT_EQ(choice.depth.name, "/camera/depth/image");
-  EXPECT_EQ(bag().topics()[choice.info.value()].name, "/camera/rgb/camera_info");
+  EXPECT_EQ(bag().topics()[choice.color.info.value()].name, "/camera/rgb/camera_info");
   EXPECT_TRUE(choice.registered());
 }
 
@@ -99,8 +95,8 @@ TEST_F(TopicChoiceTest, FindsCompressedOnes) {
   info("/camera/rgb/camera_info");
   const TopicChoice choice = choose();
   EXPECT_EQ(choice.depth.name, "/camera/depth_registered/image_raw/compressedDepth");
-  EXPECT_TRUE(choice.info.has_value());
-  EXPECT_TRUE(choice.rectified());
+  EXPECT_TRUE(choice.color.info.has_value());
+  EXPECT_TRUE(choice.color.rectified());
 }
 
 TEST_F(TopicChoiceTest, TakesGrayImagesWhereThereIsNoColour) {
@@ -114,21 +110,22 @@ TEST_F(TopicChoiceTest, TakesThoseThatAreNamed) {
     image(std::string("/") + name + "/color/image_raw", name, "rgb8");
     image(std::string("/") + name + "/depth/image_raw", name, "16UC1");
   }
-  EXPECT_THAT(refusal([&] { choose(); }),
+  EXPECT_THAT(error_text(Fault::kUsage, [&] { choose(); }),
               AllOf(HasSubstr("several topics may be the color_topic"),
                     HasSubstr("/back/color/image_raw (rgb8), /front/color/image_raw (rgb8)"),
                     HasSubstr("--set source.color_topic=NAME")));
   EXPECT_EQ(choose({.color = "/back/color/image_raw"}).depth.name, "/back/depth/image_raw");
   EXPECT_EQ(choose({.color = "front/color/image_raw"}).depth.name, "/front/depth/image_raw");
-  EXPECT_THAT(refusal([&] { choose({.color = "/back/color/image_rw"}); }),
+  EXPECT_THAT(error_text(Fault::kUsage, [&] { choose({.color = "/back/color/image_rw"}); }),
               HasSubstr("did you mean '/back/color/image_raw'?"));
-  EXPECT_THAT(refusal([&] { choose({.color = "/back/color/image_raw", .info = "/info"}); }),
+  EXPECT_THAT(error_text(Fault::kUsage,
+                         [&] { choose({.color = "/back/color/image_raw", .info = "/info"}); }),
               HasSubstr("there is no topic of camera infos '/info'"));
 }
 
 TEST_F(TopicChoiceTest, SaysWhatIsMissing) {
   image("/color/image", "c", "rgb8");
-  EXPECT_THAT(refusal([&] { choose(); }),
+  EXPECT_THAT(error_text(Fault::kUsage, [&] { choose(); }),
               AllOf(HasSubstr("there is no topic with depth images"),
                     HasSubstr("topics with images: /color/image (rgb8)")));
 }
@@ -137,7 +134,7 @@ TEST_F(TopicChoiceTest, DepthOfAnotherFrameIsNotRegistered) {
   image("/color/image", "c", "rgb8");
   image("/depth/image", "d", "16UC1");
   EXPECT_FALSE(choose().registered());
-  EXPECT_THAT(refusal([&] { camera_in_bag(bag(), choose()); }),
+  EXPECT_THAT(error_text(Fault::kUsage, [&] { camera_in_bag(bag(), choose().color); }),
               AllOf(HasSubstr("has no CameraInfo of /color/image"), HasSubstr("--camera")));
 }
 
@@ -146,15 +143,24 @@ TEST_F(TopicChoiceTest, TheCameraIsThatOfTheImages) {
   image("/color/image_rect_color", "c", "rgb8");
   image("/depth/image", "c", "16UC1");
   info("/color/camera_info", {.distortion = {0.1, -0.2, 0, 0, 0}});
-  const CameraModel raw = camera_in_bag(bag(), choose());
+  const CameraModel raw = camera_in_bag(bag(), choose().color);
   EXPECT_EQ(raw.name, "/color/camera_info");
   EXPECT_EQ(raw.width, 64);
   EXPECT_EQ(raw.fx, 50);
   EXPECT_EQ(raw.distortion, (std::vector<double>{0.1, -0.2, 0, 0}));
   EXPECT_EQ(raw.depth_factor, 1000);
-  const CameraModel rectified = camera_in_bag(bag(), choose({.color = "/color/image_rect_color"}));
+  const CameraModel rectified =
+      camera_in_bag(bag(), choose({.color = "/color/image_rect_color"}).color);
   EXPECT_EQ(rectified.fx, 45);
   EXPECT_TRUE(rectified.distortion.empty());
+}
+
+TEST_F(TopicChoiceTest, TheCameraIsThatOfTheFirstMessageThatIsWhole) {
+  image("/color/image", "c", "rgb8");
+  image("/depth/image", "c", "16UC1");
+  add("/color/camera_info", "sensor_msgs/CameraInfo", {1, 2, 3});
+  info("/color/camera_info");
+  EXPECT_EQ(camera_in_bag(bag(), choose().color).fx, 50);
 }
 
 TEST_F(TopicChoiceTest, RefusesCamerasItDoesNotHave) {
@@ -164,15 +170,15 @@ TEST_F(TopicChoiceTest, RefusesCamerasItDoesNotHave) {
   camera.distortion = {0.1, 0, 0, 0, 0, 0, 0, 0};
   EXPECT_NO_THROW(model(camera));
   camera.distortion.back() = 0.3;
-  EXPECT_THAT(refusal([&] { model(camera); }, Fault::kData), HasSubstr("with 8 coefficients"));
+  EXPECT_THAT(error_text(Fault::kData, [&] { model(camera); }), HasSubstr("with 8 coefficients"));
   camera.distortion = {0.1, 0, 0, 0};
   camera.model = "equidistant";
-  EXPECT_THAT(refusal([&] { model(camera); }, Fault::kData), HasSubstr("rectify"));
+  EXPECT_THAT(error_text(Fault::kData, [&] { model(camera); }), HasSubstr("rectify"));
   camera.distortion.clear();
   camera.width = 0;
-  EXPECT_THAT(refusal([&] { model(camera); }, Fault::kData), HasSubstr("width"));
+  EXPECT_THAT(error_text(Fault::kData, [&] { model(camera); }), HasSubstr("width"));
   camera.intrinsics = {};
-  EXPECT_THAT(refusal([&] { model(camera); }, Fault::kData), HasSubstr("is not calibrated"));
+  EXPECT_THAT(error_text(Fault::kData, [&] { model(camera); }), HasSubstr("is not calibrated"));
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <array>
 #include <cerrno>
 #include <cstring>
+#include <exception>
 #include <string_view>
 
 #include "mcap_writer/message_type.hpp"
@@ -114,7 +115,7 @@ McapWriter::McapWriter(std::filesystem::path file, Compression compression)
 McapWriter::~McapWriter() {
   try {
     finish();
-  } catch (const Error&) {  // of interest to those who call finish()
+  } catch (const std::exception&) {  // of interest to those who call finish()
   }
 }
 

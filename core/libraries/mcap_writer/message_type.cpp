@@ -15,11 +15,14 @@ struct Definition {
   std::string_view fields;
 };
 
-// The interfaces of ROS 2, alike from Foxy to Jazzy. Types of their own package are named in full.
+// The interfaces of ROS 2, alike from Foxy to Jazzy, but for Marker: from Humble on. Types of their
+// own package are named in full.
 constexpr std::array kDefinitions{
     Definition{"builtin_interfaces/Time", "int32 sec\nuint32 nanosec\n"},
     Definition{"std_msgs/Header", "builtin_interfaces/Time stamp\nstring frame_id\n"},
+    Definition{"builtin_interfaces/Duration", "int32 sec\nuint32 nanosec\n"},
     Definition{"std_msgs/String", "string data\n"},
+    Definition{"std_msgs/ColorRGBA", "float32 r\nfloat32 g\nfloat32 b\nfloat32 a\n"},
     Definition{"geometry_msgs/Point", "float64 x\nfloat64 y\nfloat64 z\n"},
     Definition{"geometry_msgs/Vector3", "float64 x\nfloat64 y\nfloat64 z\n"},
     Definition{"geometry_msgs/Quaternion", "float64 x 0\nfloat64 y 0\nfloat64 z 0\nfloat64 w 1\n"},
@@ -65,7 +68,22 @@ constexpr std::array kDefinitions{
     Definition{"sensor_msgs/PointCloud2",
                "std_msgs/Header header\nuint32 height\nuint32 width\n"
                "sensor_msgs/PointField[] fields\nbool is_bigendian\nuint32 point_step\n"
-               "uint32 row_step\nuint8[] data\nbool is_dense\n"}};
+               "uint32 row_step\nuint8[] data\nbool is_dense\n"},
+    Definition{"visualization_msgs/UVCoordinate", "float32 u\nfloat32 v\n"},
+    Definition{"visualization_msgs/MeshFile", "string filename\nuint8[] data\n"},
+    Definition{"visualization_msgs/Marker",
+               "int32 ARROW=0\nint32 CUBE=1\nint32 SPHERE=2\nint32 CYLINDER=3\n"
+               "int32 LINE_STRIP=4\nint32 LINE_LIST=5\nint32 CUBE_LIST=6\nint32 SPHERE_LIST=7\n"
+               "int32 POINTS=8\nint32 TEXT_VIEW_FACING=9\nint32 MESH_RESOURCE=10\n"
+               "int32 TRIANGLE_LIST=11\nint32 ADD=0\nint32 MODIFY=0\nint32 DELETE=2\n"
+               "int32 DELETEALL=3\nstd_msgs/Header header\nstring ns\nint32 id\nint32 type\n"
+               "int32 action\ngeometry_msgs/Pose pose\ngeometry_msgs/Vector3 scale\n"
+               "std_msgs/ColorRGBA color\nbuiltin_interfaces/Duration lifetime\n"
+               "bool frame_locked\ngeometry_msgs/Point[] points\nstd_msgs/ColorRGBA[] colors\n"
+               "string texture_resource\nsensor_msgs/CompressedImage texture\n"
+               "visualization_msgs/UVCoordinate[] uv_coordinates\nstring text\n"
+               "string mesh_resource\nvisualization_msgs/MeshFile mesh_file\n"
+               "bool mesh_use_embedded_materials\n"}};
 
 const Definition* find(std::string_view type) {
   const auto* found = std::find_if(kDefinitions.begin(), kDefinitions.end(),

@@ -42,6 +42,12 @@ void put_pixels(CdrWriter& out, const cv::Mat& image) {
   for (int y = 0; y < image.rows; ++y) out.raw({image.ptr(y), step});
 }
 
+/// std_msgs/ColorRGBA.
+void put_color(CdrWriter& out, std::uint32_t rgb) {
+  for (const int shift : {16, 8, 0}) out.number(static_cast<float>(rgb >> shift & 0xff) / 255);
+  out.number(1.0F);
+}
+
 // sensor_msgs/PointField
 constexpr std::uint8_t kUint8 = 2, kFloat32 = 7;
 
@@ -135,6 +141,34 @@ Bytes cdr_of(const PointCloud& message) {
   out.count(data.size());
   out.raw(data);
   out.number(std::uint8_t{1});  // no points without coordinates
+  return std::move(out).take();
+}
+
+Bytes cdr_of(const Voxels& message) {
+  constexpr std::int32_t kCubeList = 6, kAdd = 0;
+  CdrWriter out;
+  put(out, message.header);
+  out.text("voxels");           // ns
+  out.number(std::int32_t{0});  // id
+  out.number(kCubeList);
+  out.number(kAdd);
+  put(out, Pose(Pose::Identity()));
+  put(out, Eigen::Vector3d(Eigen::Vector3d::Constant(message.edge)));
+  put_color(out, 0xffffff);
+  for (int i = 0; i < 2; ++i) out.number(std::int32_t{0});  // lifetime: for ever
+  out.number(std::uint8_t{0});                              // frame_locked
+  out.count(message.centres.size());
+  for (const Eigen::Vector3f& centre : message.centres)
+    put(out, Eigen::Vector3d(centre.cast<double>()));
+  out.count(message.rgb.size());
+  for (const std::uint32_t rgb : message.rgb) put_color(out, rgb);
+  out.text("");                              // texture_resource
+  put(out, Header{});                        // of the texture
+  out.text("");                              // its format
+  for (int i = 0; i < 2; ++i) out.count(0);  // its data, uv_coordinates
+  for (int i = 0; i < 3; ++i) out.text("");  // text, mesh_resource, name of the mesh_file
+  out.count(0);                              // its data
+  out.number(std::uint8_t{0});               // mesh_use_embedded_materials
   return std::move(out).take();
 }
 

@@ -56,6 +56,14 @@ struct PointCloud {
   std::vector<std::uint8_t> classes;  ///< class id per point, field `label`; empty: no classes
 };
 
+struct Voxels {
+  static constexpr const char* kType = "visualization_msgs/Marker";  ///< CUBE_LIST
+  Header header;
+  double edge = 0;  ///< metres; along the frame's axes
+  std::vector<Eigen::Vector3f> centres;
+  std::vector<std::uint32_t> rgb;  ///< 0x00RRGGBB per voxel
+};
+
 struct PoseMessage {
   static constexpr const char* kType = "geometry_msgs/PoseStamped";
   Header header;
@@ -100,6 +108,7 @@ Bytes cdr_of(const Image& message);
 Bytes cdr_of(const CompressedImage& message);
 Bytes cdr_of(const CameraInfo& message);
 Bytes cdr_of(const PointCloud& message);
+Bytes cdr_of(const Voxels& message);
 Bytes cdr_of(const PoseMessage& message);
 Bytes cdr_of(const Transform& message);
 Bytes cdr_of(const Odometry& message);

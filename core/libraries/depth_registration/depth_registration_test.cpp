@@ -1,9 +1,14 @@
-#include "importing/depth_registration.hpp"
+#include "depth_registration/depth_registration.hpp"
 
-#include "importing/fixtures.hpp"
+#include <gtest/gtest.h>
 
-namespace stillpoint::importing {
+#include <limits>
+#include <opencv2/core.hpp>
+
+namespace stillpoint::depth_registration {
 namespace {
+
+cv::Mat flat_depth(int value, cv::Size size) { return {size, CV_16UC1, cv::Scalar(value)}; }
 
 Camera small_camera(int width, int height, double focal) {
   return {.width = width,
@@ -53,5 +58,24 @@ TEST(DepthRegistrationTest, WhatLiesBehindTheColourCameraIsLeftOut) {
   EXPECT_EQ(cv::countNonZero(moved), 0);
 }
 
+// In metres, or in a unit of its own: the same, to half a unit.
+TEST(DepthRegistrationTest, MetresAreMovedAsWholeNumbersAre) {
+  Pose color_from_depth = Pose::Identity();
+  color_from_depth.linear() = exp_so3({0.01, 0.2, 0.02});
+  color_from_depth.translation() = Eigen::Vector3d(0.05, -0.02, 0.01);
+  const Camera camera = small_camera(64, 48, 60);
+  const DepthRegistration registration(camera, camera, color_from_depth);
+  cv::Mat raw = flat_depth(2000, {64, 48}), metres;
+  raw(cv::Rect(20, 10, 20, 20)) = 1200;
+  raw(cv::Rect(5, 5, 3, 3)) = 0;
+  raw.convertTo(metres, CV_32F, 0.001);
+  metres(cv::Rect(5, 5, 3, 3)) = std::numeric_limits<float>::quiet_NaN();
+  const cv::Mat moved = registration.register_image(metres, 1);
+  cv::Mat expected;
+  registration.register_image(raw, 1000).convertTo(expected, CV_32F, 0.001);
+  EXPECT_EQ(moved.type(), CV_32FC1);
+  EXPECT_LT(cv::norm(moved, expected, cv::NORM_INF), 0.00051);
+}
+
 }  // namespace
-}  // namespace stillpoint::importing
+}  // namespace stillpoint::depth_registration
