@@ -8,6 +8,7 @@
 #include "stillpoint/runtime/yaml_loader.hpp"
 #include "stillpoint/runtime/yaml_option_reader.hpp"
 #include "stillpoint/support/did_you_mean.hpp"
+#include "support/recording_writer.hpp"
 
 namespace stillpoint {
 namespace {
@@ -99,6 +100,25 @@ TEST(OptionDescriber, ListsFieldsOfGroupsListsAndMaps) {
   EXPECT_EQ(describer.rows()[2].range, "[0, 1]");
   EXPECT_EQ(describer.rows()[5].default_value, "required");
   EXPECT_EQ(describer.rows()[10].type, "any | most");
+}
+
+TEST(ConfigFiles, AFileIsReadOnceUnlessItHasFaults) {
+  const testing::TemporaryFolder folder;
+  const std::string good = folder.write("good.yaml", "a: 1\n").string();
+  const std::string bad = folder.write("bad.yaml", "a: 1\na: 2\n").string();
+  ConfigFiles files;
+  const auto value = [&] {
+    FaultList none;
+    return files.load(good, {}, none)->find("a")->scalar;
+  };
+  EXPECT_EQ(value(), "1");
+  folder.write("good.yaml", "a: 2\n");
+  EXPECT_EQ(value(), "1");
+  for (int i = 0; i < 2; ++i) {
+    FaultList faults;
+    files.load(bad, {}, faults);
+    EXPECT_FALSE(faults.empty()) << "each pipeline that uses it says what is wrong";
+  }
 }
 
 TEST(DidYouMean, SuggestsNearNamesOnly) {
