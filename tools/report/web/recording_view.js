@@ -33,7 +33,7 @@ function errorsOf(runs) {
 }
 
 export async function recordingView(report, recording) {
-  const chosen = representatives(report, recording).slice(0, most);
+  const all = representatives(report, recording), chosen = all.slice(0, most);
   const runs = (await Promise.all(chosen.map(async c => ({...c, run: await loadRun(c.index)}))))
     .filter(r => r.run.trace.truth && r.run.trace.t.length);
   if (!runs.length) return el('p', {class: 'quiet'}, 'No run on this recording can be compared with a truth.');
@@ -43,7 +43,9 @@ export async function recordingView(report, recording) {
   const legend = el('div', {class: 'legend'}, ...runs.map((r, i) => el('span', {},
     el('i', {style: `background:${kind(i)}`}), `${r.variant}: ATE ${(1000 * r.run.errors.ate_m[0]).toFixed(1)} mm`)),
     el('span', {}, el('i', {class: 'truth-key'}), 'truth'));
-  return el('div', {}, legend, el('div', {class: 'pair'},
+  const rest = all.length > most
+    ? el('p', {class: 'quiet'}, `The first ${most} of ${all.length} are drawn.`) : null;
+  return el('div', {}, legend, rest, el('div', {class: 'pair'},
     figure('From above', pathPlot(lines(0, 1), true, 'x [m]', 'y [m]')),
     figure('From the side', pathPlot(lines(0, 2), true, 'x [m]', 'z [m]'))),
     figure('Absolute trajectory error', seriesChart(errorsOf(runs), runs.map((r, i) => (
