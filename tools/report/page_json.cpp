@@ -61,6 +61,7 @@ Json stage_means(const RunData& run) {
 
 Json listed_run(const RunData& run) {
   return {{"name", run.name},
+          {"variant", run.variant},
           {"recording", run.recording},
           {"complete", run.complete && run.notes.empty()},
           {"ate", run.evaluation ? Json(run.evaluation->rigid.metres.rmse) : Json()},

@@ -72,6 +72,7 @@ struct Picture {
 
 struct RunData {
   std::string name;       ///< of the folder, or SEQUENCE/VARIANT/REPEAT
+  std::string variant;    ///< of a study, which may have run it several times; else as `name`
   std::string recording;  ///< name of its sequence, or of the recording's folder
   std::filesystem::path folder;
   std::filesystem::path truth;     ///< groundtruth.txt; empty: none found

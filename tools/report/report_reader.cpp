@@ -62,6 +62,7 @@ RunData run_of_cell(const fs::path& folder, const StudyResults& results, std::si
   const study::Sequence sequence = at_repeat(study, study.sequences[cell.sequence], cell.repeat);
   const fs::path run_path = run_folder(folder, study, cell);
   RunData run = read_run(run_path, name_of(study, cell), recording_of(folder, sequence));
+  run.variant = study.variants[cell.variant].name;
   run.recording = study.sequences[cell.sequence].name;
   if (const std::string note = state_note(run_path, results.results[i].has_value()); !note.empty())
     run.notes.insert(run.notes.begin(), note);

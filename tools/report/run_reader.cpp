@@ -203,8 +203,8 @@ bool is_run(const fs::path& folder) {
 }
 
 RunData read_run(const fs::path& folder, const std::string& name, fs::path recording) {
-  RunData run{.name = name, .folder = folder};
-  read_summary(run);
+  RunData run{.name = name, .variant = name, .folder = folder};
+  try_to(run, [&] { read_summary(run); });
   read_log(run);
   read_pipeline(run, recording);
   try_to(run, [&] { read_trajectory(run); });

@@ -30,9 +30,8 @@ function notes(report) {
 function timeOfVariants(report) {
   const sums = new Map();
   for (const run of report.runs) {
-    const parts = run.name.split('/'), name = parts.length === 3 ? parts[1] : run.name;
     if (!run.stages.length) continue;
-    const sum = sums.get(name) ?? {count: 0, stages: new Map()};
+    const name = run.variant, sum = sums.get(name) ?? {count: 0, stages: new Map()};
     ++sum.count;
     for (const [stage, ms] of run.stages) sum.stages.set(stage, (sum.stages.get(stage) ?? 0) + ms);
     sums.set(name, sum);
