@@ -2,13 +2,14 @@
 #include <gtest/gtest.h>
 
 #include <cstdlib>
+#include <filesystem>
+#include <fstream>
 
 #include "fake_stages.hpp"
 #include "stillpoint/runtime/option_describer.hpp"
 #include "stillpoint/runtime/yaml_loader.hpp"
 #include "stillpoint/runtime/yaml_option_reader.hpp"
 #include "stillpoint/support/did_you_mean.hpp"
-#include "support/recording_writer.hpp"
 
 namespace stillpoint {
 namespace {
@@ -103,16 +104,20 @@ TEST(OptionDescriber, ListsFieldsOfGroupsListsAndMaps) {
 }
 
 TEST(ConfigFiles, AFileIsReadOnceUnlessItHasFaults) {
-  const testing::TemporaryFolder folder;
-  const std::string good = folder.write("good.yaml", "a: 1\n").string();
-  const std::string bad = folder.write("bad.yaml", "a: 1\na: 2\n").string();
+  const std::filesystem::path folder = ::testing::TempDir();
+  const auto write = [&](const char* name, const char* text) {
+    std::ofstream(folder / name) << text;
+    return folder / name;
+  };
+  const std::filesystem::path good = write("config_files_good.yaml", "a: 1\n");
+  const std::filesystem::path bad = write("config_files_bad.yaml", "a: 1\na: 2\n");
   ConfigFiles files;
   const auto value = [&] {
     FaultList none;
     return files.load(good, {}, none)->find("a")->scalar;
   };
   EXPECT_EQ(value(), "1");
-  folder.write("good.yaml", "a: 2\n");
+  write("config_files_good.yaml", "a: 2\n");
   EXPECT_EQ(value(), "1");
   for (int i = 0; i < 2; ++i) {
     FaultList faults;

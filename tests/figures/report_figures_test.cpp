@@ -30,7 +30,7 @@ RunData run_of(const std::string& name, const std::string& recording) {
     const double s = i / 30.0;
     run.trace.push_back({s, {s, 0, 0}, {s, 0.01, 0}, 0.01, i == 45});
     run.drift.push_back({s, 0.02, 0.3});
-    run.frame_rows.push_back({i, s, true, 1000, 500, 400, 3, 0.2});
+    run.frame_rows.push_back({i, 100 + s, s, true, 1000, 500, 400, 3, 0.2});
     stage.frame.push_back(i);
     stage.wall_ms.push_back(5);
     stage.cpu_ms.push_back(4);
