@@ -61,9 +61,11 @@ std::optional<Spread> StudyResults::spread(std::size_t sequence, std::size_t var
 
 std::optional<Spread> StudyResults::spread(std::size_t variant, MetricId metric) const {
   std::vector<double> values;
-  for (std::size_t i = 0; i < cells.size(); ++i)
-    if (cells[i].variant == variant && results[i] && results[i]->values[metric])
-      values.push_back(*results[i]->values[metric]);
+  for (std::size_t sequence = 0; sequence < study.sequences.size(); ++sequence) {
+    const auto [first, last] = cells_of(sequence, variant);
+    for (std::size_t i = first; i < last; ++i)
+      if (results[i] && results[i]->values[metric]) values.push_back(*results[i]->values[metric]);
+  }
   return spread_of(std::move(values));
 }
 
