@@ -46,7 +46,8 @@ function overview(report, open) {
   };
   if (report.runs.length === 1 && report.tables.length === 1) return notes(report);  // the run says it all
   const [first, ...rest] = report.tables;
-  const parts = [notes(report), titledTable(first, opener)];
+  const untitled = first.title === 'Overview' ? {...first, title: ''} : first;  // as the section
+  const parts = [notes(report), titledTable(untitled, opener)];
   const compared = rest.filter(t => t.title.startsWith('Compared with'));
   parts.push(...compared.map(t => titledTable(t, opener)));
   const others = rest.filter(t => !compared.includes(t));

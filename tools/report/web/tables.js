@@ -51,6 +51,6 @@ export function table(data, opener = () => null) {
 }
 
 export function titledTable(data, opener) {
-  return el('div', {class: 'titled'}, el('h3', {}, data.title), table(data, opener),
+  return el('div', {class: 'titled'}, data.title ? el('h3', {}, data.title) : null, table(data, opener),
             data.note ? el('p', {class: 'quiet'}, data.note) : null);
 }
