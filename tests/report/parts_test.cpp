@@ -196,9 +196,9 @@ TEST(PictureChoice, HasEvenOnesAndThoseBesideTheWorstMoments) {
   const TemporaryFolder folder;
   RunData run = run_with_pictures(folder);
   choose_pictures(run, folder.path() / "none");
-  // 0 and 40 are the next ones with the fewest inliers: at least a second apart.
+  // 0 and 10 are the next ones with the fewest inliers: at least a second apart.
   EXPECT_THAT(texts_of(run),
-              ElementsAre("0 fewest inliers: 80", "10 ", "20 fewest inliers: 40", "30 ",
+              ElementsAre("0 few inliers: 80", "10 few inliers: 80", "20 fewest inliers: 40", "30 ",
                           "50 largest error: 42.1 mm (in frame 52)", "60 ", "80 "));
   EXPECT_EQ(run.pictures[2].state, "40 of 90 matches fit, 0.0 % not used");
 }

@@ -21,15 +21,16 @@ const FrameRow& row_at(const RunData& run, double seconds) {
       run.frame_rows, {}, [&](const FrameRow& row) { return std::abs(row.seconds - seconds); });
 }
 
-/// Something that may have been bad: how much, when, and in words.
+/// Something that may have been bad: how much, when, and as text.
 struct Candidate {
   double badness = 0;
   double seconds = 0;
-  std::string why;
+  std::string value;
 };
 
-void add_worst(const RunData& run, std::vector<Candidate> candidates,
-               std::vector<WorstMoment>& moments) {
+/// `worst` and `bad` say what its value is.
+void add_worst(const RunData& run, std::vector<Candidate> candidates, const std::string& worst,
+               const std::string& bad, std::vector<WorstMoment>& moments) {
   std::ranges::stable_sort(candidates, std::greater(), &Candidate::badness);
   std::vector<double> taken;
   for (const Candidate& candidate : candidates) {
@@ -39,7 +40,7 @@ void add_worst(const RunData& run, std::vector<Candidate> candidates,
     };
     if (std::ranges::any_of(taken, is_near)) continue;
     moments.push_back({.frame = row_at(run, candidate.seconds).frame,
-                       .why = candidate.why,
+                       .why = (taken.empty() ? worst : bad) + candidate.value,
                        .first = taken.empty()});
     taken.push_back(candidate.seconds);
   }
@@ -50,7 +51,7 @@ std::vector<Candidate> losses(const RunData& run) {
   for (const Interval& stretch : run.lost)
     candidates.push_back({.badness = -stretch.begin,
                           .seconds = stretch.begin,
-                          .why = "lost at " + fixed(stretch.begin, 2) + " s"});
+                          .value = fixed(stretch.begin, 2) + " s"});
   return candidates;
 }
 
@@ -59,7 +60,7 @@ std::vector<Candidate> errors(const RunData& run) {
   for (const TracePoint& point : run.trace)
     candidates.push_back({.badness = point.error_m,
                           .seconds = point.seconds,
-                          .why = "largest error: " + fixed(1000 * point.error_m, 1) + " mm"});
+                          .value = fixed(1000 * point.error_m, 1) + " mm"});
   return candidates;
 }
 
@@ -69,7 +70,7 @@ std::vector<Candidate> exclusions(const RunData& run) {
     if (row.excluded > 0.0)
       candidates.push_back({.badness = row.excluded,
                             .seconds = row.seconds,
-                            .why = "most excluded: " + fixed(100 * row.excluded, 1) + " %"});
+                            .value = fixed(100 * row.excluded, 1) + " %"});
   return candidates;
 }
 
@@ -79,7 +80,7 @@ std::vector<Candidate> lacks_of_inliers(const RunData& run) {
     if (row.tracked && row.matches > 0)
       candidates.push_back({.badness = -static_cast<double>(row.inliers),
                             .seconds = row.seconds,
-                            .why = "fewest inliers: " + std::to_string(row.inliers)});
+                            .value = std::to_string(row.inliers)});
   return candidates;
 }
 
@@ -88,10 +89,10 @@ std::vector<Candidate> lacks_of_inliers(const RunData& run) {
 std::vector<WorstMoment> worst_moments(const RunData& run) {
   std::vector<WorstMoment> moments;
   if (run.frame_rows.empty()) return moments;
-  add_worst(run, losses(run), moments);
-  add_worst(run, errors(run), moments);
-  add_worst(run, exclusions(run), moments);
-  add_worst(run, lacks_of_inliers(run), moments);
+  add_worst(run, losses(run), "lost at ", "lost at ", moments);
+  add_worst(run, errors(run), "largest error: ", "large error: ", moments);
+  add_worst(run, exclusions(run), "most excluded: ", "much excluded: ", moments);
+  add_worst(run, lacks_of_inliers(run), "fewest inliers: ", "few inliers: ", moments);
   return moments;
 }
 
