@@ -3,16 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <cstdio>
-#include <opencv2/core.hpp>
+
+#include "output_files/excluded.hpp"
 
 namespace stillpoint::output_files {
 namespace {
-
-/// Per cent of the pixels, each as much as its weight is below that of a static one.
-double excluded_percent(const StaticWeights* weights) {
-  if (!weights || weights->track.empty()) return 0.0;
-  return 100.0 * (1.0 - cv::mean(weights->track)[0] / 255.0);
-}
 
 /// Empty where the moving check was inconclusive.
 std::string moving_text(const MovingPoints& moving) {
@@ -33,7 +28,7 @@ void FramesOutput::frame(const FrameReport& report) {
   std::snprintf(line.data(), line.size(), "%u,%.6f,%s,%d,%d,%d,%s,%.2f\n", report.frame->index,
                 report.frame->time, name_of(result.state), result.features, result.matches,
                 result.inliers, moving_text(report.moving).c_str(),
-                excluded_percent(report.weights.get()));
+                100.0 * excluded_share(report.weights.get()));
   file_.stream() << line.data();
 }
 

@@ -37,18 +37,48 @@ ImageOutput::ImageOutput(const Options& options, const StageContext& context)
   std::filesystem::create_directories(folder_, error);
   if (error)
     throw Error(Fault::kUsage, "cannot make the folder: " + error.message(), folder_.string());
+  if (options.worst == 0) return;
+  for (const Badness& badness : {Badness(exclusion), Badness(lack_of_inliers), loss()})
+    worst_.emplace_back(static_cast<std::size_t>(options.worst), badness);
 }
 
 void ImageOutput::frame(const FrameReport& report) {
   if (!std::exchange(begun_, true)) remove_pictures(folder_);
-  if (report.frame->index % static_cast<std::uint32_t>(options_.every) != 0) return;
+  if (is_chosen(report.frame->index)) write(report);
+  for (WorstFrames& worst : worst_) take(worst.add(report));
+}
+
+void ImageOutput::finish(const RunSummary&) {
+  for (WorstFrames& worst : worst_) take(worst.finish());
+}
+
+bool ImageOutput::is_chosen(std::uint32_t frame) const {
+  return frame % static_cast<std::uint32_t>(options_.every) == 0 ||
+         std::ranges::find(options_.frames, frame) != options_.frames.end();
+}
+
+void ImageOutput::take(const WorstFrames::Change& change) {
+  if (change.in) {
+    const std::uint32_t frame = change.in->frame->index;
+    if (++reasons_[frame] == 1 && !is_chosen(frame)) write(*change.in);
+  }
+  if (change.out && --reasons_[*change.out] == 0 && !is_chosen(*change.out))
+    fs::remove(file_of(*change.out));
+}
+
+fs::path ImageOutput::file_of(std::uint32_t frame) const {
   const char* extension = options_.format == Options::Format::kPng ? ".png" : ".jpg";
-  std::vector<unsigned char> bytes;
-  cv::imencode(extension, options_.panels ? panels_of(report) : annotated(report, options_.parts),
-               bytes);
   std::array<char, 32> name{};
-  std::snprintf(name.data(), name.size(), "%06u%s", report.frame->index, extension);
-  AtomicFile file(folder_ / name.data());
+  std::snprintf(name.data(), name.size(), "%06u%s", frame, extension);
+  return folder_ / name.data();
+}
+
+void ImageOutput::write(const FrameReport& report) const {
+  const fs::path path = file_of(report.frame->index);
+  std::vector<unsigned char> bytes;
+  cv::imencode(path.extension().string(),
+               options_.panels ? panels_of(report) : annotated(report, options_.parts), bytes);
+  AtomicFile file(path);
   file.stream().write(reinterpret_cast<const char*>(bytes.data()),
                       static_cast<std::streamsize>(bytes.size()));
   file.commit();

@@ -1,10 +1,14 @@
 // images/: annotated frames, as in the rows of the paper's Fig. 5.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
+#include <map>
 #include <stillpoint/sdk.hpp>
+#include <vector>
 
 #include "output_files/annotation.hpp"
+#include "output_files/worst_frames.hpp"
 
 namespace stillpoint::output_files {
 
@@ -13,6 +17,8 @@ class ImageOutput final : public Output {
   struct Options {
     enum class Format { kPng, kJpeg };
     int every = 30;
+    std::vector<double> frames;
+    int worst = 0;
     Format format = Format::kJpeg;
     AnnotationParts parts;
     bool panels = false;
@@ -21,6 +27,12 @@ class ImageOutput final : public Output {
     void visit(OptionVisitor& v) {
       v("every", every,
         {.min = 1, .max = 1e6, .unit = "frames", .help = "write one picture per so many"});
+      v("frames", frames, {.min = 0, .help = "numbers of frames that also have a picture"});
+      v("worst", worst,
+        {.min = 0,
+         .max = 100,
+         .help = "so many frames each also have a picture: where most was excluded, where fewest "
+                 "features fitted, where tracking was lost"});
       v.choice("format", format, {{"png", Format::kPng}, {"jpeg", Format::kJpeg}},
                {.help = "of the files"});
       v("features", parts.features,
@@ -38,11 +50,19 @@ class ImageOutput final : public Output {
   };
   ImageOutput(const Options& options, const StageContext& context);
   void frame(const FrameReport& report) override;
+  void finish(const RunSummary& summary) override;
 
  private:
+  std::filesystem::path file_of(std::uint32_t frame) const;
+  bool is_chosen(std::uint32_t frame) const;
+  void write(const FrameReport& report) const;
+  void take(const WorstFrames::Change& change);
+
   Options options_;
   std::filesystem::path folder_;
   bool begun_ = false;  // whether pictures of an earlier run have been removed
+  std::vector<WorstFrames> worst_;
+  std::map<std::uint32_t, int> reasons_;  // by frame: how often it is one of the worst
 };
 
 }  // namespace stillpoint::output_files

@@ -231,6 +231,42 @@ TEST_F(OutputFiles, PicturesAreMadeOfEveryNthFrame) {
   EXPECT_EQ(picture.size(), report.frame.bgr.size());
 }
 
+TEST_F(OutputFiles, FramesThatAreAskedForAndTheWorstHavePicturesToo) {
+  ImageOutput output({.every = 1000, .frames = {7, 305}, .worst = 2}, context);
+  Report report;
+  report.weights.track = cv::Mat(120, 160, CV_8UC1, cv::Scalar(255));
+  for (std::uint32_t i = 0; i < 400; ++i) {
+    report.frame.index = i;
+    const bool lost = i == 250 || i == 251;
+    report.result = {
+        .state = lost ? TrackState::kLost : TrackState::kTracking,
+        .matches = 200,
+        .inliers = 150 - (i == 100 ? 50 : 0) - (i == 160 ? 60 : 0) - (i == 161 ? 55 : 0)};
+    const int columns = i == 20 ? 20 : i == 60 ? 40 : i == 305 ? 60 : i == 390 ? 30 : 0;
+    report.weights.track.setTo(255);
+    if (columns > 0) report.weights.track.colRange(0, columns) = 0;
+    output.frame(report());
+  }
+  output.finish(summary());
+  // 20 was one of the two with most excluded, until 60 and 305 had more; 161 is beside 160.
+  EXPECT_THAT(files(), ElementsAre("images", "images/000000.jpg", "images/000007.jpg",
+                                   "images/000060.jpg", "images/000100.jpg", "images/000160.jpg",
+                                   "images/000250.jpg", "images/000305.jpg"));
+}
+
+TEST_F(OutputFiles, APictureStaysAsLongAsItIsTheWorstOfAnyKind) {
+  ImageOutput output({.every = 1000, .worst = 1}, context);
+  Report report;
+  for (const std::uint32_t i : {10U, 50U}) {
+    report.frame.index = i;
+    report.result = {.state = TrackState::kTracking, .matches = 90, .inliers = i == 10 ? 20 : 80};
+    report.weights.track = cv::Mat(120, 160, CV_8UC1, cv::Scalar(i == 10 ? 200 : 100));
+    output.frame(report());
+  }
+  output.finish(summary());
+  EXPECT_THAT(files(), ElementsAre("images", "images/000010.jpg", "images/000050.jpg"));
+}
+
 TEST(Annotation, DrawsEachPartAndLeavesTheFrameAlone) {
   Report report;
   const cv::Mat before = report.frame.bgr.clone();

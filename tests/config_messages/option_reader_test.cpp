@@ -2,6 +2,8 @@
 #include <gtest/gtest.h>
 
 #include <cstdlib>
+#include <filesystem>
+#include <fstream>
 
 #include "fake_stages.hpp"
 #include "stillpoint/runtime/option_describer.hpp"
@@ -99,6 +101,29 @@ TEST(OptionDescriber, ListsFieldsOfGroupsListsAndMaps) {
   EXPECT_EQ(describer.rows()[2].range, "[0, 1]");
   EXPECT_EQ(describer.rows()[5].default_value, "required");
   EXPECT_EQ(describer.rows()[10].type, "any | most");
+}
+
+TEST(ConfigFiles, AFileIsReadOnceUnlessItHasFaults) {
+  const std::filesystem::path folder = ::testing::TempDir();
+  const auto write = [&](const char* name, const char* text) {
+    std::ofstream(folder / name) << text;
+    return folder / name;
+  };
+  const std::filesystem::path good = write("config_files_good.yaml", "a: 1\n");
+  const std::filesystem::path bad = write("config_files_bad.yaml", "a: 1\na: 2\n");
+  ConfigFiles files;
+  const auto value = [&] {
+    FaultList none;
+    return files.load(good, {}, none)->find("a")->scalar;
+  };
+  EXPECT_EQ(value(), "1");
+  write("config_files_good.yaml", "a: 2\n");
+  EXPECT_EQ(value(), "1");
+  for (int i = 0; i < 2; ++i) {
+    FaultList faults;
+    files.load(bad, {}, faults);
+    EXPECT_FALSE(faults.empty()) << "each pipeline that uses it says what is wrong";
+  }
 }
 
 TEST(DidYouMean, SuggestsNearNamesOnly) {

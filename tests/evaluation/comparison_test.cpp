@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "evaluation/best.hpp"
 #include "evaluation/format.hpp"
 #include "fixtures.hpp"
 
@@ -44,6 +45,19 @@ TEST(Comparison, TheBestOfThoseThatCoverAsMuchHasAStar) {
   for (std::string line; std::getline(lines, line);) widths.push_back(width_of(line));
   ASSERT_EQ(widths.size(), 6u);
   EXPECT_THAT(widths, testing::Each(widths[0]));
+}
+
+TEST(Best, IsAmongThoseThatCoverAsMuchAndReadsAsTheBest) {
+  using testing::ElementsAre;
+  const std::vector<std::optional<RatedFigure>> figures = {
+      RatedFigure{0.02001, 99.5}, RatedFigure{0.02002, 100.0}, RatedFigure{0.05, 100.0},
+      RatedFigure{0.001, 40.0}, std::nullopt};
+  EXPECT_THAT(best_of(figures, Better::kSmaller, 4), ElementsAre(true, true, false, false, false));
+  EXPECT_THAT(best_of(figures, Better::kLarger, 4), ElementsAre(false, false, true, false, false));
+  EXPECT_THAT(best_of(figures, Better::kNeither, 4), testing::Each(false));
+  EXPECT_THAT(best_of(figures, Better::kSmaller, 1), ElementsAre(true, true, false, false, false));
+  EXPECT_THAT(best_of(figures, Better::kSmaller, 0), testing::Each(false));  // all read the same
+  EXPECT_THAT(best_of({figures.begin(), 1}, Better::kSmaller, 4), ElementsAre(false));
 }
 
 TEST(Comparison, AloneNobodyIsBest) {

@@ -23,14 +23,14 @@ using ::testing::UnorderedElementsAre;
 
 /// 3 s of 30 frames each, along x, with everything that a report knows.
 RunData run_of(const std::string& name, const std::string& recording) {
-  RunData run{.name = name, .recording = recording};
+  RunData run{.name = name, .variant = name, .recording = recording};
   run.frames = 90;
   StageTimes stage{"track", 90, {5, 5, 6, 7, 8}, {4, 4, 5, 6, 7}, {}, {}, {}};
   for (std::uint32_t i = 0; i < 90; ++i) {
     const double s = i / 30.0;
     run.trace.push_back({s, {s, 0, 0}, {s, 0.01, 0}, 0.01, i == 45});
     run.drift.push_back({s, 0.02, 0.3});
-    run.frame_rows.push_back({i, s, true, 1000, 500, 400, 3, 0.2});
+    run.frame_rows.push_back({i, 100 + s, s, true, 1000, 500, 400, 3, 0.2});
     stage.frame.push_back(i);
     stage.wall_ms.push_back(5);
     stage.cpu_ms.push_back(4);
@@ -97,8 +97,11 @@ TEST_F(ReportFigures, OfARunAreInAFolderOfItsName) {
 TEST_F(ReportFigures, OfAStudyShowTheFirstRepeatOfEachVariant) {
   ReportData data;
   for (const char* name :
-       {"walking/base/1", "walking/base/2", "walking/better/1", "sitting/base/1"})
+       {"walking/base/1", "walking/base/2", "walking/better/1", "sitting/base/1"}) {
     data.runs.push_back(run_of(name, std::string(name).substr(0, 7)));
+    data.runs.back().variant =
+        std::string(name).find("better") == std::string::npos ? "base" : "better";
+  }
   const std::set<std::string> figures = written(data);
   EXPECT_THAT(figures, IsSupersetOf({"walking/trajectory", "walking/errors", "walking/excluded",
                                      "walking/stage_times", "walking/base/errors",
@@ -112,6 +115,12 @@ TEST_F(ReportFigures, RunsOfOneNameAreToldApartAndNamesStayInTheFolder) {
                run_of("", "")};
   EXPECT_THAT(written(data), IsSupersetOf({"walking/out/errors", "walking/out_2/errors",
                                            "_/_/errors", "recording/_/errors"}));
+}
+
+TEST_F(ReportFigures, RunsWithLongNamesAreNoVariantsOfAStudy) {
+  ReportData data;
+  data.runs = {run_of("a/x/out", "walking"), run_of("b/x/out", "walking")};
+  EXPECT_THAT(written(data), IsSupersetOf({"walking/a_x_out/errors", "walking/b_x_out/errors"}));
 }
 
 TEST_F(ReportFigures, WithoutDataThereIsNone) {

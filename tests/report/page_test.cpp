@@ -149,6 +149,13 @@ TEST(ReportProgram, DamagedRunsAreShownAsFarAsTheyGo) {
   EXPECT_EQ(text_of(run / "trajectory.txt"), "1000.0 0 0 0 0 0\n");
 }
 
+TEST(RunReader, ASummaryWithValuesOfOtherTypesIsANote) {
+  const TemporaryFolder folder;
+  folder.write("summary.json", R"({"complete": "maybe", "coverage": "all"})");
+  EXPECT_THAT(report::read_run(folder.path(), "name").notes,
+              ::testing::Contains(HasSubstr("type must be boolean")));
+}
+
 TEST(ReportProgram, WhatIsNoRunIsNamed) {
   const TemporaryFolder folder;
   Outcome outcome = call({"report", folder.path().string()});

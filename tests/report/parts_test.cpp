@@ -158,26 +158,57 @@ TEST(MapVoxels, TooManyBecomeLargerCubes) {
   EXPECT_EQ(std::ranges::count(voxels.red, 255), 1);  // the most probable looks of its cube
 }
 
-TEST(PictureChoice, HasEvenOnesAndThoseBesideTheWorstMoments) {
-  const TemporaryFolder folder;
+/// Ten seconds, with pictures of every tenth frame; frame 52 has the largest error.
+RunData run_with_pictures(const TemporaryFolder& folder) {
   for (int i = 0; i < 100; i += 10)
     folder.write("images/0000" + std::string(i < 10 ? "0" : "") + std::to_string(i) + ".jpg", "x");
   folder.write("images/notes.txt", "x");
   RunData run{.folder = folder.path()};
   for (std::uint32_t i = 0; i < 100; ++i)
     run.frame_rows.push_back({.frame = i,
+                              .time = 1000.0 + 0.1 * i,
                               .seconds = 0.1 * i,
                               .tracked = true,
                               .matches = 90,
                               .inliers = 80 - (i == 20 ? 40 : 0),
                               .excluded = 0.0});
   run.trace.push_back({.seconds = 5.2, .error_m = 0.0421});
-  choose_pictures(run);
+  return run;
+}
+
+std::vector<std::string> texts_of(const RunData& run) {
   std::vector<std::string> texts;
   for (const Picture& picture : run.pictures)
     texts.push_back(std::to_string(picture.frame) + " " + picture.why);
-  EXPECT_THAT(texts, ElementsAre("10 ", "20 fewest inliers: 40", "30 ",
-                                 "50 largest error: 42.1 mm (in frame 52)", "60 ", "80 "));
+  return texts;
+}
+
+TEST(PictureChoice, HasEvenOnesAndThoseBesideTheWorstMoments) {
+  const TemporaryFolder folder;
+  RunData run = run_with_pictures(folder);
+  choose_pictures(run, folder.path() / "none");
+  // 0 and 10 are the next ones with the fewest inliers: at least a second apart.
+  EXPECT_THAT(texts_of(run),
+              ElementsAre("0 few inliers: 80", "10 few inliers: 80", "20 fewest inliers: 40", "30 ",
+                          "50 largest error: 42.1 mm (in frame 52)", "60 ", "80 "));
+  EXPECT_EQ(run.pictures[2].state, "40 of 90 matches fit, 0.0 % not used");
+}
+
+TEST(PictureChoice, AWorstFrameThatWasNotDrawnIsShownAsRecorded) {
+  const TemporaryFolder folder;
+  std::string list;
+  for (int i = 0; i < 100; ++i)
+    list += std::to_string(1000.0 + 0.1 * i) + " image" + std::to_string(i) + ".png\n";
+  folder.write("recording/rgb.txt", list);
+  folder.write("recording/depth.txt", list);
+  RunData run = run_with_pictures(folder);
+  choose_pictures(run, folder.path() / "recording");
+  const auto worst = std::ranges::find(run.pictures, 52U, &Picture::frame);
+  ASSERT_NE(worst, run.pictures.end());
+  EXPECT_EQ(worst->file, folder.path() / "recording/image52.png");
+  EXPECT_EQ(worst->why, "largest error: 42.1 mm");
+  EXPECT_TRUE(worst->recorded);
+  EXPECT_FALSE(run.pictures.front().recorded);
 }
 
 }  // namespace

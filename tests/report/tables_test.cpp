@@ -2,14 +2,15 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "report/report_tables.hpp"
 #include "report/run_tables.hpp"
-#include "report/study_tables.hpp"
 #include "report/table_files.hpp"
 #include "study/fixtures.hpp"
 
 namespace stillpoint::report {
 namespace {
 
+using study::Table;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
@@ -64,6 +65,15 @@ TEST(RunTable, WhatReadsTheSameIsEquallyGood) {
   EXPECT_FALSE(table.rows[2][1].best);
 }
 
+TEST(LatexTables, TwoColumnsMayNameARow) {
+  Table table{.title = "t",
+              .header = {"sequence", "variant", "mean"},
+              .rows = {{{.text = "walking"}, {.text = "plain"}, {.text = "0.1", .value = 0.1}}}};
+  table.names = 2;
+  EXPECT_THAT(latex_tables({&table, 1}), HasSubstr("\\begin{tabular}{llr}"));
+  EXPECT_THAT(csv_tables({&table, 1}), HasSubstr("t,walking/plain,mean,0.1,0.1,0\n"));
+}
+
 /// Of all cells but those of the last `missing`.
 study::StudyResults results_of(const study::Study& study, std::size_t missing) {
   study::StudyResults results{
@@ -77,7 +87,7 @@ study::StudyResults results_of(const study::Study& study, std::size_t missing) {
 TEST(StudyTables, HaveTheBestOfEachRowAndSayWhatIsMissing) {
   study::Study study = study::two_by_two(3);
   study.baseline = "plain";
-  const std::vector<Table> tables = study_tables(results_of(study, 1));
+  const std::vector<Table> tables = report_tables(results_of(study, 1));
   ASSERT_GE(tables.size(), 4u);
   EXPECT_EQ(tables[0].title, "Absolute trajectory error, SE(3), RMSE (m)");
   EXPECT_EQ(tables[0].rows[0][1].text, "0.1000 (0.1000–0.1000)");
@@ -85,17 +95,38 @@ TEST(StudyTables, HaveTheBestOfEachRowAndSayWhatIsMissing) {
   EXPECT_TRUE(tables[0].rows[0][2].best);
   EXPECT_EQ(tables[0].rows[1][2].text, "0.0200 (0.0200–0.0200) [2 of 3]");
   EXPECT_EQ(tables[1].title, "Compared with plain, recording by recording");
-  EXPECT_EQ(tables[2].rows[0][2].text, "80.0 (80.0 to 80.0)");
+  EXPECT_EQ(tables[2].rows[0][2].text, "80.0 (80.0–80.0)");
+  EXPECT_THAT(tables[0].note, HasSubstr("Median (smallest–largest) of 3 runs. Bold: the best"));
   // Two recordings can show nothing: no dagger.
   EXPECT_THAT(tables[0].header[2], Not(HasSubstr("†")));
   for (const Table& table : tables) EXPECT_THAT(table.title, Not(HasSubstr("lost")));
+}
+
+TEST(StudyTables, HaveThePenaltyAndWhatOthersHavePublished) {
+  study::Study study = study::two_by_two(1);
+  study.published = {{.name = "Theirs",
+                      .source = "Table I",
+                      .errors = {{"walking", {.ate_m = {0.25}}}},
+                      .times = {}}};
+  const std::vector<Table> tables = report_tables(results_of(study, 0));
+  EXPECT_EQ(tables[0].header[3], "Theirs (published)");
+  EXPECT_EQ(tables[0].rows[0][3].text, "0.2500");
+  EXPECT_FALSE(tables[0].rows[0][3].best);
+  EXPECT_EQ(tables[0].rows[1][3].text, "–");
+  EXPECT_THAT(tables[0].note, HasSubstr("Published, not measured here: Theirs (Table I)."));
+  const auto penalty = std::ranges::find_if(
+      tables, [](const Table& table) { return table.title.starts_with("Dynamic penalty"); });
+  ASSERT_NE(penalty, tables.end());
+  ASSERT_EQ(penalty->rows.size(), 1u);  // the twin has none
+  EXPECT_EQ(penalty->rows[0][0].text, "walking");
+  EXPECT_EQ(penalty->rows[0][1].text, "1.00");
 }
 
 TEST(StudyTables, WhatIsNoChanceHasADagger) {
   study::Study study = study::two_by_two(8);
   study.baseline = "plain";
   study.new_noise = true;  // each repeat is a recording of its own
-  const std::vector<Table> tables = study_tables(results_of(study, 0));
+  const std::vector<Table> tables = report_tables(results_of(study, 0));
   EXPECT_EQ(tables[0].header[2], "better †");
   EXPECT_THAT(tables[0].note, HasSubstr("differs from plain"));
   EXPECT_TRUE(tables[1].rows[0].back().significant);

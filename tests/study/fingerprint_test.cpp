@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "stillpoint/error.hpp"
+#include "study/pipeline_fingerprint.hpp"
 #include "support/recording_writer.hpp"
 
 namespace stillpoint::study {
@@ -46,13 +47,13 @@ TEST(Fingerprint, OfAPipelineSeesNetworksAndLabels) {
   const std::string network = folder.write("nets/own.onnx", "network");
   folder.write("labels/1.png", "image");
   folder.write("recording/1.png", "image");
-  FileContents contents;
+  PipelineFingerprints fingerprints({models.path()});
   const auto print = [&](const std::string& schedule = "wait") {
     const std::string root = folder.path();
-    return pipeline_fingerprint(
-        "source: {path: " + root + "/recording}\nsegmenter:\n  model: " + network + "\n  path: " +
-            root + "/labels\nother: [{model: " + root + "/found.onnx}, " + schedule + "]\n",
-        folder.path() / "recording", {models.path()}, contents);
+    return fingerprints.of("source: {path: " + root + "/recording}\nsegmenter:\n  model: " +
+                               network + "\n  path: " + root + "/labels\nother: [{model: " + root +
+                               "/found.onnx}, " + schedule + "]\n",
+                           folder.path() / "recording");
   };
   const std::string before = print();
   EXPECT_EQ(print(), before);
@@ -71,12 +72,12 @@ TEST(Fingerprint, OfAPipelineSeesNetworksAndLabels) {
 
 TEST(Fingerprint, OfAPipelineIsTheSameInAnotherInstallation) {
   const TemporaryFolder here, there;
-  FileContents contents;
   const auto print = [&](const std::string& root, const std::string& comment) {
-    return pipeline_fingerprint("segmenter:  # " + comment + "\n  model: " + root +
-                                    "/configs/own.onnx\n  path: " + root +
-                                    "/labels\nsource: {path: " + root + "/recording}\n",
-                                root + "/recording", {root + "/models"}, contents);
+    PipelineFingerprints fingerprints({root + "/models"});
+    return fingerprints.of("segmenter:  # " + comment + "\n  model: " + root +
+                               "/configs/own.onnx\n  path: " + root +
+                               "/labels\nsource: {path: " + root + "/recording}\n",
+                           root + "/recording");
   };
   for (const TemporaryFolder* folder : {&here, &there}) {
     folder->write("models/own.onnx", "network");
@@ -86,6 +87,31 @@ TEST(Fingerprint, OfAPipelineIsTheSameInAnotherInstallation) {
   EXPECT_EQ(print(there.path(), "as installed"), first);
   there.write("models/own.onnx", "NETWORK");
   EXPECT_NE(print(there.path(), "as installed"), first);
+}
+
+// Results of earlier versions count as long as this holds.
+TEST(Fingerprint, OfAPipelineIsThatOfItsKeysAndValues) {
+  const std::string expected = Fingerprint()
+                                   .add("version")
+                                   .add("1")
+                                   .add("source")
+                                   .add("path")
+                                   .add("type")
+                                   .add("tum")
+                                   .add("")
+                                   .add("outputs")
+                                   .add("type")
+                                   .add("images")
+                                   .add("")
+                                   .add("")
+                                   .add("")
+                                   .text();
+  PipelineFingerprints fingerprints({});
+  for (int i = 0; i < 2; ++i)  // the second time known
+    EXPECT_EQ(fingerprints.of("# all\nversion: 1\nsource:  # of images\n  path: /recording\n"
+                              "  type: tum\noutputs:\n  - type: images\n",
+                              "/recording"),
+              expected);
 }
 
 TEST(Fingerprint, OfAProgramIsThatOfItsFiles) {

@@ -5,13 +5,13 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "evaluation/best.hpp"
 #include "evaluation/format.hpp"
 #include "evaluation/report.hpp"
 
 namespace stillpoint::evaluation {
 namespace {
 
-constexpr double kSameCoverage = 0.01;
 constexpr std::size_t kFieldWidth = 10;  // a star included
 constexpr int kMetreDigits = 4;
 
@@ -51,17 +51,15 @@ std::vector<Column> columns() {
            }}};
 }
 
-/// Of those that cover enough; nothing when it is the only one.
-Figure smallest(const Comparison& comparison, const Column& column) {
-  double most = 0.0;
-  for (const Contestant& one : comparison.contestants)
-    most = std::max(most, one.evaluation.span.share);
-  Figure best;
-  for (const Contestant& one : comparison.contestants)
-    if (const Figure value = column.value(one);
-        value && one.evaluation.span.share >= most - kSameCoverage)
-      best = std::min(best.value_or(*value), *value);
-  return comparison.contestants.size() > 1 ? best : Figure();
+/// Of each contestant, whether its error is the smallest.
+std::vector<bool> smallest(const Comparison& comparison, const Column& column) {
+  std::vector<std::optional<RatedFigure>> figures;
+  for (const Contestant& one : comparison.contestants) {
+    const Figure value = column.value(one);
+    figures.push_back(value ? std::optional(RatedFigure{*value, 100.0 * one.evaluation.span.share})
+                            : std::nullopt);
+  }
+  return best_of(figures, column.is_error ? Better::kSmaller : Better::kNeither, column.digits);
 }
 
 std::string right(const std::string& text) {
@@ -69,10 +67,9 @@ std::string right(const std::string& text) {
                                    : " " + text;
 }
 
-std::string cell(const Contestant& contestant, const Column& column, const Figure& best) {
+std::string cell(const Contestant& contestant, const Column& column, bool best) {
   const Figure value = column.value(contestant);
-  if (!value) return right("- ");
-  return right(fixed(*value, column.digits) + (column.is_error && best == value ? "*" : " "));
+  return right(value ? fixed(*value, column.digits) + (best ? "*" : " ") : "- ");
 }
 
 std::string left(const std::string& text, std::size_t width) {
@@ -91,11 +88,12 @@ std::string comparison_table(const Comparison& comparison) {
     units += right(std::string(column.unit) + " ");
   }
   std::string text = titles + "\n" + units + "\n" + std::string(titles.size(), '-') + "\n";
-  std::vector<Figure> best;
+  std::vector<std::vector<bool>> best;
   for (const Column& column : all) best.push_back(smallest(comparison, column));
-  for (const Contestant& one : comparison.contestants) {
+  for (std::size_t k = 0; k < comparison.contestants.size(); ++k) {
+    const Contestant& one = comparison.contestants[k];
     text += left(one.name, width);
-    for (std::size_t i = 0; i < all.size(); ++i) text += cell(one, all[i], best[i]);
+    for (std::size_t i = 0; i < all.size(); ++i) text += cell(one, all[i], best[i][k]);
     text += "\n";
   }
   return text;

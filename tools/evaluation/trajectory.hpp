@@ -1,9 +1,8 @@
 // Trajectories as text: one pose per line, in metres, camera in the world. The columns tell the
 // format:
 //   TUM RGB-D  `time tx ty tz qx qy qz qw`, seconds
-//   EuRoC      `time,tx,ty,tz,qw,qx,qy,qz[,…]`, nanoseconds; with blanks for commas the quaternion
-//   is
-//              that of TUM, as ORB-SLAM3 writes it
+//   EuRoC      `time,tx,ty,tz,qw,qx,qy,qz[,…]`, nanoseconds; with blanks for commas the
+//              quaternion is that of TUM, as ORB-SLAM3 writes it
 //   KITTI      the three rows of a 3 x 4 matrix, no time; ten poses a second
 #pragma once
 

@@ -25,24 +25,17 @@ struct NamedRun {
 };
 using NamedRuns = std::vector<NamedRun>;
 
-/// "SEQUENCE/VARIANT/REPEAT" is the variant; runs of no study have names of their own.
-std::string variant_of(const std::string& name) {
-  const std::size_t first = name.find('/'), last = name.rfind('/');
-  return first == last ? name : name.substr(first + 1, last - first - 1);
-}
-
 /// By recording, of each variant the first run; runs of one name are told apart.
 std::map<std::string, NamedRuns> runs_by_recording(const ReportData& data) {
   std::map<std::string, NamedRuns> recordings;
   for (const RunData& run : data.runs) {
     NamedRuns& runs = recordings[run.recording.empty() ? "recording" : run.recording];
-    const std::string variant = variant_of(run.name);
     const auto same = std::ranges::count_if(
-        runs, [&](const NamedRun& other) { return variant_of(other.data->name) == variant; });
+        runs, [&](const NamedRun& other) { return other.data->variant == run.variant; });
     if (same == 0)
-      runs.push_back({variant, &run});
-    else if (variant == run.name)
-      runs.push_back({variant + " " + std::to_string(same + 1), &run});
+      runs.push_back({run.variant, &run});
+    else if (run.variant == run.name)
+      runs.push_back({run.variant + " " + std::to_string(same + 1), &run});
   }
   return recordings;
 }

@@ -32,7 +32,7 @@ std::vector<FrameRow> read_frames(const std::filesystem::path& file) {
   CsvReader csv(file, "frame,time,state,features,matches,inliers,moving_points,excluded_percent");
   while (csv.next()) {
     FrameRow row{.frame = csv.number<std::uint32_t>(0),
-                 .seconds = csv.number<double>(1),
+                 .time = csv.number<double>(1),
                  .tracked = csv.text(2) == "tracking",
                  .features = csv.number<int>(3),
                  .matches = csv.number<int>(4),

@@ -8,7 +8,7 @@
 
 namespace stillpoint::report {
 
-/// Rows of frames.csv, with `seconds` on the recording's clock. Empty when there is no such file.
+/// Rows of frames.csv; `seconds` are not known yet. Empty when there is no such file.
 /// Throws Error(kData) with file and line for what is no such table.
 std::vector<FrameRow> read_frames(const std::filesystem::path& file);
 

@@ -65,8 +65,8 @@ class Blocks {
     for (std::size_t i = 0; i < run.pictures.size(); ++i) {
       const Picture& picture = run.pictures[i];
       if (pictures_ >= limits_.picture_bytes) {
-        json["left_out"].push_back("Pictures: the page has room for no more; they lie in " +
-                                   (run.folder / "images").string() + ".");
+        json["left_out"].push_back("Pictures: the page has room for no more; 'stillpoint report " +
+                                   run.folder.string() + "' shows them.");
         return;
       }
       const std::string jpeg = jpeg_of(picture.file);
@@ -74,7 +74,11 @@ class Blocks {
       pictures_ += jpeg.size();
       const std::string name = "picture-" + id + "-" + std::to_string(i);
       text += "<script type=\"text/plain\" id=\"" + name + "\">" + base64(jpeg) + "</script>\n";
-      json["pictures"].push_back({{"id", name}, {"frame", picture.frame}, {"why", picture.why}});
+      json["pictures"].push_back({{"id", name},
+                                  {"frame", picture.frame},
+                                  {"why", picture.why},
+                                  {"state", picture.state},
+                                  {"recorded", picture.recorded}});
     }
   }
 

@@ -10,6 +10,8 @@ namespace stillpoint::report {
 namespace {
 
 using Json = nlohmann::json;
+using study::Table;
+using study::TableCell;
 
 /// So that numbers have as many digits as anybody can see.
 double rounded(double value, double step) { return std::round(value / step) * step; }
@@ -39,7 +41,11 @@ Json table_json(const Table& table) {
     }
     rows.push_back(std::move(row));
   }
-  return {{"title", table.title}, {"note", table.note}, {"header", table.header}, {"rows", rows}};
+  return {{"title", table.title},
+          {"note", table.note},
+          {"header", table.header},
+          {"names", table.names},
+          {"rows", rows}};
 }
 
 /// Mean CPU time per frame of each stage, for bars that compare runs; ms.
@@ -55,6 +61,7 @@ Json stage_means(const RunData& run) {
 
 Json listed_run(const RunData& run) {
   return {{"name", run.name},
+          {"variant", run.variant},
           {"recording", run.recording},
           {"complete", run.complete && run.notes.empty()},
           {"ate", run.evaluation ? Json(run.evaluation->rigid.metres.rmse) : Json()},

@@ -2,10 +2,13 @@
 
 #include <algorithm>
 #include <charconv>
-#include <cmath>
 #include <map>
+#include <utility>
 
 #include "evaluation/format.hpp"
+#include "report/worst_moments.hpp"
+#include "stillpoint/error.hpp"
+#include "tum_recording/recording.hpp"
 
 namespace stillpoint::report {
 namespace {
@@ -14,6 +17,7 @@ namespace fs = std::filesystem;
 using evaluation::fixed;
 
 constexpr std::size_t kEven = 4;
+constexpr double kSameTime = 1e-4;  // seconds; frames.csv has microseconds
 
 using Pictures = std::map<std::uint32_t, fs::path>;  // by frame
 
@@ -40,54 +44,100 @@ std::uint32_t nearest(const Pictures& pictures, std::uint32_t frame) {
   return after->first - frame < frame - before->first ? after->first : before->first;
 }
 
-const FrameRow* row_at(const RunData& run, double seconds) {
-  const auto row = std::ranges::min_element(
-      run.frame_rows, {}, [&](const FrameRow& r) { return std::abs(r.seconds - seconds); });
-  return row == run.frame_rows.end() ? nullptr : &*row;
+/// "80 of 120 matches fit, 5 points move, 12.0 % not used"
+std::string state_of(const FrameRow& row) {
+  if (!row.tracked) return "no pose, " + std::to_string(row.features) + " features";
+  std::string text =
+      std::to_string(row.inliers) + " of " + std::to_string(row.matches) + " matches fit";
+  if (row.moving_points) text += ", " + std::to_string(*row.moving_points) + " points move";
+  return text + ", " + fixed(100 * row.excluded, 1) + " % not used";
 }
 
-/// Frames that somebody should look at, and why; less urgent ones last.
-std::vector<std::pair<std::uint32_t, std::string>> worst_moments(const RunData& run) {
-  std::vector<std::pair<std::uint32_t, std::string>> moments;
-  if (run.frame_rows.empty()) return moments;
-  if (!run.lost.empty())
-    if (const FrameRow* row = row_at(run, run.lost.front().begin))
-      moments.emplace_back(row->frame, "lost at " + fixed(row->seconds, 2) + " s");
-  if (const auto worst = std::ranges::max_element(run.trace, {}, &TracePoint::error_m);
-      worst != run.trace.end())
-    if (const FrameRow* row = row_at(run, worst->seconds))
-      moments.emplace_back(row->frame, "largest error: " + fixed(1000 * worst->error_m, 1) + " mm");
-  const auto excluded = std::ranges::max_element(run.frame_rows, {}, &FrameRow::excluded);
-  if (excluded->excluded > 0.0)
-    moments.emplace_back(excluded->frame,
-                         "most excluded: " + fixed(100 * excluded->excluded, 1) + " %");
-  const auto tracked = [](const FrameRow& r) {
-    return r.tracked && r.matches > 0 ? r.inliers : 1 << 30;
-  };
-  const auto fewest = std::ranges::min_element(run.frame_rows, {}, tracked);
-  if (fewest->tracked && fewest->matches > 0)
-    moments.emplace_back(fewest->frame, "fewest inliers: " + std::to_string(fewest->inliers));
-  return moments;
+const FrameRow* row_of(const RunData& run, std::uint32_t frame) {
+  const auto row = std::ranges::lower_bound(run.frame_rows, frame, {}, &FrameRow::frame);
+  return row == run.frame_rows.end() || row->frame != frame ? nullptr : &*row;
 }
+
+/// The colour images of a recording, none where it is no folder of the TUM format.
+std::vector<tum_recording::StampedImage> recorded_images(const fs::path& recording) {
+  try {
+    return tum_recording::open_recording(recording).color;
+  } catch (const Error&) {
+    return {};
+  }
+}
+
+/// Empty when there is none of that time.
+fs::path image_at(const std::vector<tum_recording::StampedImage>& images, double time) {
+  const auto image =
+      std::ranges::lower_bound(images, time - kSameTime, {}, &tum_recording::StampedImage::time);
+  return image == images.end() || image->time > time + kSameTime ? fs::path() : image->file;
+}
+
+/// Chosen pictures, by frame.
+class Choice {
+ public:
+  Choice(const RunData& run, Pictures drawn, const fs::path& recording)
+      : run_(run), drawn_(std::move(drawn)), recorded_(recorded_images(recording)) {}
+
+  void add_even_ones() {
+    const std::size_t count = std::min(kEven, drawn_.size());
+    for (std::size_t i = 0; i < count; ++i)
+      add_drawn(std::next(drawn_.begin(),
+                          static_cast<std::ptrdiff_t>((2 * i + 1) * drawn_.size() / (2 * count)))
+                    ->first);
+  }
+
+  void add(const WorstMoment& moment) {
+    if (drawn_.contains(moment.frame)) return add_why(add_drawn(moment.frame), moment.why);
+    if (!moment.first) return;
+    const FrameRow* row = row_of(run_, moment.frame);
+    const fs::path image = row ? image_at(recorded_, row->time) : fs::path();
+    if (!image.empty()) {
+      Picture& picture = chosen_[moment.frame];
+      picture.file = image;
+      picture.recorded = true;
+      add_why(picture, moment.why);
+    } else if (!drawn_.empty()) {
+      add_why(add_drawn(nearest(drawn_, moment.frame)),
+              moment.why + " (in frame " + std::to_string(moment.frame) + ")");
+    }
+  }
+
+  std::vector<Picture> pictures() && {
+    std::vector<Picture> pictures;
+    for (auto& [frame, picture] : chosen_) {
+      picture.frame = frame;
+      if (const FrameRow* row = row_of(run_, frame)) picture.state = state_of(*row);
+      pictures.push_back(std::move(picture));
+    }
+    return pictures;
+  }
+
+ private:
+  Picture& add_drawn(std::uint32_t frame) {
+    Picture& picture = chosen_[frame];
+    picture.file = drawn_.at(frame);
+    return picture;
+  }
+
+  static void add_why(Picture& picture, const std::string& why) {
+    picture.why += (picture.why.empty() ? "" : "; ") + why;
+  }
+
+  const RunData& run_;
+  const Pictures drawn_;
+  const std::vector<tum_recording::StampedImage> recorded_;
+  std::map<std::uint32_t, Picture> chosen_;
+};
 
 }  // namespace
 
-void choose_pictures(RunData& run) {
-  const Pictures pictures = pictures_in(run.folder / "images");
-  if (pictures.empty()) return;
-  std::map<std::uint32_t, std::string> chosen;
-  const std::size_t even = std::min(kEven, pictures.size());
-  for (std::size_t i = 0; i < even; ++i)
-    chosen[std::next(pictures.begin(),
-                     static_cast<std::ptrdiff_t>((2 * i + 1) * pictures.size() / (2 * even)))
-               ->first];
-  for (const auto& [frame, why] : worst_moments(run)) {
-    const std::uint32_t shown = nearest(pictures, frame);
-    std::string& reason = chosen[shown];
-    reason += (reason.empty() ? "" : "; ") + why +
-              (shown == frame ? "" : " (in frame " + std::to_string(frame) + ")");
-  }
-  for (const auto& [frame, why] : chosen) run.pictures.push_back({frame, pictures.at(frame), why});
+void choose_pictures(RunData& run, const fs::path& recording) {
+  Choice choice(run, pictures_in(run.folder / "images"), recording);
+  choice.add_even_ones();
+  for (const WorstMoment& moment : worst_moments(run)) choice.add(moment);
+  run.pictures = std::move(choice).pictures();
 }
 
 }  // namespace stillpoint::report

@@ -12,6 +12,7 @@
 
 #include "evaluation/evaluation.hpp"
 #include "stillpoint/support/run_statistics.hpp"
+#include "study/table.hpp"
 
 namespace stillpoint::report {
 
@@ -33,6 +34,7 @@ struct DriftPoint {
 /// A row of frames.csv.
 struct FrameRow {
   std::uint32_t frame = 0;
+  double time = 0;  ///< seconds on the recording's clock
   double seconds = 0;
   bool tracked = false;
   int features = 0, matches = 0, inliers = 0;
@@ -59,15 +61,18 @@ struct OptionChange {
   std::string base, value;
 };
 
-/// A picture that the output `images` has left.
+/// A picture that the output `images` has left, or the recording's own.
 struct Picture {
   std::uint32_t frame = 0;
   std::filesystem::path file;
-  std::string why;  ///< "largest error: 0.042 m"; empty: one of the evenly chosen
+  std::string why;        ///< "largest error: 42.0 mm"; empty: one of the evenly chosen
+  std::string state;      ///< what tracking had of the frame, in words
+  bool recorded = false;  ///< as the camera gave it: the run has drawn none of the frame
 };
 
 struct RunData {
   std::string name;       ///< of the folder, or SEQUENCE/VARIANT/REPEAT
+  std::string variant;    ///< of a study, which may have run it several times; else as `name`
   std::string recording;  ///< name of its sequence, or of the recording's folder
   std::filesystem::path folder;
   std::filesystem::path truth;     ///< groundtruth.txt; empty: none found
@@ -99,26 +104,12 @@ struct RunData {
   std::filesystem::path octree;  ///< map/map.ot; empty: none
 };
 
-/// A cell of a table, with what LaTeX and HTML set off.
-struct TableCell {
-  std::string text;
-  std::optional<double> value;  ///< by which tables sort
-  bool best = false;            ///< of its row, among those that cover the same
-  bool significant = false;     ///< better or worse than the baseline, corrected p < 0.05
-};
-
-struct Table {
-  std::string title, note;
-  std::vector<std::string> header;
-  std::vector<std::vector<TableCell>> rows;  ///< each as long as the header; the first cell names
-};
-
 struct ReportData {
   std::string title;
   std::string command;               ///< that made the runs; may be empty
   std::vector<std::string> origins;  ///< which builds made the runs, where and when
   std::vector<std::string> notes;    ///< what is incomplete
-  std::vector<Table> tables;
+  std::vector<study::Table> tables;
   std::vector<RunData> runs;
 };
 

@@ -4,11 +4,12 @@
 #include <map>
 #include <set>
 
+#include "report/report_tables.hpp"
 #include "report/run_reader.hpp"
 #include "report/run_tables.hpp"
-#include "report/study_tables.hpp"
 #include "stillpoint/error.hpp"
 #include "study/matrix.hpp"
+#include "study/provenance.hpp"
 #include "study/text_file.hpp"
 
 namespace stillpoint::report {
@@ -38,17 +39,6 @@ std::vector<std::string> names_of(const std::vector<fs::path>& folders) {
   return names;
 }
 
-/// Which builds made how many of the runs.
-std::vector<std::string> origins_of(const StudyResults& results) {
-  std::map<std::string, std::size_t> runs;
-  for (const auto& result : results.results)
-    if (result) ++runs[origin_text(result->origin)];
-  std::vector<std::string> lines;
-  for (const auto& [text, count] : runs)
-    lines.push_back(runs.size() == 1 ? text : text + ": " + std::to_string(count) + " runs");
-  return lines;
-}
-
 std::string state_note(const fs::path& run, bool has_result) {
   if (has_result) return {};
   if (fs::exists(run / "result.json"))
@@ -72,6 +62,7 @@ RunData run_of_cell(const fs::path& folder, const StudyResults& results, std::si
   const study::Sequence sequence = at_repeat(study, study.sequences[cell.sequence], cell.repeat);
   const fs::path run_path = run_folder(folder, study, cell);
   RunData run = read_run(run_path, name_of(study, cell), recording_of(folder, sequence));
+  run.variant = study.variants[cell.variant].name;
   run.recording = study.sequences[cell.sequence].name;
   if (const std::string note = state_note(run_path, results.results[i].has_value()); !note.empty())
     run.notes.insert(run.notes.begin(), note);
@@ -143,9 +134,9 @@ ReportData read_study(const fs::path& folder, const Study& study) {
     if (fs::exists(run_folder(folder, study, results.cells[i])))
       data.runs.push_back(run_of_cell(folder, results, i));
   compare_with_variant(data.runs, study);
-  data.origins = origins_of(results);
+  data.origins = study::provenance(results);
   data.notes = notes_of(results, data.runs);
-  data.tables = study_tables(results);
+  data.tables = report_tables(results);
   data.tables.push_back(run_table(data.runs));
   return data;
 }

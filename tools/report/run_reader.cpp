@@ -131,7 +131,7 @@ void take_errors(RunData& run) {
 /// Where the recording's clock begins in the report: with the truth, or else the first frame.
 double start_of(const RunData& run) {
   if (run.evaluation) return run.evaluation->reference.start();
-  if (!run.frame_rows.empty()) return run.frame_rows.front().seconds;
+  if (!run.frame_rows.empty()) return run.frame_rows.front().time;
   return run.path.empty() ? 0.0 : run.path.front().time;
 }
 
@@ -162,7 +162,7 @@ std::vector<Interval> lost_by_gaps(const evaluation::Evaluation& e) {
 
 void take_events(RunData& run) {
   const double start = start_of(run);
-  for (FrameRow& row : run.frame_rows) row.seconds -= start;
+  for (FrameRow& row : run.frame_rows) row.seconds = row.time - start;
   if (!run.frame_rows.empty())
     run.lost = lost_by_frames(run.frame_rows);
   else if (run.evaluation)
@@ -203,15 +203,15 @@ bool is_run(const fs::path& folder) {
 }
 
 RunData read_run(const fs::path& folder, const std::string& name, fs::path recording) {
-  RunData run{.name = name, .folder = folder};
-  read_summary(run);
+  RunData run{.name = name, .variant = name, .folder = folder};
+  try_to(run, [&] { read_summary(run); });
   read_log(run);
   read_pipeline(run, recording);
   try_to(run, [&] { read_trajectory(run); });
   try_to(run, [&] { run.frame_rows = read_frames(folder / "frames.csv"); });
   try_to(run, [&] { run.stages = read_stage_times(folder / "timings.csv"); });
   take_events(run);
-  choose_pictures(run);
+  choose_pictures(run, recording);
   std::error_code unreadable;
   if (const fs::path map = folder / "map/map.ot"; fs::exists(map, unreadable)) run.octree = map;
   return run;

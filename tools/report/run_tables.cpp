@@ -4,15 +4,16 @@
 #include <functional>
 #include <map>
 
+#include "evaluation/best.hpp"
 #include "evaluation/format.hpp"
-#include "report/best_marks.hpp"
 
 namespace stillpoint::report {
 namespace {
 
+using evaluation::Better;
 using evaluation::fixed;
-
-enum class Better { kSmaller, kLarger, kNeither };
+using study::Table;
+using study::TableCell;
 
 struct Column {
   const char* title;
@@ -63,20 +64,20 @@ const std::vector<Column>& columns() {
   return kColumns;
 }
 
-/// In which rows of one recording the column has its best figure.
-void mark_best_of_column(std::span<const RunData> runs, const std::vector<std::size_t>& rows,
-                         std::size_t place, Table& table) {
+/// In the rows of one recording.
+void mark_best(std::span<const RunData> runs, const std::vector<std::size_t>& rows,
+               std::size_t place, Table& table) {
   const Column& column = columns()[place - 1];
-  double most = 0.0;
-  for (const std::size_t row : rows) most = std::max(most, runs[row].coverage.value_or(0.0));
-  std::vector<TableCell*> eligible;
+  std::vector<std::optional<evaluation::RatedFigure>> figures;
   for (const std::size_t row : rows) {
-    const bool covers = 100.0 * (most - runs[row].coverage.value_or(0.0)) <= kSameCoverage;
-    TableCell& cell = table.rows[row][place];
-    if (cell.value && (covers || !column.is_error)) eligible.push_back(&cell);
+    const std::optional<double>& value = table.rows[row][place].value;
+    figures.emplace_back();
+    if (!value) continue;
+    figures.back() = {.value = *value};
+    if (column.is_error) figures.back()->coverage_percent = 100.0 * runs[row].coverage.value_or(0);
   }
-  if (column.better != Better::kNeither)
-    mark_best(eligible, column.better == Better::kLarger, column.digits);
+  const std::vector<bool> best = best_of(figures, column.better, column.digits);
+  for (std::size_t i = 0; i < rows.size(); ++i) table.rows[rows[i]][place].best = best[i];
 }
 
 }  // namespace
@@ -100,7 +101,7 @@ Table run_table(std::span<const RunData> runs) {
   }
   for (const auto& [recording, rows] : by_recording)
     for (std::size_t place = 1; place < table.header.size(); ++place)
-      mark_best_of_column(runs, rows, place, table);
+      mark_best(runs, rows, place, table);
   return table;
 }
 

@@ -9,6 +9,6 @@ namespace stillpoint::report {
 
 /// A run per row: errors, coverage, speed, memory. The best of a column is marked among runs of one
 /// recording, errors only among those that cover as much of it as the one that covers most.
-Table run_table(std::span<const RunData> runs);
+study::Table run_table(std::span<const RunData> runs);
 
 }  // namespace stillpoint::report

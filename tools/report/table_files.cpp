@@ -1,41 +1,15 @@
 #include "report/table_files.hpp"
 
-#include <array>
-#include <cstdio>
-#include <string_view>
-#include <utility>
+#include "study/csv_text.hpp"
+#include "study/latex_table.hpp"
 
 namespace stillpoint::report {
 namespace {
 
-constexpr std::pair<std::string_view, std::string_view> kLatex[] = {{"\\", "\\textbackslash{}"},
-                                                                    {"_", "\\_"},
-                                                                    {"&", "\\&"},
-                                                                    {"%", "\\%"},
-                                                                    {"#", "\\#"},
-                                                                    {"$", "\\$"},
-                                                                    {"{", "\\{"},
-                                                                    {"}", "\\}"},
-                                                                    {"~", "\\textasciitilde{}"},
-                                                                    {"^", "\\^{}"},
-                                                                    {"<", "$<$"},
-                                                                    {">", "$>$"},
-                                                                    {"†", "$^\\dagger$"},
-                                                                    {"–", "--"},
-                                                                    {"×", "$\\times$"},
-                                                                    {"÷", "$\\div$"}};
-
-std::string latex_text(std::string_view text) {
-  std::string result;
-  while (!text.empty()) {
-    std::string_view from = text.substr(0, 1), to = from;
-    for (const auto& [symbol, command] : kLatex)
-      if (text.starts_with(symbol)) from = symbol, to = command;
-    result += to;
-    text.remove_prefix(from.size());
-  }
-  return result;
-}
+using study::csv_field;
+using study::latex_text;
+using study::Table;
+using study::TableCell;
 
 std::string latex_cell(const TableCell& cell) {
   std::string text = latex_text(cell.text);
@@ -43,41 +17,34 @@ std::string latex_cell(const TableCell& cell) {
   return cell.significant ? text + "$^\\dagger$" : text;
 }
 
-std::string latex_table(const Table& table) {
-  std::string text = "\\begin{table}\n  \\centering\n  \\caption{" + latex_text(table.title) + ".";
-  if (!table.note.empty()) text += " " + latex_text(table.note);
-  text += "}\n  \\begin{tabular}{l" + std::string(table.header.size() - 1, 'r') +
-          "}\n    \\toprule\n    ";
-  for (std::size_t i = 0; i < table.header.size(); ++i)
-    text += (i > 0 ? " & " : "") + latex_text(table.header[i]);
-  text += " \\\\\n    \\midrule\n";
+study::LatexTable in_latex(const Table& table) {
+  study::LatexTable result{
+      .label = {},
+      .caption = latex_text(table.title + "." + (table.note.empty() ? "" : " " + table.note)),
+      .columns =
+          std::string(table.names, 'l') + std::string(table.header.size() - table.names, 'r'),
+      .header = {},
+      .rows = {}};
+  for (const std::string& title : table.header) result.header.push_back(latex_text(title));
   for (const std::vector<TableCell>& row : table.rows) {
-    text += "    ";
-    for (std::size_t i = 0; i < row.size(); ++i) text += (i > 0 ? " & " : "") + latex_cell(row[i]);
-    text += " \\\\\n";
+    std::vector<std::string>& cells = result.rows.emplace_back();
+    for (const TableCell& cell : row) cells.push_back(latex_cell(cell));
   }
-  return text + "    \\bottomrule\n  \\end{tabular}\n\\end{table}\n";
+  return result;
 }
 
-std::string csv_field(const std::string& text) {
-  if (text.find_first_of(",\"\n") == std::string::npos) return text;
-  std::string quoted = "\"";
-  for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return quoted + "\"";
-}
-
-std::string number_text(const std::optional<double>& value) {
-  if (!value) return {};
-  std::array<char, 32> digits{};
-  std::snprintf(digits.data(), digits.size(), "%.9g", *value);
-  return digits.data();
+/// "walking/plain" where two columns name it.
+std::string name_of(const std::vector<TableCell>& row, std::size_t names) {
+  std::string text = row.front().text;
+  for (std::size_t i = 1; i < names; ++i) text += "/" + row[i].text;
+  return text;
 }
 
 }  // namespace
 
 std::string latex_tables(std::span<const Table> tables) {
   std::string text = "% Needs \\usepackage{booktabs}.\n";
-  for (const Table& table : tables) text += "\n" + latex_table(table);
+  for (const Table& table : tables) text += latex_table(in_latex(table));
   return text;
 }
 
@@ -85,9 +52,9 @@ std::string csv_tables(std::span<const Table> tables) {
   std::string text = "table,row,column,value,text,best\n";
   for (const Table& table : tables)
     for (const std::vector<TableCell>& row : table.rows)
-      for (std::size_t i = 1; i < row.size(); ++i)
-        text += csv_field(table.title) + "," + csv_field(row[0].text) + "," +
-                csv_field(table.header[i]) + "," + number_text(row[i].value) + "," +
+      for (std::size_t i = table.names; i < row.size(); ++i)
+        text += csv_field(table.title) + "," + csv_field(name_of(row, table.names)) + "," +
+                csv_field(table.header[i]) + "," + study::csv_number(row[i].value) + "," +
                 csv_field(row[i].text) + "," + (row[i].best ? "1" : "0") + "\n";
   return text;
 }

@@ -1,6 +1,5 @@
 // stillpoint ablate: a matrix of runs, and the tables of what came out.
 #include <algorithm>
-#include <cmath>
 #include <csignal>
 #include <filesystem>
 #include <iostream>
@@ -16,7 +15,6 @@
 #include "stillpoint/error.hpp"
 #include "stillpoint/runtime/folder_lock.hpp"
 #include "stillpoint/support/did_you_mean.hpp"
-#include "stillpoint/support/model_lookup.hpp"
 #include "study/cell_runner.hpp"
 #include "study/child_process.hpp"
 #include "study/claim.hpp"
@@ -31,6 +29,7 @@
 #include "study/text_file.hpp"
 #include "study_file.hpp"
 #include "study_list.hpp"
+#include "study_plan.hpp"
 
 namespace stillpoint {
 namespace {
@@ -88,7 +87,7 @@ class Ablation {
     results.results.resize(results.cells.size());
     if (with_slurm_) ask_slurm();
     if (!record_scenes(stop)) return results;
-    const std::vector<PlannedCell> plan = plan_cells(results.cells);
+    const std::vector<PlannedCell> plan = plan_cells(study(), results.cells, output_, registry_);
     for (std::size_t i = 0; i < plan.size(); ++i) results.results[i] = valid_result(plan[i]);
     say_what_is_there(results);
     const CellFinished finished = [this](const Cell& cell, const CellResult& result,
@@ -155,57 +154,8 @@ class Ablation {
     return true;
   }
 
-  std::vector<PlannedCell> plan_cells(const std::vector<Cell>& cells) {
-    std::vector<PlannedCell> plan;
-    std::string recording_print, pipeline;
-    for (const Cell& cell : cells) {
-      const Sequence sequence = at_repeat(study(), study().sequences[cell.sequence], cell.repeat);
-      const fs::path recording = recording_of(output_, sequence);
-      const PipelineRequest request =
-          request_of(study(), sequence, study().variants[cell.variant], recording);
-      const bool other = plan.empty() || plan.back().recording != recording;
-      if (other) recording_print = recording_fingerprint(recording);
-      if (other || cell.repeat == 0) {
-        const PipelineConfig config = load_pipeline(request, registry_);
-        pipeline = pipeline_fingerprint(config.effective_yaml, config.recording,
-                                        folders_of_models(), contents_);
-      }
-      const int seed = study().seed + cell.repeat;
-      const fs::path run = run_folder(output_, study(), cell);
-      plan.push_back({.cell = cell,
-                      .command = command_of(request, run, seed),
-                      .run = run,
-                      .recording = recording,
-                      .fingerprint = cell_fingerprint(pipeline, recording_print, seed),
-                      .time_limit = study().time_limit});
-    }
-    return plan;
-  }
-
-  static std::vector<std::string> command_of(const PipelineRequest& request, const fs::path& run,
-                                             int seed) {
-    std::vector<std::string> command = {
-        this_program(), "run", request.pipeline, "--dataset", request.dataset, "-o", run};
-    if (!request.camera.empty()) command.insert(command.end(), {"--camera", request.camera});
-    for (const std::string& assignment : request.assignments)
-      command.insert(command.end(), {"--set", assignment});
-    command.insert(command.end(), {"--set", "runtime.seed=" + std::to_string(seed)});
-    return command;
-  }
-
-  std::vector<fs::path> folders_of_models() const {
-    std::vector<fs::path> folders = model_folders(nullptr);
-    for (const PluginType& type : registry_.types()) {
-      const fs::path own = fs::path(type.library).parent_path() / "models";
-      if (std::ranges::find(folders, own) == folders.end()) folders.push_back(own);
-    }
-    return folders;
-  }
-
   Program program() {
-    std::vector<fs::path> files = {this_program()};
-    for (const PluginType& type : registry_.types()) files.push_back(type.library);
-    return {.fingerprint = program_fingerprint(files, contents_),
+    return {.fingerprint = program_fingerprint(files_of_program(registry_), contents_),
             .version = STILLPOINT_VERSION,
             .commit = built_from_commit()};
   }

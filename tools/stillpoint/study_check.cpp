@@ -7,10 +7,12 @@
 #include <sstream>
 #include <string>
 #include <string_view>
+#include <unordered_set>
 #include <vector>
 
 #include "stillpoint/engine/config_lookup.hpp"
 #include "stillpoint/error.hpp"
+#include "stillpoint/runtime/pipeline_tree.hpp"
 #include "stillpoint/support/did_you_mean.hpp"
 #include "study/matrix.hpp"
 #include "study_file.hpp"
@@ -93,13 +95,13 @@ class StudyChecker {
   void check_names(const char* list, const std::vector<std::string>& names) {
     if (names.empty() && tree_.find(list))
       faults_.add(place(list), std::string(list) + " is empty");
+    std::unordered_set<std::string> earlier;
     for (std::size_t i = 0; i < names.size(); ++i) {
       if (names[i].empty() && !has_name(list, i)) continue;  // which is known
       if (!is_usable_name(names[i]))
         faults_.add(place(list, i, "name"),
                     "'" + names[i] + "' also names a folder: letters, digits and _ - + . only");
-      if (std::find(names.begin(), names.begin() + static_cast<long>(i), names[i]) !=
-          names.begin() + static_cast<long>(i))
+      if (!earlier.insert(names[i]).second)
         faults_.add(place(list, i, "name"), "'" + names[i] + "' is given twice");
     }
   }
@@ -144,7 +146,7 @@ class StudyChecker {
     collect("variants", i, "pipeline", [&] {
       PipelineRequest request = request_of(study_, *sequence, variant, recording);
       request.camera.clear();
-      check_outputs(i, load_pipeline(request, registry_));
+      check_outputs(i, load_pipeline(request, registry_, files_));
     });
   }
 
@@ -207,6 +209,7 @@ class StudyChecker {
   const ConfigNode& tree_;
   const Study& study_;
   Registry& registry_;
+  ConfigFiles files_;
   FaultList faults_;
   std::vector<std::string> others_;  // of pipelines and scenes
 };

@@ -87,11 +87,13 @@ bool ends_within(pid_t process, double seconds) {
   if (file < 0) return true;  // no such call before Linux 5.3: it is waited for without a limit
   const auto end = Clock::now() + std::chrono::duration<double>(seconds);
   pollfd ended{.fd = file, .events = POLLIN, .revents = 0};
-  int left_ms = 0;
-  do {
-    left_ms = static_cast<int>(std::clamp(
-        std::chrono::duration<double, std::milli>(end - Clock::now()).count(), 0.0, 1e9));
-  } while (poll(&ended, 1, left_ms) < 0 && errno == EINTR);
+  const auto left_ms = [&] {
+    return std::chrono::duration<double, std::milli>(end - Clock::now()).count();
+  };
+  // A wait may be interrupted; one of many days does not fit into an int.
+  while (poll(&ended, 1, static_cast<int>(std::clamp(left_ms(), 0.0, 1e9))) <= 0 &&
+         left_ms() > 0.0) {
+  }
   close(file);
   return (ended.revents & POLLIN) != 0;
 }

@@ -1,29 +1,9 @@
 #include "study/csv_report.hpp"
 
-#include <array>
-#include <charconv>
+#include "study/csv_text.hpp"
 
 namespace stillpoint::study {
 namespace {
-
-std::string quoted(const std::string& text) {
-  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
-  std::string result = "\"";
-  for (const char c : text) {
-    if (c == '"') result += '"';
-    result += c;
-  }
-  return result + '"';
-}
-
-// Nine digits: more than any of the figures means, and no rounding noise.
-std::string number(const std::optional<double>& value) {
-  if (!value) return {};
-  std::array<char, 32> text{};
-  const auto end =
-      std::to_chars(text.data(), text.data() + text.size(), *value, std::chars_format::general, 9);
-  return {text.data(), end.ptr};
-}
 
 const char* state_of(const std::optional<CellResult>& result) {
   if (!result) return "missing";
@@ -36,13 +16,13 @@ std::string row(const Study& study, const Cell& cell, const std::optional<CellRe
                      std::to_string(study.seed + cell.repeat) + "," + state_of(result) + ",";
   const CellResult known = result.value_or(CellResult{});
   if (result) text += std::to_string(known.exit_code);
-  for (const std::optional<double>& value : known.values) text += "," + number(value);
+  for (const std::optional<double>& value : known.values) text += "," + csv_number(value);
   text += ",";
-  if (result) text += number(known.seconds);
+  if (result) text += csv_number(known.seconds);
   const Origin& origin = known.origin;
   for (const std::string& field :
        {origin.version, origin.commit, origin.machine, origin.date, known.message})
-    text += "," + quoted(field);
+    text += "," + csv_field(field);
   return text + "\n";
 }
 
@@ -91,7 +71,7 @@ std::string csv_summary(const StudyResults& results) {
                 std::to_string(failed) + "," + std::to_string(missing);
         for (const double value : {spread->median, spread->first_quartile, spread->third_quartile,
                                    spread->min, spread->max})
-          text += "," + number(value);
+          text += "," + csv_number(value);
         text += "\n";
       }
     }

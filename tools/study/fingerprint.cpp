@@ -1,7 +1,5 @@
 #include "study/fingerprint.hpp"
 
-#include <yaml-cpp/yaml.h>
-
 #include <algorithm>
 #include <array>
 #include <cstdio>
@@ -19,71 +17,6 @@ bool is_text(const fs::path& file) {
   return file.extension() == ".txt" || file.extension() == ".yaml";
 }
 
-std::vector<fs::directory_entry> files_below(const fs::path& folder) {
-  std::vector<fs::directory_entry> files;
-  for (const fs::directory_entry& entry :
-       fs::recursive_directory_iterator(folder, fs::directory_options::follow_directory_symlink))
-    if (entry.is_regular_file()) files.push_back(entry);
-  std::ranges::sort(files);
-  return files;
-}
-
-class PipelinePrinter {
- public:
-  PipelinePrinter(const fs::path& recording, const std::vector<fs::path>& folders,
-                  FileContents& contents)
-      : recording_(recording.string()), folders_(folders), contents_(contents) {}
-
-  /// Keys and values in the order of the file; comments do not count.
-  void add(const YAML::Node& node) {
-    if (node.IsScalar()) return add_value(node.Scalar());
-    for (const auto& child : node) {
-      if (node.IsMap()) fingerprint_.add(child.first.Scalar());
-      add(node.IsMap() ? child.second : YAML::Node(child));
-    }
-    fingerprint_.add("");  // an end
-  }
-
-  std::string text() const { return fingerprint_.text(); }
-
- private:
-  /// The paths of an effective pipeline are absolute.
-  void add_value(const std::string& value) {
-    const fs::path path = value;
-    if (!path.is_absolute())
-      fingerprint_.add(value);
-    else if (value != recording_)
-      add_path(path);
-  }
-
-  void add_path(const fs::path& path) {
-    std::error_code ignored;
-    fingerprint_.add(path.filename().string());
-    if (fs::is_directory(path, ignored)) {
-      for (const fs::directory_entry& file : files_below(path))
-        fingerprint_.add(fs::relative(file.path(), path).string())
-            .add(contents_.fingerprint(file.path()));
-    } else if (fs::is_regular_file(path, ignored)) {
-      fingerprint_.add(contents_.fingerprint(path));
-    } else if (const auto found = find(path.filename()); !found.empty()) {
-      fingerprint_.add(contents_.fingerprint(found));
-    }
-  }
-
-  /// A network that is not where the pipeline says, by its name.
-  fs::path find(const fs::path& name) const {
-    std::error_code ignored;
-    for (const fs::path& folder : folders_)
-      if (fs::is_regular_file(folder / name, ignored)) return folder / name;
-    return {};
-  }
-
-  const std::string recording_;
-  const std::vector<fs::path>& folders_;
-  FileContents& contents_;
-  Fingerprint fingerprint_;
-};
-
 }  // namespace
 
 Fingerprint& Fingerprint::add(std::string_view text) {
@@ -97,6 +30,15 @@ std::string Fingerprint::text() const {
   std::array<char, 17> digits{};
   std::snprintf(digits.data(), digits.size(), "%016llx", static_cast<unsigned long long>(hash_));
   return digits.data();
+}
+
+std::vector<fs::directory_entry> files_below(const fs::path& folder) {
+  std::vector<fs::directory_entry> files;
+  for (const fs::directory_entry& entry :
+       fs::recursive_directory_iterator(folder, fs::directory_options::follow_directory_symlink))
+    if (entry.is_regular_file()) files.push_back(entry);
+  std::ranges::sort(files);
+  return files;
 }
 
 std::string recording_fingerprint(const fs::path& recording) {
@@ -123,13 +65,6 @@ std::string FileContents::fingerprint(const fs::path& file) {
   std::string text = Fingerprint().add(read_text(file)).text();
   known_.insert_or_assign(file, Known{size, changed, text});
   return text;
-}
-
-std::string pipeline_fingerprint(const std::string& effective_pipeline, const fs::path& recording,
-                                 const std::vector<fs::path>& folders, FileContents& contents) {
-  PipelinePrinter printer(recording, folders, contents);
-  printer.add(YAML::Load(effective_pipeline));
-  return printer.text();
 }
 
 std::string cell_fingerprint(const std::string& pipeline, const std::string& recording, int seed) {

@@ -20,6 +20,9 @@ class Fingerprint {
   std::uint64_t hash_ = 14695981039346656037u;
 };
 
+/// All files below a folder, links followed, sorted. Throws std::filesystem::filesystem_error.
+std::vector<std::filesystem::directory_entry> files_below(const std::filesystem::path& folder);
+
 /// Of a recording: what its lists and YAML files say, and the names and sizes of all other files.
 /// Images are not read. Throws Error(kData) when the folder cannot be read.
 std::string recording_fingerprint(const std::filesystem::path& recording);
@@ -39,15 +42,6 @@ class FileContents {
   };
   std::map<std::filesystem::path, Known> known_;
 };
-
-/// Of a pipeline with every option, and of the files and folders that it names besides its
-/// recording, such as networks and labels: these count by name and content, not by the folder that
-/// holds them, so that another installation of the same version has the same. Networks are also
-/// looked for in `folders`, by name.
-std::string pipeline_fingerprint(const std::string& effective_pipeline,
-                                 const std::filesystem::path& recording,
-                                 const std::vector<std::filesystem::path>& folders,
-                                 FileContents& contents);
 
 /// Of a run: the fingerprints of its pipeline and its recording, and the seed.
 std::string cell_fingerprint(const std::string& pipeline, const std::string& recording, int seed);

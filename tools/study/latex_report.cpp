@@ -1,11 +1,11 @@
 #include "study/latex_report.hpp"
 
 #include <algorithm>
-#include <string_view>
 #include <utility>
 #include <vector>
 
 #include "evaluation/format.hpp"
+#include "study/latex_table.hpp"
 #include "study/paired_comparison.hpp"
 #include "study/provenance.hpp"
 
@@ -16,64 +16,8 @@ using evaluation::fixed;
 
 constexpr const char* kEmpty = "--";
 
-constexpr std::pair<std::string_view, std::string_view> kSpecial[] = {{"\\", "\\textbackslash{}"},
-                                                                      {"_", "\\_"},
-                                                                      {"&", "\\&"},
-                                                                      {"%", "\\%"},
-                                                                      {"#", "\\#"},
-                                                                      {"$", "\\$"},
-                                                                      {"{", "\\{"},
-                                                                      {"}", "\\}"},
-                                                                      {"~", "\\textasciitilde{}"},
-                                                                      {"^", "\\^{}"},
-                                                                      {"<", "$<$"},
-                                                                      {">", "$>$"},
-                                                                      {"–", "--"},
-                                                                      {"×", "$\\times$"}};
-
-std::string latex(std::string_view text) {
-  std::string result;
-  while (!text.empty()) {
-    std::string_view from = text.substr(0, 1), to = from;
-    for (const auto& [symbol, command] : kSpecial)
-      if (text.starts_with(symbol)) {
-        from = symbol;
-        to = command;
-      }
-    result += to;
-    text.remove_prefix(from.size());
-  }
-  return result;
-}
-
 std::string bold(const std::string& text) { return "\\textbf{" + text + "}"; }
 std::string italic(const std::string& text) { return "\\textit{" + text + "}"; }
-
-/// Cells are LaTeX already. An empty row is a gap between groups.
-struct LatexTable {
-  std::string label;
-  std::string caption;
-  std::string columns;  ///< "lrr"
-  std::vector<std::string> header;
-  std::vector<std::vector<std::string>> rows;
-};
-
-std::string line_of(const std::vector<std::string>& cells) {
-  std::string text = "    ";
-  for (const std::string& cell : cells) text += (&cell == &cells.front() ? "" : " & ") + cell;
-  return text + " \\\\\n";
-}
-
-std::string text_of(const LatexTable& table) {
-  std::string text = "\n\\begin{table*}\n  \\centering\n  \\caption{" + table.caption +
-                     "}\n  \\label{tab:" + table.label +
-                     "}\n  \\small\\setlength{\\tabcolsep}{4pt}\n  \\begin{tabular}{" +
-                     table.columns + "}\n    \\toprule\n" + line_of(table.header) +
-                     "    \\midrule\n";
-  for (const std::vector<std::string>& row : table.rows)
-    text += row.empty() ? "    \\addlinespace\n" : line_of(row);
-  return text + "    \\bottomrule\n  \\end{tabular}\n\\end{table*}\n";
-}
 
 /// "0.0021 {\scriptsize (0.0020--0.0022)}"
 std::string latex_spread(const std::optional<Spread>& spread, int digits, bool best = false) {
@@ -92,10 +36,6 @@ std::string latex_published(const Published& system, const std::string& recordin
   return value ? italic(fixed(*value, metrics()[metric].digits)) : kEmpty;
 }
 
-bool is_among(const std::vector<std::size_t>& list, std::size_t element) {
-  return std::ranges::find(list, element) != list.end();
-}
-
 class LatexReport {
  public:
   LatexReport(const StudyResults& results, std::string title)
@@ -110,7 +50,7 @@ class LatexReport {
     tables.push_back(comparison_table());
     tables.push_back(time_table());
     for (const LatexTable& table : tables)
-      if (!table.rows.empty()) text += text_of(table);
+      if (!table.rows.empty()) text += latex_table(table);
     return text;
   }
 
@@ -133,12 +73,12 @@ class LatexReport {
   static std::string published_note(const std::vector<const Published*>& systems) {
     std::string text;
     for (std::size_t i = 0; i < systems.size(); ++i) {
-      text += (i == 0 ? " In italics, as published: " : "") + latex(systems[i]->name);
+      text += (i == 0 ? " In italics, as published: " : "") + latex_text(systems[i]->name);
       const bool last = i + 1 == systems.size();
       if (!last && systems[i + 1]->source == systems[i]->source)
         text += ", ";
       else
-        text += ": " + latex(systems[i]->source) + (last ? "." : "; ");
+        text += ": " + latex_text(systems[i]->source) + (last ? "." : "; ");
     }
     return text;
   }
@@ -151,8 +91,9 @@ class LatexReport {
   }
 
   void add_systems(const std::vector<const Published*>& systems, LatexTable& table) const {
-    for (const Variant& variant : study_.variants) table.header.push_back(latex(variant.name));
-    for (const Published* system : systems) table.header.push_back(italic(latex(system->name)));
+    for (const Variant& variant : study_.variants) table.header.push_back(latex_text(variant.name));
+    for (const Published* system : systems)
+      table.header.push_back(italic(latex_text(system->name)));
     table.columns += std::string(study_.variants.size() + systems.size(), 'r');
   }
 
@@ -170,10 +111,10 @@ class LatexReport {
     add_systems(systems, table);
     for (std::size_t sequence = 0; sequence < study_.sequences.size(); ++sequence) {
       const auto best = best_variants(results_, sequence, kAte);
-      std::vector<std::string> row = {latex(study_.sequences[sequence].name)};
+      std::vector<std::string> row = {latex_text(study_.sequences[sequence].name)};
       for (std::size_t variant = 0; variant < study_.variants.size(); ++variant)
         row.push_back(latex_spread(results_.spread(sequence, variant, kAte), metrics()[kAte].digits,
-                                   is_among(best, variant)) +
+                                   best[variant]) +
                       coverage_note(sequence, variant));
       for (const Published* system : systems)
         row.push_back(latex_published(*system, original_of(study_.sequences[sequence]), kAte));
@@ -187,7 +128,8 @@ class LatexReport {
     const auto systems = published_with(study_, figures.rmse, figures.rmse + 1);
     const Metric& m = metrics()[figures.rmse];
     LatexTable table{.label = label(m.key),
-                     .caption = latex(figures.brief) + " (" + m.unit + ")." + runs_note("Median") +
+                     .caption = latex_text(figures.brief) + " (" + m.unit + ")." +
+                                runs_note("Median") +
                                 " Bold: the smallest of a sequence, among those that cover the "
                                 "same." +
                                 published_note(systems) + missing_note(),
@@ -202,26 +144,26 @@ class LatexReport {
   void add_error_rows(const ErrorFigures& figures, std::size_t sequence,
                       const std::vector<const Published*>& systems,
                       std::vector<std::vector<std::string>>& rows) const {
-    std::vector<std::vector<std::size_t>> best;
+    std::vector<std::vector<bool>> best;
     for (const MetricId metric : figures.all())
       best.push_back(best_variants(results_, sequence, metric));
-    std::string name = latex(study_.sequences[sequence].name);  // in the first row only
+    std::string name = latex_text(study_.sequences[sequence].name);  // in the first row only
     for (std::size_t variant = 0; variant < study_.variants.size(); ++variant) {
       if (!results_.spread(sequence, variant, figures.rmse)) continue;
       if (!rows.empty() && !name.empty()) rows.emplace_back();
-      rows.push_back({std::exchange(name, ""), latex(study_.variants[variant].name)});
+      rows.push_back({std::exchange(name, ""), latex_text(study_.variants[variant].name)});
       for (std::size_t i = 0; i < best.size(); ++i) {
         const MetricId metric = figures.all()[i];
         const auto spread = results_.spread(sequence, variant, metric);
         const std::string text = spread ? fixed(spread->median, metrics()[metric].digits) : kEmpty;
-        rows.back().push_back(is_among(best[i], variant) ? bold(text) : text);
+        rows.back().push_back(best[i][variant] ? bold(text) : text);
       }
     }
     if (!name.empty()) return;  // nothing has been measured
     const std::string original = original_of(study_.sequences[sequence]);
     for (const Published* system : systems) {
       if (!system->find(original, figures.rmse)) continue;
-      rows.push_back({"", italic(latex(system->name))});
+      rows.push_back({"", italic(latex_text(system->name))});
       for (const MetricId metric : figures.all())
         rows.back().push_back(latex_published(*system, original, metric));
     }
@@ -230,7 +172,7 @@ class LatexReport {
   LatexTable comparison_table() const {
     LatexTable table{
         .label = label("comparison"),
-        .caption = "Compared with " + latex(study_.baseline) +
+        .caption = "Compared with " + latex_text(study_.baseline) +
                    ", recording by recording. Ratios: median (quartiles); effect: matched-pairs "
                    "rank-biserial correlation, 1 where the variant is always better; $p$: "
                    "Wilcoxon's signed-rank test of the absolute trajectory error, two-sided, "
@@ -241,9 +183,10 @@ class LatexReport {
         .rows = {}};
     for (const PairedComparison& one : compare_with_baseline(results_)) {
       const std::string p = one.corrected_p < 0.0001 ? "$<$0.0001" : fixed(one.corrected_p, 4);
-      table.rows.push_back({latex(study_.variants[one.variant].name), std::to_string(one.better),
-                            std::to_string(one.worse), ratio(one.ate_ratio), ratio(one.time_ratio),
-                            fixed(one.effect, 2), one.corrected_p < 0.05 ? bold(p) : p});
+      table.rows.push_back({latex_text(study_.variants[one.variant].name),
+                            std::to_string(one.better), std::to_string(one.worse),
+                            ratio(one.ate_ratio), ratio(one.time_ratio), fixed(one.effect, 2),
+                            one.is_significant() ? bold(p) : p});
     }
     return table;
   }
@@ -272,7 +215,7 @@ class LatexReport {
     for (std::size_t i = kFirstStage; i < kMetricCount; ++i) {
       const auto metric = static_cast<MetricId>(i);
       const Metric& m = metrics()[metric];
-      std::vector<std::string> row = {latex(m.title)};
+      std::vector<std::string> row = {latex_text(m.title)};
       for (std::size_t variant = 0; variant < study_.variants.size(); ++variant)
         row.push_back(latex_spread(results_.spread(variant, metric), m.digits));
       for (const Published* system : systems) row.push_back(latex_published(*system, "", metric));

@@ -11,34 +11,44 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+constexpr auto kAlone = Metric::Group::kAlone;
 constexpr auto kStatistics = Metric::Group::kErrorStatistics;
 constexpr auto kStages = Metric::Group::kStageTimes;
+constexpr auto kLarger = evaluation::Better::kLarger;
+constexpr auto kNeither = evaluation::Better::kNeither;
 
 // Each stage has the key of its times in summary.json, followed by "_ms".
 constexpr std::array<Metric, kMetricCount> kMetrics = {{
-    {"ate_m", "Absolute trajectory error, SE(3), RMSE", "ATE", "m", 4},
-    {"sim3_scale", "Scale that Sim(3) alignment finds", "scale", "", 4},
-    {"rpe_translation_m", "Relative pose error over 1 s, position, RMSE", "RPE", "m", 4},
-    {"rpe_rotation_deg", "Relative pose error over 1 s, rotation, RMSE", "RPE", "deg", 3},
-    {"coverage_percent", "Coverage: frames with a pose", "coverage", "%", 1},
+    {"ate_m", "Absolute trajectory error, SE(3), RMSE", "ATE", "m", 4, kAlone, true},
+    {"sim3_scale", "Scale that Sim(3) alignment finds", "scale", "", 4, kAlone, true, kNeither},
+    {"rpe_translation_m", "Relative pose error over 1 s, position, RMSE", "RPE", "m", 4, kAlone,
+     true},
+    {"rpe_rotation_deg", "Relative pose error over 1 s, rotation, RMSE", "RPE", "deg", 3, kAlone,
+     true},
+    {"coverage_percent", "Coverage: frames with a pose", "coverage", "%", 1, kAlone, false,
+     kLarger},
     {"times_lost", "Times tracking was lost", "lost", "", 0},
     {"dropped_frames", "Frames dropped to keep the pace", "dropped", "", 0},
-    {"frames_per_second", "Speed", "speed", "frames/s", 1},
+    {"frames_per_second", "Speed", "speed", "frames/s", 1, kAlone, false, kLarger},
     {"track_p50_ms", "Tracking thread, CPU per frame, median", "tracking, p50", "ms", 1},
     {"track_p95_ms", "Tracking thread, CPU per frame, 95th percentile", "tracking, p95", "ms", 1},
     {"cpu_ms_per_frame", "Whole process, CPU per frame", "process", "ms", 1},
     {"peak_memory_mib", "Peak memory", "memory", "MiB", 0},
-    {"ate_mean_m", "Absolute trajectory error, mean", "mean", "m", 4, kStatistics},
-    {"ate_median_m", "Absolute trajectory error, median", "median", "m", 4, kStatistics},
-    {"ate_sd_m", "Absolute trajectory error, S.D.", "S.D.", "m", 4, kStatistics},
-    {"rpe_translation_mean_m", "Relative pose error, position, mean", "mean", "m", 4, kStatistics},
+    {"ate_mean_m", "Absolute trajectory error, mean", "mean", "m", 4, kStatistics, true},
+    {"ate_median_m", "Absolute trajectory error, median", "median", "m", 4, kStatistics, true},
+    {"ate_sd_m", "Absolute trajectory error, S.D.", "S.D.", "m", 4, kStatistics, true},
+    {"rpe_translation_mean_m", "Relative pose error, position, mean", "mean", "m", 4, kStatistics,
+     true},
     {"rpe_translation_median_m", "Relative pose error, position, median", "median", "m", 4,
-     kStatistics},
-    {"rpe_translation_sd_m", "Relative pose error, position, S.D.", "S.D.", "m", 4, kStatistics},
-    {"rpe_rotation_mean_deg", "Relative pose error, rotation, mean", "mean", "deg", 3, kStatistics},
+     kStatistics, true},
+    {"rpe_translation_sd_m", "Relative pose error, position, S.D.", "S.D.", "m", 4, kStatistics,
+     true},
+    {"rpe_rotation_mean_deg", "Relative pose error, rotation, mean", "mean", "deg", 3, kStatistics,
+     true},
     {"rpe_rotation_median_deg", "Relative pose error, rotation, median", "median", "deg", 3,
-     kStatistics},
-    {"rpe_rotation_sd_deg", "Relative pose error, rotation, S.D.", "S.D.", "deg", 3, kStatistics},
+     kStatistics, true},
+    {"rpe_rotation_sd_deg", "Relative pose error, rotation, S.D.", "S.D.", "deg", 3, kStatistics,
+     true},
     {"source_ms", "Reading images", "source", "ms", 2, kStages},
     {"prepare_ms", "Feature extraction", "prepare", "ms", 2, kStages},
     {"moving_check_ms", "Moving check", "moving_check", "ms", 2, kStages},

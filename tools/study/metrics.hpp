@@ -8,6 +8,8 @@
 #include <span>
 #include <string>
 
+#include "evaluation/best.hpp"
+
 namespace stillpoint::study {
 
 enum MetricId : std::size_t {
@@ -46,6 +48,8 @@ struct Metric {
   const char* unit;   ///< may be empty
   int digits;         ///< behind the decimal point, in tables
   Group group = Group::kAlone;
+  bool is_pose_error = false;  ///< means little without the coverage
+  evaluation::Better better = evaluation::Better::kSmaller;
 };
 
 std::span<const Metric, kMetricCount> metrics();

@@ -36,11 +36,15 @@ std::string today() {
 
 }  // namespace
 
-std::string origin_text(const Origin& origin) {
+std::string build_text(const Origin& origin) {
   if (origin.version.empty()) return "a build that has left no record";
   std::string text = "Stillpoint " + origin.version;
   if (!origin.commit.empty()) text += ", commit " + origin.commit;
-  return text + "; " + origin.machine + "; " + origin.date;
+  return text + "; " + origin.machine;
+}
+
+std::string origin_text(const Origin& origin) {
+  return build_text(origin) + (origin.date.empty() ? "" : "; " + origin.date);
 }
 
 Origin origin_of(const Program& program) {

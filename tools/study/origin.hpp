@@ -21,8 +21,10 @@ struct Origin {
   bool operator==(const Origin&) const = default;
 };
 
-/// "Stillpoint 0.1.0, commit 4b72915a81c2; AMD EPYC 7B13, 2 cores; 2026-11-26"; says so where
-/// nothing is known.
+/// "Stillpoint 0.1.0, commit 4b72915a81c2; AMD EPYC 7B13, 2 cores"; says so where nothing is known.
+std::string build_text(const Origin& origin);
+
+/// The same with the date.
 std::string origin_text(const Origin& origin);
 
 /// Here and now.

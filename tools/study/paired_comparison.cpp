@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "evaluation/best.hpp"
 #include "study/signed_rank.hpp"
 
 namespace stillpoint::study {
@@ -21,7 +22,7 @@ bool was_lost(const CellResult& result) { return result.values[kTimesLost].value
 /// where the runs have not covered the same. Nothing where neither has an error.
 std::optional<double> advantage(const CellResult& variant, const CellResult& baseline) {
   const double more = coverage_of(variant) - coverage_of(baseline);
-  if (std::abs(more) > kSameCoveragePercent) return more > 0.0 ? kDecided : -kDecided;
+  if (std::abs(more) > evaluation::kSameCoveragePercent) return more > 0.0 ? kDecided : -kDecided;
   if (!variant.values[kAte] || !baseline.values[kAte]) return std::nullopt;
   if (was_lost(variant) != was_lost(baseline)) return was_lost(variant) ? -kDecided : kDecided;
   return std::log(*baseline.values[kAte] / *variant.values[kAte]);

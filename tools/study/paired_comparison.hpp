@@ -25,6 +25,8 @@ struct PairedComparison {
   double effect = 0.0;               ///< see SignedRank; positive: better than the baseline
   double p = 1.0;                    ///< of Wilcoxon's test on logarithms of the ratios
   double corrected_p = 1.0;          ///< for the number of variants
+
+  bool is_significant() const { return corrected_p < 0.05; }
 };
 
 /// Of every variant but the baseline that shares a recording with it. Empty without a baseline.

@@ -6,13 +6,6 @@
 namespace stillpoint::study {
 namespace {
 
-std::string build_text(const Origin& origin) {
-  if (origin.version.empty()) return "a build that has left no record";
-  std::string text = "Stillpoint " + origin.version;
-  if (!origin.commit.empty()) text += ", commit " + origin.commit;
-  return text + "; " + origin.machine;
-}
-
 /// Runs that one build made on one machine.
 struct Batch {
   std::string made_by;

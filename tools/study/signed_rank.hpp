@@ -9,9 +9,8 @@ namespace stillpoint::study {
 
 struct SignedRank {
   std::size_t pairs = 0;  ///< without those whose difference is 0
-  double effect =
-      0.0;         ///< matched-pairs rank-biserial correlation: 1, all differences are positive
-  double p = 1.0;  ///< two-sided
+  double effect = 0.0;    ///< matched-pairs rank-biserial correlation; 1: all are positive
+  double p = 1.0;         ///< two-sided
 };
 
 /// Of paired differences, infinite ones included: could their signs be chance? (Wilcoxon,

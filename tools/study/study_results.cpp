@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "evaluation/format.hpp"
+#include "evaluation/best.hpp"
 
 namespace stillpoint::study {
 namespace {
@@ -61,9 +61,18 @@ std::optional<Spread> StudyResults::spread(std::size_t sequence, std::size_t var
 
 std::optional<Spread> StudyResults::spread(std::size_t variant, MetricId metric) const {
   std::vector<double> values;
-  for (std::size_t i = 0; i < cells.size(); ++i)
-    if (cells[i].variant == variant && results[i] && results[i]->values[metric])
-      values.push_back(*results[i]->values[metric]);
+  for (std::size_t sequence = 0; sequence < study.sequences.size(); ++sequence) {
+    const auto [first, last] = cells_of(sequence, variant);
+    for (std::size_t i = first; i < last; ++i)
+      if (results[i] && results[i]->values[metric]) values.push_back(*results[i]->values[metric]);
+  }
+  return spread_of(std::move(values));
+}
+
+std::optional<Spread> StudyResults::spread(MetricId metric) const {
+  std::vector<double> values;
+  for (const std::optional<CellResult>& result : results)
+    if (result && result->values[metric]) values.push_back(*result->values[metric]);
   return spread_of(std::move(values));
 }
 
@@ -107,30 +116,18 @@ std::optional<Spread> improvement_percent(const StudyResults& results, std::size
   return spread_of(std::move(improvements));
 }
 
-std::vector<std::size_t> best_variants(const StudyResults& results, std::size_t sequence,
-                                       MetricId metric) {
-  const std::size_t count = results.study.variants.size();
-  const auto coverage = [&](std::size_t variant) {
-    const auto spread = results.spread(sequence, variant, kCoverage);
-    return spread ? spread->median : 0.0;
-  };
-  double most = 0.0;
-  for (std::size_t variant = 0; variant < count; ++variant)
-    most = std::max(most, coverage(variant));
-  std::vector<std::pair<double, std::size_t>> comparable;
-  for (std::size_t variant = 0; variant < count; ++variant)
-    if (const auto spread = results.spread(sequence, variant, metric);
-        spread && most - coverage(variant) <= kSameCoveragePercent)
-      comparable.emplace_back(spread->median, variant);
-  std::vector<std::size_t> best;
-  if (comparable.size() < 2) return best;
-  const auto shown = [&](double value) {
-    return evaluation::fixed(value, metrics()[metric].digits);
-  };
-  const std::string smallest = shown(std::ranges::min(comparable).first);
-  for (const auto& [value, variant] : comparable)
-    if (shown(value) == smallest) best.push_back(variant);
-  return best;
+std::vector<bool> best_variants(const StudyResults& results, std::size_t sequence,
+                                MetricId metric) {
+  const Metric& m = metrics()[metric];
+  std::vector<std::optional<evaluation::RatedFigure>> figures(results.study.variants.size());
+  for (std::size_t variant = 0; variant < figures.size(); ++variant) {
+    const auto spread = results.spread(sequence, variant, metric);
+    if (!spread) continue;
+    figures[variant] = {.value = spread->median};
+    const auto coverage = results.spread(sequence, variant, kCoverage);
+    if (m.is_pose_error) figures[variant]->coverage_percent = coverage ? coverage->median : 0.0;
+  }
+  return best_of(figures, m.better, m.digits);
 }
 
 }  // namespace stillpoint::study

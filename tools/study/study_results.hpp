@@ -35,6 +35,8 @@ struct StudyResults {
   std::optional<Spread> spread(std::size_t sequence, std::size_t variant, MetricId metric) const;
   /// Of all runs of the variant.
   std::optional<Spread> spread(std::size_t variant, MetricId metric) const;
+  /// Of all runs.
+  std::optional<Spread> spread(MetricId metric) const;
   /// Null: not run, or not wanted.
   const CellResult* find(const Cell& cell) const;
   std::size_t failed() const;
@@ -51,12 +53,7 @@ std::optional<double> dynamic_penalty(const StudyResults& results, std::size_t s
 std::optional<Spread> improvement_percent(const StudyResults& results, std::size_t sequence,
                                           std::size_t variant);
 
-/// Runs that cover less by more percentage points of the frames cannot be compared.
-inline constexpr double kSameCoveragePercent = 1.0;
-
-/// The variants with the smallest figure on a sequence, to the digits that tables show, among those
-/// that cover as much of it as the one that covers most. Empty when only one can be compared.
-std::vector<std::size_t> best_variants(const StudyResults& results, std::size_t sequence,
-                                       MetricId metric);
+/// Of each variant, whether it has the best median on a sequence, as evaluation::best_of says.
+std::vector<bool> best_variants(const StudyResults& results, std::size_t sequence, MetricId metric);
 
 }  // namespace stillpoint::study

@@ -260,9 +260,15 @@ std::unique_ptr<OptionVisitor> StageSpec::reader() const {
 }
 
 PipelineConfig load_pipeline(const PipelineRequest& request, Registry& registry) {
+  ConfigFiles files;
+  return load_pipeline(request, registry, files);
+}
+
+PipelineConfig load_pipeline(const PipelineRequest& request, Registry& registry,
+                             ConfigFiles& files) {
   const std::filesystem::path file = find_config(request.pipeline, "pipelines");
   FaultList faults;
-  const ConfigNode tree = load_pipeline_tree(file, request, faults);
+  const ConfigNode tree = load_pipeline_tree(file, request, faults, files);
   PipelineConfig config = PipelineReader(tree, registry, faults).read(request);
   faults.throw_if_any();
   config.file = file;

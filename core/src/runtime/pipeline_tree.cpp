@@ -5,7 +5,6 @@
 
 #include "stillpoint/engine/config_lookup.hpp"
 #include "stillpoint/runtime/section_file.hpp"
-#include "stillpoint/runtime/yaml_loader.hpp"
 #include "stillpoint/support/bag_files.hpp"
 
 namespace stillpoint {
@@ -49,14 +48,14 @@ ConfigNode dataset_overlay(const fs::path& dataset, const std::string& type) {
 }
 
 ConfigNode command_line_overlay(const PipelineRequest& request, const ConfigNode& tree,
-                                FaultList& faults) {
+                                FaultList& faults, ConfigFiles& files) {
   ConfigNode overlay =
       request.dataset.empty()
           ? empty_map({})
           : dataset_overlay(request.dataset, source_type_for(request.dataset, tree));
   for (const std::string& assignment : request.assignments) {
     ConfigNode change = parse_assignment(assignment, faults);
-    load_named_sections(change, faults);
+    load_named_sections(change, faults, files);
     overlay = merge_sections(std::move(overlay), change);
   }
   return overlay;
@@ -114,16 +113,17 @@ fs::path camera_beside_recording(const ConfigNode& tree) {
 }  // namespace
 
 ConfigNode load_pipeline_tree(const fs::path& file, const PipelineRequest& request,
-                              FaultList& faults) {
+                              FaultList& faults, ConfigFiles& files) {
   const auto finished = [&](ConfigNode tree, FaultList& list) {
     substitute_environment(tree, list);
     remove_nulls(tree);
     return tree;
   };
-  ConfigNode tree = load_config_file(file, "pipelines", faults, [&](ConfigNode& written) {
-    load_named_sections(written, faults);
-  });
-  const ConfigNode overlay = command_line_overlay(request, tree, faults);
+  const auto with_sections = [&](ConfigNode& written) {
+    load_named_sections(written, faults, files);
+  };
+  ConfigNode tree = load_config_file(file, "pipelines", faults, with_sections, files);
+  const ConfigNode overlay = command_line_overlay(request, tree, faults, files);
 
   fs::path camera_file;
   FaultList found_again;  // by the last line
@@ -132,7 +132,7 @@ ConfigNode load_pipeline_tree(const fs::path& file, const PipelineRequest& reque
   else if (const ConfigNode* camera = tree.find("camera");
            !camera || camera->kind == ConfigNode::Kind::kNull)
     camera_file = camera_beside_recording(finished(merge_sections(tree, overlay), found_again));
-  if (!camera_file.empty()) tree.set(load_section(camera_file, "camera", faults));
+  if (!camera_file.empty()) tree.set(load_section(camera_file, "camera", faults, files));
   tree = finished(merge_sections(std::move(tree), overlay), faults);
   for (const std::string& words : request.outputs) add_output(tree, words, faults);
   return tree;

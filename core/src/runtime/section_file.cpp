@@ -11,8 +11,8 @@
 namespace stillpoint {
 
 ConfigNode load_section(const std::filesystem::path& file, const std::string& name,
-                        FaultList& faults) {
-  ConfigNode tree = load_config_file(file, name + "s", faults);
+                        FaultList& faults, ConfigFiles& files) {
+  ConfigNode tree = load_config_file(file, name + "s", faults, {}, files);
   substitute_environment(tree, faults);
   remove_nulls(tree);
   for (const ConfigNode& section : tree.children)
@@ -26,14 +26,14 @@ ConfigNode load_section(const std::filesystem::path& file, const std::string& na
   return {};
 }
 
-void load_named_sections(ConfigNode& tree, FaultList& faults) {
+void load_named_sections(ConfigNode& tree, FaultList& faults, ConfigFiles& files) {
   for (const std::string name : {"camera", "segmenter"}) {
     ConfigNode* named = tree.find(name);
     if (!named || named->kind != ConfigNode::Kind::kScalar) continue;
     substitute_environment(*named, faults);
     try {
       ConfigNode section =
-          load_section(find_config(named->scalar, name + "s", named->folder), name, faults);
+          load_section(find_config(named->scalar, name + "s", named->folder), name, faults, files);
       section.key = name;
       section.replaces = true;
       tree.set(std::move(section));
@@ -46,7 +46,9 @@ void load_named_sections(ConfigNode& tree, FaultList& faults) {
 
 CameraModel load_camera(const std::string& name_or_file) {
   FaultList faults;
-  const ConfigNode section = load_section(find_config(name_or_file, "cameras"), "camera", faults);
+  ConfigFiles files;
+  const ConfigNode section =
+      load_section(find_config(name_or_file, "cameras"), "camera", faults, files);
   faults.throw_if_any();
   CameraModel camera;
   YamlOptionReader reader(&section, "camera");

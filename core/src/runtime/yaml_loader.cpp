@@ -181,6 +181,7 @@ struct Chain {
   const std::string& category;
   const Prepare& prepare;
   FaultList& faults;
+  ConfigFiles& files;
 };
 
 ConfigNode load_chain(const fs::path& file, const Location& named_at, std::vector<fs::path> above,
@@ -221,22 +222,8 @@ ConfigNode load_chain(const fs::path& file, const Location& named_at, std::vecto
     faults.add(named_at, "extends goes on over more than " + std::to_string(kMaxFiles) + " files");
     return empty_map(start_of(file));
   }
-  const std::optional<std::string> text = read_text(file);
-  if (!text) {
-    faults.add(named_at, "cannot read '" + file.string() + "'");
-    return empty_map(start_of(file));
-  }
-  if (text->size() > kMaxBytes) {
-    faults.add(start_of(file), "is larger than 1 MiB: no configuration");
-    return empty_map(start_of(file));
-  }
-  const fs::path folder = fs::absolute(file).parent_path();
-  auto node = parse(*text, start_of(file), folder, faults);
+  std::optional<ConfigNode> node = chain.files.load(file, named_at, faults);
   if (!node) return empty_map(start_of(file));
-  if (node->kind != ConfigNode::Kind::kMap) {
-    faults.add(start_of(file), "expected sections, as in 'source: {type: tum_rgbd}'");
-    return empty_map(start_of(file));
-  }
   const auto parent = load_parent(*node, file, above, chain);
   if (chain.prepare) chain.prepare(*node);
   return parent ? merge_sections(*parent, *node) : *node;
@@ -274,9 +261,39 @@ std::string substituted(const std::string& text, const Location& where, FaultLis
 
 }  // namespace
 
+std::optional<ConfigNode> ConfigFiles::load(const fs::path& file, const Location& named_at,
+                                            FaultList& faults) {
+  if (const auto known = loaded_.find(file); known != loaded_.end()) return known->second;
+  const std::optional<std::string> text = read_text(file);
+  if (!text) {
+    faults.add(named_at, "cannot read '" + file.string() + "'");
+    return std::nullopt;
+  }
+  if (text->size() > kMaxBytes) {
+    faults.add(start_of(file), "is larger than 1 MiB: no configuration");
+    return std::nullopt;
+  }
+  FaultList found;
+  std::optional<ConfigNode> node =
+      parse(*text, start_of(file), fs::absolute(file).parent_path(), found);
+  if (node && node->kind != ConfigNode::Kind::kMap) {
+    found.add(start_of(file), "expected sections, as in 'source: {type: tum_rgbd}'");
+    node.reset();
+  }
+  faults.add(found);
+  if (node && found.empty()) loaded_.emplace(file, *node);  // or the faults were told once only
+  return node;
+}
+
 ConfigNode load_config_file(const fs::path& file, const std::string& category, FaultList& faults,
                             const Prepare& prepare) {
-  return load_chain(file, start_of(file), {}, {category, prepare, faults});
+  ConfigFiles files;
+  return load_config_file(file, category, faults, prepare, files);
+}
+
+ConfigNode load_config_file(const fs::path& file, const std::string& category, FaultList& faults,
+                            const Prepare& prepare, ConfigFiles& files) {
+  return load_chain(file, start_of(file), {}, {category, prepare, faults, files});
 }
 
 ConfigNode parse_assignment(const std::string& assignment, FaultList& faults,

@@ -30,9 +30,8 @@ function notes(report) {
 function timeOfVariants(report) {
   const sums = new Map();
   for (const run of report.runs) {
-    const parts = run.name.split('/'), name = parts.length === 3 ? parts[1] : run.name;
     if (!run.stages.length) continue;
-    const sum = sums.get(name) ?? {count: 0, stages: new Map()};
+    const name = run.variant, sum = sums.get(name) ?? {count: 0, stages: new Map()};
     ++sum.count;
     for (const [stage, ms] of run.stages) sum.stages.set(stage, (sum.stages.get(stage) ?? 0) + ms);
     sums.set(name, sum);
@@ -47,7 +46,8 @@ function overview(report, open) {
   };
   if (report.runs.length === 1 && report.tables.length === 1) return notes(report);  // the run says it all
   const [first, ...rest] = report.tables;
-  const parts = [notes(report), titledTable(first, opener)];
+  const untitled = first.title === 'Overview' ? {...first, title: ''} : first;  // as the section
+  const parts = [notes(report), titledTable(untitled, opener)];
   const compared = rest.filter(t => t.title.startsWith('Compared with'));
   parts.push(...compared.map(t => titledTable(t, opener)));
   const others = rest.filter(t => !compared.includes(t));

@@ -6,34 +6,30 @@ import {planar} from './run_view.js';
 import {seriesChart} from './series.js';
 import {kind} from './theme.js';
 
-/** Of each variant its first run; single runs are their own variant. */
+/** Of each variant its first run. */
 export function representatives(report, recording) {
   const seen = new Set(), list = [];
   report.runs.forEach((run, index) => {
     if (run.recording !== recording) return;
-    const variant = run.name.split('/').length === 3 ? run.name.split('/')[1] : run.name;
-    if (seen.has(variant)) return;
-    seen.add(variant);
-    list.push({variant, index});
+    if (seen.has(run.variant)) return;
+    seen.add(run.variant);
+    list.push({variant: run.variant, index});
   });
   return list;
 }
 
 const most = 8;  // lines that a picture can hold
 
-/** Values of `y` at the times `all`; nothing in between. */
-function at(all, t, y) {
-  const values = new Map(t.map((seconds, i) => [seconds, y[i]]));
-  return all.map(seconds => values.get(seconds) ?? null);
-}
-
+/** Errors over the times of all runs: null before a pose behind a gap, undefined at the times of other runs. */
 function errorsOf(runs) {
-  const all = [...new Set(runs.flatMap(r => r.run.trace.t))].sort((a, b) => a - b);
-  return [scaled(all, 1e-3), ...runs.map(r => scaled(at(all, r.run.trace.t, r.run.trace.e), 0.1))];
+  const of = runs.map(({run: {trace}}) => new Map(trace.t.flatMap((ms, i) => (
+    trace.gap[i] ? [[ms - 1, null], [ms, 0.1 * trace.e[i]]] : [[ms, 0.1 * trace.e[i]]]))));
+  const all = [...new Set(of.flatMap(errors => [...errors.keys()]))].sort((a, b) => a - b);
+  return [scaled(all, 1e-3), ...of.map(errors => all.map(ms => errors.get(ms)))];
 }
 
 export async function recordingView(report, recording) {
-  const chosen = representatives(report, recording).slice(0, most);
+  const all = representatives(report, recording), chosen = all.slice(0, most);
   const runs = (await Promise.all(chosen.map(async c => ({...c, run: await loadRun(c.index)}))))
     .filter(r => r.run.trace.truth && r.run.trace.t.length);
   if (!runs.length) return el('p', {class: 'quiet'}, 'No run on this recording can be compared with a truth.');
@@ -43,9 +39,11 @@ export async function recordingView(report, recording) {
   const legend = el('div', {class: 'legend'}, ...runs.map((r, i) => el('span', {},
     el('i', {style: `background:${kind(i)}`}), `${r.variant}: ATE ${(1000 * r.run.errors.ate_m[0]).toFixed(1)} mm`)),
     el('span', {}, el('i', {class: 'truth-key'}), 'truth'));
-  return el('div', {}, legend, el('div', {class: 'pair'},
+  const rest = all.length > most
+    ? el('p', {class: 'quiet'}, `The first ${most} of ${all.length} are drawn.`) : null;
+  return el('div', {}, legend, rest, el('div', {class: 'pair'},
     figure('From above', pathPlot(lines(0, 1), true, 'x [m]', 'y [m]')),
     figure('From the side', pathPlot(lines(0, 2), true, 'x [m]', 'z [m]'))),
     figure('Absolute trajectory error', seriesChart(errorsOf(runs), runs.map((r, i) => (
-      {label: r.variant, colour: kind(i), spanGaps: true})), {height: 220, xName: 'time [s]', yName: '[mm]', spanGaps: true})));
+      {label: r.variant, colour: kind(i)})), {height: 220, xName: 'time [s]', yName: '[mm]'})));
 }

@@ -116,9 +116,9 @@ export async function runView(run) {
   const overTime = timeFigures(run);
   if (overTime.length) parts.push(section('Over time', ...overTime));
   parts.push(section('Time per stage', ...stageFigures(run)));
-  if (run.pictures.length) parts.push(section('Frames', el('p', {class: 'quiet'},
-    'Green: features that fit the pose; yellow: that do not; orange: moving; grey: unmatched. Blue: labelled, but '
-    + 'used; red: not used. A click enlarges.'), frameGrid(run)));
+  if (run.pictures.length) parts.push(section('Frames', run.pictures.every(p => p.recorded) ? null
+    : el('p', {class: 'quiet'}, 'Green: features that fit the pose; yellow: that do not; orange: moving; grey: '
+    + 'unmatched. Blue: labelled, but used; red: not used. A click enlarges.'), frameGrid(run)));
   if (run.map) parts.push(section('Dense map', await mapView(run.map, run.path)));
   parts.push(section('Options', ...optionFigures(run)));
   parts.push(el('p', {class: 'quiet'}, `${run.folder}${run.made_by ? ' · ' + run.made_by : ''}`));

@@ -8,39 +8,49 @@ function compare(a, b, rising) {
   return (rising ? 1 : -1) * a.t.localeCompare(b.t, undefined, {numeric: true});
 }
 
-function cellOf(cell, i, open) {
-  const marks = [cell.b && 'best', cell.s && 'significant'].filter(Boolean).join(' ');
-  // "0.0021 (0.0018–0.0024)": the spread stands back behind the figure.
-  const [, head, spread] = /^(\S+)( .*)?$/s.exec(cell.t) ?? [null, cell.t, null];
-  const plain = i === 0 || cell.v === undefined || !spread;
-  const text = plain ? [cell.t] : [head, el('span', {class: 'spread'}, spread)];
-  if (i > 0) return el('td', {class: marks || undefined}, ...text);
-  return el('th', {scope: 'row'}, open ? el('a', {href: '#run', onclick: event => {
+/** Long names break behind an underscore. */
+function breakable(text) {
+  return text.split(/(?<=_)/).flatMap((part, i) => i ? [el('wbr'), part] : [part]);
+}
+
+function nameOf(cell, open) {
+  if (!open) return el('th', {scope: 'row'}, ...breakable(cell.t));
+  return el('th', {scope: 'row'}, el('a', {href: '#run', onclick: event => {
     event.preventDefault();
     open();
-  }}, cell.t) : cell.t);
+  }}, ...breakable(cell.t)));
 }
+
+function figureOf(cell, isText) {
+  const marks = [cell.b && 'best', cell.s && 'significant', isText && 'text'].filter(Boolean).join(' ');
+  // "0.0021 (0.0018–0.0024)": the spread stands back behind the figure.
+  const [, head, spread] = /^(\S+?),?( .*)?$/s.exec(cell.t) ?? [null, cell.t, null];
+  const text = cell.v === undefined || !spread ? [cell.t] : [head, el('span', {class: 'spread'}, spread.replace(' %', '\u00a0%'))];
+  return el('td', {class: marks || undefined}, ...text);
+}
+
+const manyColumns = 9;
 
 /** `opener(name)`: what a click on the name of a row does, or nothing. */
 export function table(data, opener = () => null) {
-  const body = el('tbody');
-  const fill = rows => body.replaceChildren(...rows.map(
-      row => el('tr', {}, ...row.map((cell, i) => cellOf(cell, i, i === 0 && opener(cell.t))))));
+  const body = el('tbody'), names = data.names ?? 1;
+  const isText = data.header.map((_, i) => data.rows.every(row => row[i].v === undefined));
+  const cellOf = (cell, i) => i < names ? nameOf(cell, i === 0 && opener(cell.t)) : figureOf(cell, isText[i]);
+  const fill = rows => body.replaceChildren(...rows.map(row => el('tr', {}, ...row.map(cellOf))));
   fill(data.rows);
-  const numeric = data.header.map((_, i) => i > 0 && data.rows.some(row => row[i].v !== undefined));
   const headings = data.header.map((title, i) => el('th', {scope: 'col',
-    class: numeric[i] ? 'number' : undefined, 'aria-sort': 'none'},
+    class: isText[i] ? undefined : 'number', 'aria-sort': 'none'},
     el('button', {type: 'button', title: 'Sort', onclick: () => {
       const rising = headings[i].getAttribute('aria-sort') !== 'ascending';
       headings.forEach(h => h.setAttribute('aria-sort', 'none'));
       headings[i].setAttribute('aria-sort', rising ? 'ascending' : 'descending');
       fill([...data.rows].sort((a, b) => compare(a[i], b[i], rising)));
-    }}, title)));
-  return el('div', {class: 'table'},
+    }}, ...breakable(title))));
+  return el('div', {class: data.header.length > manyColumns ? 'table dense' : 'table'},
             el('table', {}, el('thead', {}, el('tr', {}, ...headings)), body));
 }
 
 export function titledTable(data, opener) {
-  return el('div', {class: 'titled'}, el('h3', {}, data.title), table(data, opener),
+  return el('div', {class: 'titled'}, data.title ? el('h3', {}, data.title) : null, table(data, opener),
             data.note ? el('p', {class: 'quiet'}, data.note) : null);
 }

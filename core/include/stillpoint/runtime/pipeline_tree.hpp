@@ -4,6 +4,7 @@
 #include "stillpoint/engine/pipeline_config.hpp"
 #include "stillpoint/runtime/config_node.hpp"
 #include "stillpoint/runtime/fault_list.hpp"
+#include "stillpoint/runtime/yaml_loader.hpp"
 
 namespace stillpoint {
 
@@ -11,7 +12,11 @@ namespace stillpoint {
 /// recording when neither names one), --dataset, --set. Values are substituted, keys without a
 /// value removed.
 ConfigNode load_pipeline_tree(const std::filesystem::path& file, const PipelineRequest& request,
-                              FaultList& faults);
+                              FaultList& faults, ConfigFiles& files);
+
+/// As load_pipeline of the engine, for many pipelines: files that they share are read once.
+STILLPOINT_EXPORT PipelineConfig load_pipeline(const PipelineRequest& request, Registry& registry,
+                                               ConfigFiles& files);
 
 /// The recording that the source reads, its option `path`; empty when it has none.
 std::filesystem::path recording_of(const ConfigNode& tree);

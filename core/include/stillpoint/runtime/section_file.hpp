@@ -6,15 +6,16 @@
 
 #include "stillpoint/runtime/config_node.hpp"
 #include "stillpoint/runtime/fault_list.hpp"
+#include "stillpoint/runtime/yaml_loader.hpp"
 
 namespace stillpoint {
 
 /// The section `name` of a file, with everything the file extends; null after a fault.
 ConfigNode load_section(const std::filesystem::path& file, const std::string& name,
-                        FaultList& faults);
+                        FaultList& faults, ConfigFiles& files);
 
 /// Where a tree says `camera: NAME` or `segmenter: NAME`, puts the section of that file in its
 /// place. NAME is a file, relative to the one that says it, or a name from the config folders.
-void load_named_sections(ConfigNode& tree, FaultList& faults);
+void load_named_sections(ConfigNode& tree, FaultList& faults, ConfigFiles& files);
 
 }  // namespace stillpoint

@@ -1,0 +1,45 @@
+#include "study/comparison_table.hpp"
+
+#include "study/table_cells.hpp"
+
+namespace stillpoint::study {
+namespace {
+
+constexpr const char* kComparisonNote =
+    "Ratios: median (quartiles); below 1 the variant has the smaller error, or takes less time. By "
+    "coverage: recordings on which one of the two failed, covered less or lost its way, and so is "
+    "the worse one. Effect: 1, the variant is always better; -1, always worse. p: Wilcoxon's "
+    "signed-rank test of the ATE, two-sided; corrected for the number of variants after Holm.";
+
+TableCell count_cell(std::size_t count) { return number_cell(static_cast<double>(count), 0); }
+
+TableCell p_cell(double p) {
+  TableCell cell = number_cell(p, 4);
+  if (p < 0.0001) cell.text = "< 0.0001";
+  return cell;
+}
+
+}  // namespace
+
+Table comparison_table(const Study& study, const std::vector<PairedComparison>& comparisons) {
+  if (comparisons.empty()) return {};
+  Table table{.title = "Compared with " + study.baseline + ", recording by recording",
+              .note = kComparisonNote,
+              .header = {"variant", "better", "worse", "by coverage", "ATE ratio", "CPU ratio",
+                         "effect", "p", "corrected p"}};
+  for (const PairedComparison& one : comparisons) {
+    table.rows.push_back({{.text = study.variants[one.variant].name},
+                          count_cell(one.better),
+                          count_cell(one.worse),
+                          count_cell(one.incomplete),
+                          ratio_cell(one.ate_ratio),
+                          ratio_cell(one.time_ratio),
+                          number_cell(one.effect, 2),
+                          p_cell(one.p),
+                          p_cell(one.corrected_p)});
+    table.rows.back().back().significant = one.is_significant();
+  }
+  return table;
+}
+
+}  // namespace stillpoint::study

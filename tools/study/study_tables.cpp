@@ -1,0 +1,166 @@
+#include "study/study_tables.hpp"
+
+#include <algorithm>
+#include <functional>
+#include <string>
+#include <utility>
+
+#include "stillpoint/support/did_you_mean.hpp"
+#include "study/comparison_table.hpp"
+#include "study/detail_tables.hpp"
+#include "study/table_cells.hpp"
+
+namespace stillpoint::study {
+namespace {
+
+using CellOf = std::function<TableCell(std::size_t sequence, std::size_t variant)>;
+
+std::string title_of(const Metric& metric) {
+  return metric.title + (*metric.unit ? " (" + std::string(metric.unit) + ")" : "");
+}
+
+/// Sequences × variants.
+Table matrix(const Study& study, std::string title, const CellOf& cell_of) {
+  Table table{.title = std::move(title), .header = {"sequence"}};
+  for (const Variant& variant : study.variants) table.header.push_back(variant.name);
+  for (std::size_t sequence = 0; sequence < study.sequences.size(); ++sequence) {
+    table.rows.push_back({{.text = study.sequences[sequence].name}});
+    for (std::size_t variant = 0; variant < study.variants.size(); ++variant)
+      table.rows.back().push_back(cell_of(sequence, variant));
+  }
+  return table;
+}
+
+/// Leaves out sequences of which there is nothing.
+Table without_empty_rows(const Study& study, Table table) {
+  const auto behind_variants = static_cast<std::ptrdiff_t>(study.variants.size()) + 1;
+  std::erase_if(table.rows, [&](const std::vector<TableCell>& row) {
+    return std::all_of(row.begin() + 1, row.begin() + behind_variants,
+                       [](const TableCell& cell) { return cell.text == kNothing; });
+  });
+  return table;
+}
+
+void mark_best(const StudyResults& results, MetricId metric, Table& table) {
+  for (std::size_t sequence = 0; sequence < table.rows.size(); ++sequence) {
+    const std::vector<bool> best = best_variants(results, sequence, metric);
+    for (std::size_t variant = 0; variant < best.size(); ++variant)
+      table.rows[sequence][variant + 1].best = best[variant];
+  }
+}
+
+void add_published(const Study& study, MetricId metric, Table& table) {
+  const auto systems = published_with(study, metric, metric + 1);
+  for (const Published* system : systems) table.header.push_back(published_name(*system));
+  for (std::size_t sequence = 0; sequence < table.rows.size(); ++sequence)
+    for (const Published* system : systems)
+      table.rows[sequence].push_back(
+          published_cell(*system, original_of(study.sequences[sequence]), metric));
+  table.note = published_note(systems);
+}
+
+Table metric_table(const StudyResults& results, MetricId metric) {
+  const Metric& m = metrics()[metric];
+  const std::optional<Spread> all = results.spread(metric);
+  if (!all) return {};
+  if (all->min == 0.0 && all->max == 0.0) return {.title = title_of(m), .note = "0 in every run."};
+  Table table = matrix(results.study, title_of(m), [&](std::size_t sequence, std::size_t variant) {
+    return metric_cell(results, sequence, variant, metric);
+  });
+  mark_best(results, metric, table);
+  add_published(results.study, metric, table);
+  return without_empty_rows(results.study, std::move(table));
+}
+
+void mark_significant(const Study& study, const std::vector<PairedComparison>& comparisons,
+                      Table& table) {
+  bool any = false;
+  for (const PairedComparison& one : comparisons) {
+    if (!one.is_significant()) continue;
+    table.header[one.variant + 1] += " †";
+    any = true;
+  }
+  if (any)
+    table.note += (table.note.empty() ? "" : " ") + ("†: differs from " + study.baseline) +
+                  " over all recordings, corrected p < 0.05.";
+}
+
+Table improvement_table(const StudyResults& results) {
+  const auto improvement = [&](std::size_t sequence, std::size_t variant) {
+    TableCell cell = spread_cell(improvement_percent(results, sequence, variant), 1);
+    if (cell.value) cell.text += coverage_note(results, sequence, variant);
+    return cell;
+  };
+  const std::string title = "Improvement of the ATE over " + results.study.baseline + " (%)";
+  return without_empty_rows(results.study, matrix(results.study, title, improvement));
+}
+
+Table penalty_table(const StudyResults& results) {
+  const auto penalty = [&](std::size_t sequence, std::size_t variant) {
+    const auto value = dynamic_penalty(results, sequence, variant);
+    if (!value) return TableCell{.text = kNothing};
+    TableCell cell = number_cell(*value, 2);
+    cell.text += coverage_note(results, sequence, variant);
+    return cell;
+  };
+  return without_empty_rows(
+      results.study,
+      matrix(results.study, "Dynamic penalty: ATE ÷ ATE on the _empty twin", penalty));
+}
+
+/// Of a study with one sequence: all figures of a variant in a row.
+Table overview_table(const StudyResults& results) {
+  Table table{.title = "Overview", .header = {"variant"}};
+  for (const Variant& variant : results.study.variants)
+    table.rows.push_back({{.text = variant.name}});
+  for (std::size_t i = 0; i < kMetricCount; ++i) {
+    const auto metric = static_cast<MetricId>(i);
+    const Metric& m = metrics()[metric];
+    const std::optional<Spread> all = results.spread(metric);
+    if (m.group != Metric::Group::kAlone || !all || (all->min == 0.0 && all->max == 0.0)) continue;
+    table.header.push_back(m.brief + (*m.unit ? " (" + std::string(m.unit) + ")" : ""));
+    const std::vector<bool> best = best_variants(results, 0, metric);
+    for (std::size_t variant = 0; variant < table.rows.size(); ++variant) {
+      table.rows[variant].push_back(metric_cell(results, 0, variant, metric));
+      table.rows[variant].back().best = best[variant];
+    }
+  }
+  if (table.header.size() == 1) table.rows.clear();
+  return table;
+}
+
+Table variants_table(const Study& study) {
+  Table table{.title = "Variants", .header = {"variant", "pipeline", "changes"}};
+  for (const Variant& variant : study.variants)
+    table.rows.push_back({{.text = variant.name},
+                          {.text = variant.pipeline},
+                          {.text = join(assignments_of(study, variant))}});
+  return table;
+}
+
+}  // namespace
+
+std::vector<Table> study_tables(const StudyResults& results) {
+  std::vector<Table> tables;
+  const auto add = [&](Table table) {
+    if (!table.rows.empty() || !table.note.empty()) tables.push_back(std::move(table));
+  };
+  const std::vector<PairedComparison> comparisons = compare_with_baseline(results);
+  if (results.study.sequences.size() == 1) add(overview_table(results));
+  for (std::size_t metric = 0; metric < kMetricCount; ++metric) {
+    if (metrics()[metric].group != Metric::Group::kAlone) continue;
+    Table table = metric_table(results, static_cast<MetricId>(metric));
+    if (metric == kAte && !table.rows.empty()) mark_significant(results.study, comparisons, table);
+    add(std::move(table));
+    if (metric != kAte) continue;
+    add(comparison_table(results.study, comparisons));
+    add(improvement_table(results));
+    add(penalty_table(results));
+  }
+  add(stage_table(results));
+  add(error_statistics_table(results));
+  add(variants_table(results.study));
+  return tables;
+}
+
+}  // namespace stillpoint::study

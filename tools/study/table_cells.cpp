@@ -1,0 +1,63 @@
+#include "study/table_cells.hpp"
+
+#include "evaluation/format.hpp"
+
+namespace stillpoint::study {
+
+using evaluation::fixed;
+
+TableCell spread_cell(const std::optional<Spread>& spread, int digits) {
+  if (!spread) return {.text = kNothing};
+  TableCell cell = number_cell(spread->median, digits);
+  if (spread->count > 1)
+    cell.text += " (" + fixed(spread->min, digits) + (spread->min < 0.0 ? " to " : "–") +
+                 fixed(spread->max, digits) + ")";
+  return cell;
+}
+
+TableCell ratio_cell(const std::optional<Spread>& ratio) {
+  if (!ratio) return {.text = kNothing};
+  TableCell cell = number_cell(ratio->median, 2);
+  if (ratio->count > 1)
+    cell.text +=
+        " (" + fixed(ratio->first_quartile, 2) + "–" + fixed(ratio->third_quartile, 2) + ")";
+  return cell;
+}
+
+TableCell number_cell(double value, int digits) {
+  return {.text = fixed(value, digits), .value = value};
+}
+
+std::string coverage_note(const StudyResults& results, std::size_t sequence, std::size_t variant) {
+  const auto coverage = results.spread(sequence, variant, kCoverage);
+  const std::string percent = coverage ? fixed(coverage->median, 1) : "100.0";
+  return percent == "100.0" ? "" : ", coverage " + percent + " %";
+}
+
+TableCell metric_cell(const StudyResults& results, std::size_t sequence, std::size_t variant,
+                      MetricId metric) {
+  const auto spread = results.spread(sequence, variant, metric);
+  TableCell cell = spread_cell(spread, metrics()[metric].digits);
+  if (metrics()[metric].is_pose_error) cell.text += coverage_note(results, sequence, variant);
+  const auto repeats = static_cast<std::size_t>(results.study.repeats);
+  if (spread && spread->count < repeats)
+    cell.text += " [" + std::to_string(spread->count) + " of " + std::to_string(repeats) + "]";
+  return cell;
+}
+
+TableCell published_cell(const Published& system, const std::string& recording, MetricId metric) {
+  const auto value = system.find(recording, metric);
+  return value ? number_cell(*value, metrics()[metric].digits) : TableCell{.text = kNothing};
+}
+
+std::string published_name(const Published& system) { return system.name + " (published)"; }
+
+std::string published_note(const std::vector<const Published*>& systems) {
+  std::string text;
+  for (const Published* system : systems)
+    text += (text.empty() ? "Published, not measured here: " : "; ") + system->name + " (" +
+            system->source + ")";
+  return text.empty() ? text : text + ".";
+}
+
+}  // namespace stillpoint::study

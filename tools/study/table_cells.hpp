@@ -1,0 +1,40 @@
+// Figures of a study as cells of tables.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "study/study_results.hpp"
+#include "study/table.hpp"
+
+namespace stillpoint::study {
+
+inline constexpr const char* kNothing = "–";  ///< a cell without a figure
+
+/// "0.0021 (0.0020–0.0022)", "5.0 (-3.0 to 9.0)": median (smallest–largest).
+TableCell spread_cell(const std::optional<Spread>& spread, int digits);
+
+/// "0.90 (0.88–0.92)": median (quartiles).
+TableCell ratio_cell(const std::optional<Spread>& ratio);
+
+TableCell number_cell(double value, int digits);
+
+/// ", coverage 90.0 %"; empty where all is covered. An error of a part of a recording is none of
+/// the whole.
+std::string coverage_note(const StudyResults& results, std::size_t sequence, std::size_t variant);
+
+/// A figure of a variant on a sequence, an error with its coverage: "0.0600, coverage 90.0 % [1 of
+/// 2]" where only one of two repeats gave it.
+TableCell metric_cell(const StudyResults& results, std::size_t sequence, std::size_t variant,
+                      MetricId metric);
+
+/// What others have published of a recording (see original_of), or of a stage.
+TableCell published_cell(const Published& system, const std::string& recording, MetricId metric);
+
+/// "DS-SLAM (published)"
+std::string published_name(const Published& system);
+
+/// "Published, not measured here: DS-SLAM (Yu et al., 2018)."; empty without any.
+std::string published_note(const std::vector<const Published*>& systems);
+
+}  // namespace stillpoint::study
