@@ -3,6 +3,8 @@
 #include <opencv2/core.hpp>
 #include <opencv2/imgproc.hpp>
 
+#include "live_camera/driver_library.hpp"
+
 namespace stillpoint::source_freenect {
 namespace {
 
@@ -68,8 +70,10 @@ FreenectSource::~FreenectSource() {
   if (!thread_.joinable()) return;
   thread_.request_stop();
   thread_.join();
-  freenect_stop_video(kinect_.device());
-  freenect_stop_depth(kinect_.device());
+  live_camera::undo_in_driver([this] {
+    freenect_stop_video(kinect_.device());
+    freenect_stop_depth(kinect_.device());
+  });
 }
 
 void FreenectSource::start() {

@@ -4,6 +4,8 @@
 #include <opencv2/imgproc.hpp>
 #include <utility>
 
+#include "live_camera/driver_library.hpp"
+
 namespace stillpoint::source_openni2 {
 namespace {
 
@@ -118,7 +120,9 @@ OpenNi2Source::Disconnection::Disconnection(std::string device_uri,
   OpenNI::addDeviceDisconnectedListener(this);
 }
 
-OpenNi2Source::Disconnection::~Disconnection() { OpenNI::removeDeviceDisconnectedListener(this); }
+OpenNi2Source::Disconnection::~Disconnection() {
+  live_camera::undo_in_driver([this] { OpenNI::removeDeviceDisconnectedListener(this); });
+}
 
 void OpenNi2Source::Disconnection::onDeviceDisconnected(const openni::DeviceInfo* device) {
   if (uri == device->getUri()) frames.end("the camera was unplugged");
@@ -143,8 +147,10 @@ OpenNi2Source::~OpenNi2Source() {
   if (!thread_.joinable()) return;
   thread_.request_stop();
   thread_.join();
-  camera_.color.stop();
-  camera_.depth.stop();
+  live_camera::undo_in_driver([this] {
+    camera_.color.stop();
+    camera_.depth.stop();
+  });
 }
 
 void OpenNi2Source::start() {

@@ -4,6 +4,8 @@
 
 #include <string>
 
+#include "stillpoint/error.hpp"
+
 namespace stillpoint::live_camera {
 
 /// A shared library with C functions, loaded by the constructor. It stays loaded until the process
@@ -27,6 +29,15 @@ class DriverLibrary {
   std::string file_;
   void* handle_;
 };
+
+/// Calls functions of a driver from a destructor. One that is missing has nothing to undo.
+template <class Function>
+void undo_in_driver(Function&& functions) noexcept {
+  try {
+    functions();
+  } catch (const Error&) {
+  }
+}
 
 /// Defines a C function that a driver's header declares: its first call loads `library()`, a
 /// function that gives a DriverLibrary. Source and inline code of the header then need not know
