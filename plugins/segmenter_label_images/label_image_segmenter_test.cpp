@@ -6,6 +6,7 @@
 #include <functional>
 #include <opencv2/imgproc.hpp>
 
+#include "support/error_text.hpp"
 #include "support/recording_writer.hpp"
 
 namespace stillpoint::segmenter_label_images {
@@ -48,13 +49,7 @@ class LabelImageSegmenterTest : public ::testing::Test {
     return {options_, context};
   }
   static std::string message_of(const std::function<void()>& action, Fault fault = Fault::kData) {
-    try {
-      action();
-    } catch (const Error& error) {
-      EXPECT_EQ(error.fault(), fault);
-      return error.what();
-    }
-    return "nothing was thrown";
+    return testing::error_text(fault, action);
   }
 
   TemporaryFolder folder_;

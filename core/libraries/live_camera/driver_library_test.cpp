@@ -3,28 +3,17 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <functional>
-
-#include "stillpoint/error.hpp"
+#include "support/error_text.hpp"
 
 namespace stillpoint::live_camera {
 namespace {
 
+using stillpoint::testing::error_text;
 using ::testing::AllOf;
 using ::testing::HasSubstr;
 
-std::string message_of(const std::function<void()>& action) {
-  try {
-    action();
-  } catch (const Error& error) {
-    EXPECT_EQ(error.fault(), Fault::kUsage);
-    return error.what();
-  }
-  return "nothing was thrown";
-}
-
 TEST(DriverLibrary, SaysWhichPackageIsMissing) {
-  EXPECT_THAT(message_of([] { DriverLibrary("libnone.so.7", "libnone7"); }),
+  EXPECT_THAT(error_text(Fault::kUsage, [] { DriverLibrary("libnone.so.7", "libnone7"); }),
               AllOf(HasSubstr("libnone.so.7: cannot open shared object file"),
                     HasSubstr("install the camera's driver, on Debian the package libnone7")));
 }
@@ -36,7 +25,7 @@ TEST(DriverLibrary, FindsItsFunctions) {
 
 TEST(DriverLibrary, SaysWhichFunctionIsMissing) {
   const DriverLibrary mathematics("libm.so.6", "libc6");
-  EXPECT_THAT(message_of([&] { mathematics.function<void()>("freenect_init"); }),
+  EXPECT_THAT(error_text(Fault::kUsage, [&] { mathematics.function<void()>("freenect_init"); }),
               AllOf(HasSubstr("libm.so.6: the camera's driver has no function freenect_init"),
                     HasSubstr("another version")));
 }

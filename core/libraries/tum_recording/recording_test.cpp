@@ -3,9 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <functional>
-
-#include "stillpoint/error.hpp"
+#include "support/error_text.hpp"
 #include "support/recording_writer.hpp"
 
 namespace stillpoint::tum_recording {
@@ -13,26 +11,17 @@ namespace {
 
 using ::testing::AllOf;
 using ::testing::ElementsAre;
+using testing::error_text;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using testing::TemporaryFolder;
-
-std::string message_of(const std::function<void()>& action) {
-  try {
-    action();
-  } catch (const Error& error) {
-    EXPECT_EQ(error.fault(), Fault::kData);
-    return error.what();
-  }
-  return "nothing was thrown";
-}
 
 /// The message for a recording with these lists.
 std::string message_for(const std::string& rgb, const std::string& depth) {
   const TemporaryFolder folder;
   folder.write("rgb.txt", rgb);
   folder.write("depth.txt", depth);
-  return message_of([&] { open_recording(folder.path()); });
+  return error_text(Fault::kData, [&] { open_recording(folder.path()); });
 }
 
 TEST(Recording, PairsTheListsByTime) {
@@ -55,7 +44,7 @@ TEST(Recording, AddsTheTimeOffsetToDepth) {
   folder.write("rgb.txt", "1.0 a\n2.0 b\n");
   folder.write("depth.txt", "1.5 d\n2.5 e\n");
   EXPECT_EQ(open_recording(folder.path(), {.time_offset = -0.5}).pairs.size(), 2u);
-  EXPECT_THAT(message_of([&] { open_recording(folder.path()); }),
+  EXPECT_THAT(error_text(Fault::kData, [&] { open_recording(folder.path()); }),
               AllOf(HasSubstr("no colour image has a depth image within"),
                     HasSubstr("change max_difference or time_offset")));
 }
@@ -111,14 +100,14 @@ TEST(Recording, DropsImagesThatAssociationsUseTwice) {
 
 TEST(Recording, NamesWhatIsMissing) {
   const TemporaryFolder folder;
-  EXPECT_THAT(message_of([&] { open_recording(folder.path() / "nowhere"); }),
+  EXPECT_THAT(error_text(Fault::kData, [&] { open_recording(folder.path() / "nowhere"); }),
               AllOf(HasSubstr("nowhere: no such folder"), HasSubstr("rgb.txt and depth.txt")));
-  EXPECT_THAT(message_of([&] { open_recording(folder.write("file", "")); }),
+  EXPECT_THAT(error_text(Fault::kData, [&] { open_recording(folder.write("file", "")); }),
               HasSubstr("file: is not a folder"));
-  EXPECT_THAT(message_of([&] { open_recording(folder.path()); }),
+  EXPECT_THAT(error_text(Fault::kData, [&] { open_recording(folder.path()); }),
               HasSubstr("has neither rgb.txt and depth.txt nor associations.txt"));
   folder.write("rgb.txt", "1.0 a\n");
-  EXPECT_THAT(message_of([&] { open_recording(folder.path()); }),
+  EXPECT_THAT(error_text(Fault::kData, [&] { open_recording(folder.path()); }),
               HasSubstr("has rgb.txt but no depth.txt"));
 }
 
@@ -133,7 +122,7 @@ TEST(Recording, NamesTheLineThatCannotBeUnderstood) {
   EXPECT_THAT(message_for("nan a\n", "1.0 d\n"), HasSubstr("rgb.txt:1: 'nan' is not a time stamp"));
   const TemporaryFolder folder;
   folder.write("associations.txt", "1.0 rgb/a 1.0\n");
-  EXPECT_THAT(message_of([&] { open_recording(folder.path()); }),
+  EXPECT_THAT(error_text(Fault::kData, [&] { open_recording(folder.path()); }),
               HasSubstr("associations.txt:1: found 3 columns"));
 }
 
