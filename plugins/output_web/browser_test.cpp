@@ -7,6 +7,7 @@
 #include "output_web/fake_run.hpp"
 #include "output_web/live_view_fixture.hpp"
 #include "output_web/page.hpp"
+#include "support/recording_writer.hpp"
 
 namespace stillpoint::output_web {
 namespace {
@@ -33,8 +34,6 @@ class InABrowser : public ::testing::Test {
     if (page().find("<script>") == std::string_view::npos)
       GTEST_SKIP() << "built without the page: npm or esbuild are missing";
     if (browser().empty()) GTEST_SKIP() << "no chromium in PATH: apt-get install chromium";
-    fs::remove_all(folder);
-    fs::create_directories(folder);
     StageContext context = testing::test_context();
     context.output_directory = folder;
     output =
@@ -42,7 +41,6 @@ class InABrowser : public ::testing::Test {
     output->begin(run);
     for (std::size_t i = 0; i < recording().size(); ++i) output->frame(report_of(i));
   }
-  void TearDown() override { fs::remove_all(folder); }
 
   /// The document once the expression holds, which may click; errors of its scripts fail the test.
   std::string shown(const std::string& url, const std::string& condition) const {
@@ -55,7 +53,8 @@ class InABrowser : public ::testing::Test {
     return content_of(folder / "dom");
   }
 
-  const fs::path folder = fs::path(::testing::TempDir()) / "output_web_browser";
+  const testing::TemporaryFolder temporary;
+  const fs::path& folder = temporary.path();
   std::shared_ptr<FakeRun> run = std::make_shared<FakeRun>();
   std::unique_ptr<WebOutput> output;
 };

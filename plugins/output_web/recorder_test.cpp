@@ -5,6 +5,7 @@
 #include <stillpoint/support/base64.hpp>
 
 #include "output_web/live_view_fixture.hpp"
+#include "support/recording_writer.hpp"
 
 namespace stillpoint::output_web {
 namespace {
@@ -13,9 +14,6 @@ namespace fs = std::filesystem;
 
 class Recording : public ::testing::Test {
  protected:
-  Recording() { fs::create_directories(folder); }
-  ~Recording() override { fs::remove_all(folder); }
-
   std::unique_ptr<WebOutput> output(const std::string& name) const {
     StageContext context = testing::test_context();
     context.output_directory = folder;
@@ -26,7 +24,8 @@ class Recording : public ::testing::Test {
     return {std::istreambuf_iterator<char>(stream), {}};
   }
 
-  const fs::path folder = fs::path(::testing::TempDir()) / "output_web_recording";
+  const testing::TemporaryFolder temporary;
+  const fs::path& folder = temporary.path();
 };
 
 // Of a page, so that a message is found as it is.

@@ -5,6 +5,8 @@
 #include <filesystem>
 #include <fstream>
 
+#include "support/recording_writer.hpp"
+
 namespace stillpoint::output_web {
 namespace {
 
@@ -34,15 +36,14 @@ TEST(Truth, FitsUpToARigidMotion) {
 }
 
 TEST(Truth, ComesFromTheRecording) {
-  const fs::path folder = fs::path(::testing::TempDir()) / "output_web_truth";
-  fs::create_directories(folder);
+  const testing::TemporaryFolder temporary;
+  const fs::path& folder = temporary.path();
   std::ofstream(folder / "groundtruth.txt")
       << "# time tx ty tz qx qy qz qw\n2 1 1 1 0 0 0 1\nno pose\n1 nan 0 0\n1 0 0 0 0 0 0 1\n";
   EXPECT_TRUE(Truth::beside(folder).position_at(1)->isZero());
   EXPECT_TRUE(Truth::beside(folder).position_at(2)->isOnes());
   EXPECT_FALSE(Truth::beside(folder / "none").known());
   EXPECT_FALSE(Truth::beside("").known());
-  fs::remove_all(folder);
 }
 
 }  // namespace

@@ -30,9 +30,10 @@ class BagAuditTest : public ::testing::Test {
   }
   void image(const std::string& topic, const std::string& frame, std::int64_t time, int type,
              const std::string& encoding) {
+    const double value = type == CV_8UC3 ? 140 : 2000;
     writer_->add(topic, "sensor_msgs/Image", time,
                  stillpoint::testing::image_message(
-                     kind_, time, frame, cv::Mat(48, 64, type, cv::Scalar::all(2000)), encoding));
+                     kind_, time, frame, cv::Mat(48, 64, type, cv::Scalar::all(value)), encoding));
   }
   BagAudit audit(const BagAuditOptions& options = {}) {
     writer_->finish();

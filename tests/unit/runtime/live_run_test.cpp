@@ -7,6 +7,7 @@
 
 #include "engine_fixture.hpp"
 #include "stillpoint/engine/map_file.hpp"
+#include "support/recording_writer.hpp"
 
 namespace stillpoint {
 namespace {
@@ -46,7 +47,8 @@ class LiveRunTest : public ::testing::TestWithParam<Mode> {
 
   EngineFixture fixture{4};
   std::shared_ptr<Steering> steering = std::make_shared<Steering>();
-  fs::path map_file = fs::path(::testing::TempDir()) / "live_run_test.map";
+  const testing::TemporaryFolder folder;
+  fs::path map_file = folder.path() / "saved.map";
 };
 INSTANTIATE_TEST_SUITE_P(Modes, LiveRunTest, ::testing::Values(Mode::kInline, Mode::kThreaded),
                          [](const auto& test) {
@@ -123,12 +125,10 @@ TEST_P(LiveRunTest, StopsAsAfterCtrlCAndAlsoWhenPaused) {
 }
 
 TEST_P(LiveRunTest, SavesTheMapWhereTheProgramSays) {
-  fs::remove(map_file);
   steering->on_frame = [this] { steering->run->save_map(); };
   engine().run();
   EXPECT_EQ(steering->run->map_file(), map_file);
   EXPECT_GT(load_map(map_file).keyframe_id_end(), 0u);
-  fs::remove(map_file);
 }
 
 TEST_P(LiveRunTest, ReachesNothingAfterTheEnd) {
