@@ -10,7 +10,6 @@
 #include <fstream>
 #include <memory>
 #include <nlohmann/json.hpp>
-#include <random>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -21,7 +20,6 @@
 namespace stillpoint::map_octomap {
 namespace {
 
-using semantic_octree::ClassBelief;
 using semantic_octree::looking;
 using semantic_octree::SemanticVoxel;
 using semantic_octree::TestRoom;
@@ -315,56 +313,6 @@ TEST_F(OctomapBackendTest, ATooWideCostMapIsLeftOut) {
   EXPECT_TRUE(std::filesystem::exists(folder.path() / "map.ot"));
   EXPECT_FALSE(std::filesystem::exists(folder.path() / "map.pgm"));
   EXPECT_THAT(warnings, ::testing::ElementsAre(::testing::HasSubstr("too wide")));
-}
-
-TEST(StoredKeyFrame, ComesBackAsItWas) {
-  DenseKeyFrame keyframe = TestRoom().see(looking({0.5, -1.0, 1.3}, 0.0), 7);
-  auto weights = std::make_shared<StaticWeights>();
-  weights->map = keyframe.segmentation->labels * 20;
-  keyframe.weights = weights;
-  for (const int stride : {1, 3}) {
-    const StoredKeyFrame stored(keyframe, stride);
-    const DenseKeyFrame back = stored.unpack(pose_of(2));
-    EXPECT_EQ(back.id, 7U);
-    EXPECT_TRUE(back.world_from_camera.isApprox(pose_of(2)));
-    const Camera &camera = *back.frame->camera, &original = *keyframe.frame->camera;
-    ASSERT_EQ(back.frame->depth.size(), cv::Size(320 / stride, 240 / stride));
-    for (int y = 0; y < back.frame->depth.rows; ++y)
-      for (int x = 0; x < back.frame->depth.cols; ++x) {
-        const int u = x * stride + stride / 2, v = y * stride + stride / 2;
-        ASSERT_NEAR(back.frame->depth.at<float>(y, x), keyframe.frame->depth.at<float>(v, u),
-                    1.1e-4);
-        ASSERT_EQ(back.frame->bgr.at<cv::Vec3b>(y, x), keyframe.frame->bgr.at<cv::Vec3b>(v, u));
-        ASSERT_EQ(back.segmentation->labels.at<std::uint8_t>(y, x),
-                  keyframe.segmentation->labels.at<std::uint8_t>(v, u));
-        ASSERT_EQ(back.weights->map.at<std::uint8_t>(y, x), weights->map.at<std::uint8_t>(v, u));
-        ASSERT_TRUE(camera.unproject(x, y, 1).isApprox(original.unproject(u, v, 1), 1e-9));
-      }
-    EXPECT_LT(stored.bytes(), 320U * 240U * 2U / (stride * stride));
-  }
-  keyframe.segmentation = nullptr;
-  EXPECT_TRUE(StoredKeyFrame(keyframe, 1).unpack(pose_of(2)).labels().empty());
-}
-
-TEST(ClassBelief, TheMostFrequentClassWins) {
-  std::mt19937 random(1);
-  ClassBelief belief;
-  EXPECT_FALSE(belief.known());
-  EXPECT_EQ(belief.confidence(), 0.0);
-  // Seven of ten looks say 5; the others any of 20 classes.
-  for (int i = 0; i < 1000; ++i)
-    belief.add(random() % 10 < 7 ? 5 : static_cast<std::uint8_t>(random() % 20));
-  EXPECT_EQ(belief.best(), 5);
-  EXPECT_NEAR(belief.confidence(), 0.7, 0.1);
-}
-
-TEST(ClassBelief, ItCanChange) {
-  ClassBelief belief;
-  for (int i = 0; i < 10; ++i) belief.add(3);
-  EXPECT_EQ(belief.confidence(), 1.0);
-  for (int i = 0; i < 11; ++i) belief.add(8);
-  EXPECT_EQ(belief.best(), 8);
-  EXPECT_LT(belief.confidence(), 0.6);
 }
 
 }  // namespace
