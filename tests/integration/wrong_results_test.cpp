@@ -37,13 +37,13 @@ constexpr Wrong kWrongs[] = {
      "the labels have 2 x 2 pixels, but the frame has 64 x 48"},
     {"segmenter", "segmentation", "label", "a pixel has label 2, but there are 2 classes"},
     {"decision", "decision", "size", "the weights have 2 x 2 pixels, but the frame has 64 x 48"},
-    {"decision", "decision", "type", "the weights have 64 x 48 pixels of CV_32FC1"},
+    {"decision", "decision", "type", "the weights are of CV_32FC1"},
     {"tracker", "tracking", "nan_pose", "the pose is no rigid motion"},
     {"tracker", "tracking", "reference", "the reference is key frame kNoId of 4"},
     {"tracker", "tracking", "keyframe_id", "the key frame has id 4, but the next one is 3"},
     {"tracker", "tracking", "features", "the key frame has no features"},
     {"local_mapper", "local mapping", "", "key frame 3 was not added to the map"},
-    {"loop_closer", "loop closing", "", "a key frame that is not there or whose pose is no rigid"},
+    {"loop_closer", "loop closing", "", "the correction names key frame 4 of 4"},
 };
 
 class WrongResults : public ::testing::TestWithParam<std::tuple<const char*, Wrong>> {

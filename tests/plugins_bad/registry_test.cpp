@@ -236,7 +236,7 @@ TEST_F(RegistryTest, MissingTypeIsExplained) {
             "  available:  good\n"
             "  not usable: libstillpoint_older_api.so: " +
                 registry.unusable().front().reason + "\n  searched:   " + folder_.string() +
-                "      (add folders with STILLPOINT_PLUGIN_PATH)");
+                "      (add folders by 'plugins: {paths: [DIR]}' or STILLPOINT_PLUGIN_PATH)");
 }
 
 TEST_F(RegistryTest, MissingFolderHasNoPlugins) {

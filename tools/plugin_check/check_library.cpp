@@ -114,7 +114,7 @@ CaseResult run_alone(const CheckRequest& request, const TypeResult& type, const 
   CaseResult result{.outcome = CaseResult::Outcome::kFailed, .name = name};
   result.finding = {end.how + (end.console.empty() ? "" : "; it said:\n" + end.console),
                     "a run would end, and nobody would know why",
-                    "how to follow a case with gdb: docs/plugins/debugging.md"};
+                    "how to follow a case with gdb: the page 'Debugging a plugin'"};
   return result;
 }
 

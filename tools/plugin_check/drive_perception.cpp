@@ -70,6 +70,20 @@ void saw(Observer& observer, const Segmentation& segmentation) {
   }
 }
 
+void require_frame(const Segmentation& result, const Frame& frame) {
+  if (result.frame != frame.index)
+    throw Failure({"Segmentation::frame is " + std::to_string(result.frame) + " for frame " +
+                       std::to_string(frame.index),
+                   "labels would be taken for those of another frame",
+                   "set Segmentation::frame to Frame::index"});
+}
+
+void require_unchanged(const std::string& function, const cv::Mat& labels, std::uint32_t before) {
+  if (checksum_of(labels) != before)
+    throw Failure({function + "() wrote to the labels", "other threads read them",
+                   "clone() what is to be changed"});
+}
+
 class SegmenterDrive final : public FrameDrive<Segmenter> {
  public:
   using FrameDrive::FrameDrive;
@@ -84,11 +98,7 @@ class SegmenterDrive final : public FrameDrive<Segmenter> {
     const Segmentation result = call("segment", i, [&] { return stage_.segment(*input(i).frame); });
     check("segment", i,
           [&] { check_segmentation(result, input(i).frame->gray.size(), classes.size()); });
-    if (result.frame != input(i).frame->index)
-      throw Failure({"Segmentation::frame is " + std::to_string(result.frame) + " for frame " +
-                         std::to_string(input(i).frame->index),
-                     "labels would be carried on from another frame",
-                     "set Segmentation::frame to Frame::index"});
+    require_frame(result, *input(i).frame);
     saw(observer_, result);
     labelled_ += result.known() && cv::countNonZero(result.labels) > 0;
     ++frames_;
@@ -113,6 +123,7 @@ class PropagatorDrive final : public FrameDrive<Propagator> {
     constexpr std::size_t kInterval = 3;
     const std::size_t from = i / kInterval * kInterval - (i % kInterval == 0 && i > 0 ? 1 : 0);
     const Input& labelled = input(from);
+    const std::uint32_t before = checksum_of(labelled.segmentation->labels);
     const Segmentation result = call("propagate", i, [&] {
       return stage_.propagate(*labelled.segmentation, *labelled.frame, *input(i).frame);
     });
@@ -120,6 +131,8 @@ class PropagatorDrive final : public FrameDrive<Propagator> {
       check_segmentation(result, input(i).frame->gray.size(),
                          testing::TestRecording::classes().size());
     });
+    if (result.known()) require_frame(result, *input(i).frame);
+    require_unchanged("propagate", labelled.segmentation->labels, before);
     saw(observer_, result);
   }
 };
@@ -213,9 +226,7 @@ class DecisionDrive final : public FrameDrive<Decision> {
       return stage_.decide(*now.frame, *now.segmentation, now.moving, now.evidence);
     });
     check("decide", i, [&] { check_weights(result, *now.segmentation, now.frame->gray.size()); });
-    if (checksum_of(now.segmentation->labels) != before)
-      throw Failure({"decide() wrote to the labels", "other threads read them",
-                     "clone() what is to be changed"});
+    require_unchanged("decide", now.segmentation->labels, before);
     observer_.saw(result.track);
     observer_.saw(result.map);
   }

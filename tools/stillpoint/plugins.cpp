@@ -117,7 +117,9 @@ void describe_all(const Registry& registry, const std::string& name) {
   }
   if (!found)
     throw Error(Fault::kUsage,
-                "no plugin provides the type '" + name + "'" + did_you_mean(name, names));
+                "no plugin provides the type '" + name + "'" + did_you_mean(name, names), "",
+                "'stillpoint plugins list' shows the types; 'plugins --path DIR describe TYPE' "
+                "also looks into DIR");
 }
 
 }  // namespace

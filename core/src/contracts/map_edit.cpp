@@ -1,11 +1,22 @@
 #include <algorithm>
-#include <cassert>
 #include <map>
+#include <string>
 
 #include "stillpoint/contracts/sparse_map.hpp"
+#include "stillpoint/error.hpp"
 
 namespace stillpoint {
 namespace {
+
+/// A caller's mistake that would otherwise be a read out of bounds.
+Error mistake(const std::string& problem, const std::string& remedy) {
+  return {Fault::kStage, problem, "MapEdit", remedy};
+}
+
+Error no_element(const std::string& what, std::uint32_t id) {
+  return mistake("there is no " + what + " " + (id == kNoId ? "kNoId" : std::to_string(id)),
+                 "SparseMap gives null for an element that is gone or never was");
+}
 
 auto find_observation(std::vector<Observation>& observations, KeyFrameId keyframe) {
   return std::lower_bound(observations.begin(), observations.end(), keyframe,
@@ -47,6 +58,7 @@ MapEdit::MapEdit(SparseMap map)
       own_landmark_(map_.landmarks_.size()) {}
 
 KeyFrame& MapEdit::keyframe(KeyFrameId id) {
+  if (!map_.keyframe(id)) throw no_element("key frame", id);
   auto& slot = map_.keyframes_[id];
   if (!own_keyframe_[id]) {
     slot = std::make_shared<KeyFrame>(*slot);
@@ -56,6 +68,7 @@ KeyFrame& MapEdit::keyframe(KeyFrameId id) {
 }
 
 Landmark& MapEdit::landmark(LandmarkId id) {
+  if (!map_.landmark(id)) throw no_element("landmark", id);
   auto& slot = map_.landmarks_[id];
   if (!own_landmark_[id]) {
     slot = std::make_shared<Landmark>(*slot);
@@ -65,7 +78,11 @@ Landmark& MapEdit::landmark(LandmarkId id) {
 }
 
 void MapEdit::add_keyframe(KeyFrame added) {
-  assert(added.id == map_.keyframes_.size());
+  if (added.id != map_.keyframes_.size())
+    throw mistake("a key frame with id " + std::to_string(added.id) + " is added",
+                  "the next id is " + std::to_string(map_.keyframes_.size()));
+  if (!added.features)
+    throw mistake("a key frame without features is added", "give it an empty Features");
   const std::vector<LandmarkId> landmarks = std::move(added.landmarks);
   added.landmarks.assign(added.features->size(), kNoId);
   added.parent = kNoId;
@@ -92,7 +109,14 @@ LandmarkId MapEdit::add_landmark(Landmark added) {
 }
 
 bool MapEdit::add_observation(LandmarkId id, Observation observation) {
-  if (map_.keyframe(observation.keyframe)->landmarks[observation.feature] != kNoId) return false;
+  const KeyFrame* observer = map_.keyframe(observation.keyframe);
+  if (!observer) throw no_element("key frame", observation.keyframe);
+  if (observation.feature >= observer->landmarks.size())
+    throw mistake(
+        "key frame " + std::to_string(observation.keyframe) + " has no feature " +
+            std::to_string(observation.feature),
+        "features count from 0 to " + std::to_string(observer->landmarks.size()) + " - 1");
+  if (observer->landmarks[observation.feature] != kNoId) return false;
   Landmark& seen = landmark(id);
   const auto place = find_observation(seen.observations, observation.keyframe);
   if (place != seen.observations.end() && place->keyframe == observation.keyframe) return false;
@@ -115,13 +139,19 @@ void MapEdit::remove_observation(LandmarkId id, KeyFrameId from) {
 }
 
 void MapEdit::remove_landmark(LandmarkId id) {
-  for (const Observation& o : map_.landmark(id)->observations)
+  const Landmark* removed = map_.landmark(id);
+  if (!removed) throw no_element("landmark", id);
+  for (const Observation& o : removed->observations)
     keyframe(o.keyframe).landmarks[o.feature] = kNoId;
   map_.landmarks_[id].reset();
   --map_.landmark_count_;
 }
 
 void MapEdit::fuse_landmarks(LandmarkId kept, LandmarkId gone) {
+  if (!map_.landmark(kept)) throw no_element("landmark", kept);
+  if (!map_.landmark(gone)) throw no_element("landmark", gone);
+  if (kept == gone)
+    throw mistake("landmark " + std::to_string(kept) + " is fused with itself", "name two");
   const std::shared_ptr<const Landmark> old = map_.landmarks_[gone];
   remove_landmark(gone);
   map_.successor_[gone] = kept;
@@ -133,8 +163,11 @@ void MapEdit::fuse_landmarks(LandmarkId kept, LandmarkId gone) {
 }
 
 void MapEdit::remove_keyframe(KeyFrameId id) {
-  const std::shared_ptr<const KeyFrame> old = map_.keyframes_[id];
-  assert(old->parent != kNoId);
+  const std::shared_ptr<const KeyFrame> old = map_.shared_keyframe(id);
+  if (!old) throw no_element("key frame", id);
+  if (old->parent == kNoId)
+    throw mistake("key frame " + std::to_string(id) + " is removed, but has no parent",
+                  "the first one stays; update_covisibility() gives the others a parent");
   for (const LandmarkId landmark : old->landmarks)
     if (landmark != kNoId) remove_observation(landmark, id);
   for (const Covisibility& c : old->covisible) set_edge(keyframe(c.keyframe).covisible, id, 0);
@@ -154,6 +187,7 @@ void MapEdit::remove_keyframe(KeyFrameId id) {
 }
 
 void MapEdit::update_covisibility(KeyFrameId id, int min_shared) {
+  if (!map_.keyframe(id)) throw no_element("key frame", id);
   std::map<KeyFrameId, int> shared = count_shared(map_, *map_.keyframe(id));
   const auto strongest =
       std::max_element(shared.begin(), shared.end(),

@@ -5,9 +5,17 @@
 #include <utility>
 
 #include "stillpoint/runtime/stage_error.hpp"
+#include "stillpoint/runtime/stage_requirement.hpp"
 
 namespace stillpoint {
 namespace {
+
+ClassNames checked(ClassNames classes) {
+  require_of_stage(classes.size() >= 2 && classes.size() <= 256,
+                   "classes() gives " + std::to_string(classes.size()) + " names",
+                   "give 2 to 256, that of the background first");
+  return classes;
+}
 
 class StageMaker {
  public:
@@ -26,7 +34,7 @@ class StageMaker {
     Stage<Segmenter> segmenter = make<Segmenter>(config_.segmenter);
     if (segmenter.object)
       classes_ = in_stage("segmentation (" + segmenter.type + ")", {},
-                          [&] { return segmenter.object->classes(); });
+                          [&] { return checked(segmenter.object->classes()); });
     return segmenter;
   }
 

@@ -87,6 +87,7 @@ class PipelineReader {
   void read_source(PipelineConfig& config) {
     const ConfigNode* node = section("source");
     if (!node) add_missing("there is no source section");
+    if (node && !loaded_ && !node->find("type")) return;  // of --dataset, without its file
     config.source = read_stage(node, "source", "source", config);
   }
 
@@ -128,7 +129,9 @@ class PipelineReader {
     OptionRecord record{.name = "outputs", .kind = OptionRecord::Kind::kList};
     const ConfigNode* list = section("outputs");
     if (list && list->kind != ConfigNode::Kind::kList) {
-      faults_.add(list->location, "outputs must be a list, as in [{type: trajectory}]");
+      faults_.add(list->location,
+                  "outputs must be a list, as in [{type: trajectory}]; on the command line, "
+                  "--with TYPE.OPTION=VALUE changes one of them");
     } else if (list) {
       for (std::size_t i = 0; i < list->children.size(); ++i) {
         OptionRecord element;

@@ -135,7 +135,7 @@ std::string Registry::explain_missing(std::string_view kind, std::string_view ty
   for (const fs::path& folder : searched_)
     folders.push_back(folder.string() + (fs::is_directory(folder, error) ? "" : " (not there)"));
   return text + "\n  searched:   " + (folders.empty() ? "nothing" : join(folders)) +
-         "      (add folders with STILLPOINT_PLUGIN_PATH)";
+         "      (add folders by 'plugins: {paths: [DIR]}' or STILLPOINT_PLUGIN_PATH)";
 }
 
 void describe_options(const PluginType& type, OptionVisitor& visitor) {

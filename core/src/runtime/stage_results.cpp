@@ -13,16 +13,17 @@ namespace stillpoint {
 namespace {
 
 constexpr double kLargestSkew = 1e-3;  // of a rotation matrix from an orthonormal one
+constexpr double kSamePose = 1e-6;     // relative difference of two matrices
 
 /// `what` is in the plural: "the labels".
-void check_image(const cv::Mat& image, int type, cv::Size frame, const std::string& what,
+void check_image(const cv::Mat& image, cv::Size frame, const std::string& what,
                  const std::string& remedy) {
-  if (image.type() == type && image.size() == frame) return;
-  const std::string other = image.type() == type ? "" : " of " + cv::typeToString(image.type());
-  throw Error(Fault::kStage,
-              what + " have " + size_text(image.size()) + " pixels" + other +
-                  ", but the frame has " + size_text(frame),
-              "", remedy);
+  require_of_stage(image.type() == CV_8UC1,
+                   what + " are of " + cv::typeToString(image.type()) + ", not of CV_8UC1", remedy);
+  require_of_stage(
+      image.size() == frame,
+      what + " have " + size_text(image.size()) + " pixels, but the frame has " + size_text(frame),
+      remedy);
 }
 
 void check_type(const cv::Mat& image, int type, const std::string& what) {
@@ -32,8 +33,16 @@ void check_type(const cv::Mat& image, int type, const std::string& what) {
 
 bool is_pose(const Pose& pose) {
   const Eigen::Matrix3d rotation = pose.linear();
-  return pose.matrix().allFinite() &&
+  return pose.matrix().allFinite() && rotation.determinant() > 0 &&  // no mirror image
          (rotation * rotation.transpose() - Eigen::Matrix3d::Identity()).norm() < kLargestSkew;
+}
+
+/// Of a correction; `what`: "key frame" or "landmark".
+void check_id(std::uint32_t id, std::size_t end, const std::string& what) {
+  require_of_stage(id < end,
+                   "the correction names " + what + " " +
+                       (id == kNoId ? "kNoId" : std::to_string(id)) + " of " + std::to_string(end),
+                   "use ids of the map that it was computed on");
 }
 
 int highest(const cv::Mat& image) {
@@ -64,6 +73,9 @@ void check_keyframe(const KeyFrame& keyframe, const Frame& frame, const SparseMa
   require_of_stage(keyframe.frame == frame.index,
                    "the key frame is of frame " + std::to_string(keyframe.frame),
                    "KeyFrame::frame must be the index of the frame that was tracked");
+  require_of_stage(keyframe.time == frame.time,
+                   "the time of the key frame is not that of its frame",
+                   "set KeyFrame::time to Frame::time");
   require_of_stage(keyframe.camera != nullptr, "the key frame has no camera",
                    "give it that of the frame");
   require_of_stage(keyframe.features != nullptr, "the key frame has no features",
@@ -122,8 +134,7 @@ void check_frame(const Frame& frame, std::uint32_t index, const Frame* previous)
 
 void check_segmentation(const Segmentation& segmentation, cv::Size frame, std::size_t classes) {
   if (!segmentation.known()) return;
-  check_image(segmentation.labels, CV_8UC1, frame, "the labels",
-              "the segmenter must give one byte per pixel of the frame");
+  check_image(segmentation.labels, frame, "the labels", "give one byte per pixel of the frame");
   const int label = highest(segmentation.labels);
   require_of_stage(label < std::max(1, static_cast<int>(classes)),
                    "a pixel has label " + std::to_string(label) + ", but there are " +
@@ -131,13 +142,13 @@ void check_segmentation(const Segmentation& segmentation, cv::Size frame, std::s
                    "labels count from 0, the background, to classes() - 1");
   check_objects(segmentation, classes);
   if (segmentation.instances.empty()) return;
-  check_image(segmentation.instances, CV_8UC1, frame, "the instances",
-              "the segmenter must give one byte per pixel of the frame");
+  check_image(segmentation.instances, frame, "the instances",
+              "give one byte per pixel of the frame");
   const int instance = highest(segmentation.instances);
   require_of_stage(instance <= static_cast<int>(segmentation.objects.size()),
                    "a pixel belongs to object " + std::to_string(instance) + " of " +
                        std::to_string(segmentation.objects.size()),
-                   "the segmenter must number its instances from 1, as in its list of objects");
+                   "number instances from 1, as in the list of objects");
 }
 
 void check_moving_points(const MovingPoints& moving) {
@@ -159,8 +170,8 @@ void check_evidence(const MapEvidence& evidence) {
 void check_weights(const StaticWeights& weights, const Segmentation& segmentation, cv::Size frame) {
   for (const cv::Mat* image : {&weights.track, &weights.map})
     if (!image->empty())
-      check_image(*image, CV_8UC1, frame, "the weights",
-                  "the decision must give one byte per pixel of the frame, or nothing");
+      check_image(*image, frame, "the weights",
+                  "give one byte per pixel of the frame, or an empty image");
   require_of_stage(
       weights.object_moves.empty() || weights.object_moves.size() == segmentation.objects.size(),
       std::to_string(weights.object_moves.size()) + " objects are judged, but there are " +
@@ -180,6 +191,9 @@ void check_tracking(const TrackResult& result, const Frame& frame, const SparseM
   if (result.keyframe) {
     require_of_stage(!hints.localise_only, "it made a key frame, but the map stays as it is",
                      "make none with TrackHints::localise_only");
+    require_of_stage(result.state == TrackState::kTracking,
+                     "it made a key frame, but is " + std::string(name_of(result.state)),
+                     "a key frame needs a pose: make it with kTracking only");
     check_keyframe(*result.keyframe, frame, map, hints.next_keyframe);
   }
   if (result.state != TrackState::kTracking) return;
@@ -187,6 +201,10 @@ void check_tracking(const TrackResult& result, const Frame& frame, const SparseM
       is_pose(result.world_from_camera) && is_pose(result.reference_from_camera),
       "the pose is no rigid motion",
       "it must be finite, with an orthonormal rotation; return kLost where there is none");
+  require_of_stage(
+      !result.keyframe ||
+          result.keyframe->world_from_camera.isApprox(result.world_from_camera, kSamePose),
+      "the key frame has another pose than its frame", "world_from_camera is the same in both");
   const KeyFrameId end = hints.next_keyframe + (result.keyframe ? 1 : 0);
   require_of_stage(result.reference < end,
                    "the reference is key frame " +
@@ -213,16 +231,28 @@ void check_correction(const MapCorrection& correction, const SparseMap& map) {
   require_of_stage(correction.keyframe_id_end <= map.keyframe_id_end(),
                    "the correction is of a map with more key frames",
                    "keyframe_id_end is that of the map it was computed on");
-  for (const MovedKeyFrame& moved : correction.moved)
+  for (const MovedKeyFrame& moved : correction.moved) {
+    check_id(moved.keyframe, map.keyframe_id_end(), "key frame");
+    require_of_stage(moved.keyframe < correction.keyframe_id_end,
+                     "the correction is of a map with " +
+                         std::to_string(correction.keyframe_id_end) +
+                         " key frames, but moves key frame " + std::to_string(moved.keyframe),
+                     "set keyframe_id_end to that of the map it was computed on");
     require_of_stage(
-        moved.keyframe < map.keyframe_id_end() && is_pose(moved.world_from_camera),
-        "a key frame that is not there or whose pose is no rigid motion is to be moved",
-        "poses must be finite, with an orthonormal rotation");
-  for (const auto& [landmark, position] : correction.landmarks)
-    require_of_stage(
-        landmark < map.landmark_id_end() && position.allFinite(),
-        "a landmark that is not there is to be moved, or one to a place that is not finite",
-        "use ids of the map that close() was given");
+        is_pose(moved.world_from_camera),
+        "the new pose of key frame " + std::to_string(moved.keyframe) + " is no rigid motion",
+        "it must be finite, with an orthonormal rotation");
+  }
+  for (const auto& [landmark, position] : correction.landmarks) {
+    check_id(landmark, map.landmark_id_end(), "landmark");
+    require_of_stage(position.allFinite(),
+                     "the new position of landmark " + std::to_string(landmark) + " is not finite",
+                     "leave out landmarks that were not optimised: they move with their key frame");
+  }
+  for (const auto& [kept, gone] : correction.fused) {
+    check_id(kept, map.landmark_id_end(), "landmark");
+    check_id(gone, map.landmark_id_end(), "landmark");
+  }
 }
 
 }  // namespace stillpoint

@@ -1,8 +1,12 @@
 #include "stillpoint/contracts/sparse_map.hpp"
 
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
+
+#include <functional>
+#include <string>
 
 #include "stillpoint/contracts/map_correction.hpp"
+#include "stillpoint/error.hpp"
 
 namespace stillpoint {
 namespace {
@@ -94,6 +98,44 @@ TEST(SparseMap, LastObservationTakesTheLandmarkAlong) {
   edit.remove_observation(0, 1);
   EXPECT_FALSE(edit.map().landmark(0));
   EXPECT_EQ(edit.map().check(), std::nullopt);
+}
+
+// Errors, where plugins written in haste would read out of bounds.
+TEST(MapEdit, NamesWhatIsNotThere) {
+  const auto message = [](const std::function<void(MapEdit&)>& change) -> std::string {
+    MapEdit edit(make_map());
+    try {
+      change(edit);
+    } catch (const Error& error) {
+      return error.what();
+    }
+    return "";
+  };
+  using ::testing::HasSubstr;
+  EXPECT_THAT(message([](MapEdit& e) { e.landmark(99).found = 2; }),
+              HasSubstr("MapEdit: there is no landmark 99"));
+  EXPECT_THAT(message([](MapEdit& e) { e.keyframe(kNoId).time = 2; }),
+              HasSubstr("there is no key frame kNoId"));
+  EXPECT_THAT(message([](MapEdit& e) {
+                e.add_observation(3, {9, 0});
+              }),
+              HasSubstr("there is no key frame 9"));
+  EXPECT_THAT(message([](MapEdit& e) {
+                e.add_observation(3, {2, 30});
+              }),
+              HasSubstr("key frame 2 has no feature 30; features count from 0 to 30 - 1"));
+  EXPECT_THAT(message([](MapEdit& e) { e.add_keyframe(make_keyframe(7, {})); }),
+              HasSubstr("a key frame with id 7 is added; the next id is 3"));
+  EXPECT_THAT(message([](MapEdit& e) { e.add_keyframe({.id = 3}); }),
+              HasSubstr("without features"));
+  EXPECT_THAT(message([](MapEdit& e) { e.fuse_landmarks(4, 4); }), HasSubstr("with itself"));
+  EXPECT_THAT(message([](MapEdit& e) { e.remove_keyframe(0); }), HasSubstr("the first one stays"));
+  EXPECT_THAT(message([](MapEdit& e) {
+                e.remove_landmark(4);
+                e.remove_landmark(4);
+              }),
+              HasSubstr("there is no landmark 4"));
+  EXPECT_EQ(message([](MapEdit& e) { e.remove_keyframe(1); }), "");
 }
 
 TEST(MapCorrection, NewerKeyFramesAndTheirLandmarksFollow) {

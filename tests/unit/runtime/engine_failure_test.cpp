@@ -171,7 +171,7 @@ TEST_P(FaultOfAStage, WrongResultsEndTheRunWithTheStageThatGaveThem) {
   stages.decision = {std::make_shared<DecisionOnAnotherImage>(), "mine"};
   EXPECT_EQ(message(misjudging, std::move(stages)),
             "decision (mine) failed on frame 0: the weights have 2 x 2 pixels, but the frame has "
-            "1 x 1; the decision must give one byte per pixel of the frame, or nothing");
+            "1 x 1; give one byte per pixel of the frame, or an empty image");
 }
 
 }  // namespace

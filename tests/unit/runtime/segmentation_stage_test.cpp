@@ -223,9 +223,9 @@ TEST(SegmentationStage, LabelsThatDoNotFitTheFrameAreTheSegmentersFault) {
   const cv::Mat pixel(1, 1, CV_8UC1, cv::Scalar(1)), small(3, 4, CV_8UC1, cv::Scalar(0));
   EXPECT_EQ(message({.labels = small}),
             "segmentation (careless) failed on frame 0: the labels have 4 x 3 pixels, but the "
-            "frame has 1 x 1; the segmenter must give one byte per pixel of the frame");
+            "frame has 1 x 1; give one byte per pixel of the frame");
   EXPECT_THAT(message({.labels = cv::Mat(1, 1, CV_32FC1, cv::Scalar(1))}),
-              ::testing::HasSubstr("1 x 1 pixels of CV_32FC1"));
+              ::testing::HasSubstr("the labels are of CV_32FC1"));
   EXPECT_THAT(message({.labels = pixel, .instances = small}),
               ::testing::HasSubstr("the instances"));
   EXPECT_THAT(message({.labels = pixel, .instances = pixel}),

@@ -109,7 +109,7 @@ INSTANTIATE_TEST_SUITE_P(
         LabelFault{"Size", [](Segmentation& s) { s.labels = cv::Mat::zeros(3, 3, CV_8UC1); },
                    "the labels have 3 x 3 pixels, but the frame has 4 x 3"},
         LabelFault{"Type", [](Segmentation& s) { s.labels = cv::Mat::zeros(kSize, CV_32SC1); },
-                   "pixels of CV_32SC1"},
+                   "the labels are of CV_32SC1, not of CV_8UC1; give one byte per pixel"},
         LabelFault{"Class", [](Segmentation& s) { s.labels.at<std::uint8_t>(0) = 3; },
                    "a pixel has label 3, but there are 3 classes"},
         LabelFault{"Instance", [](Segmentation& s) { s.instances.at<std::uint8_t>(0) = 2; },
@@ -134,7 +134,7 @@ TEST(StageResults, WrongWeightsAreRefused) {
   EXPECT_EQ(message({}), "");
   EXPECT_EQ(message({.track = cv::Mat(kSize, CV_8UC1), .object_moves = {true}}), "");
   EXPECT_THAT(message({.track = cv::Mat(2, 4, CV_8UC1)}), HasSubstr("the weights have 4 x 2"));
-  EXPECT_THAT(message({.map = cv::Mat(kSize, CV_32FC1)}), HasSubstr("pixels of CV_32FC1"));
+  EXPECT_THAT(message({.map = cv::Mat(kSize, CV_32FC1)}), HasSubstr("the weights are of CV_32FC1"));
   EXPECT_THAT(message({.object_moves = {true, false}}),
               HasSubstr("2 objects are judged, but there are 1"));
 }
@@ -153,7 +153,7 @@ TEST(StageResults, WrongMotionAndEvidenceAreRefused) {
 
 TrackResult right_result(const Frame& frame) {
   TrackResult result{.state = TrackState::kTracking, .reference = 3};
-  KeyFrame keyframe{.id = 3, .frame = frame.index, .camera = frame.camera};
+  KeyFrame keyframe{.id = 3, .frame = frame.index, .time = frame.time, .camera = frame.camera};
   keyframe.features = std::make_shared<const Features>(
       Features{.keypoints = {{}, {}}, .descriptors = {{}, {}}, .depth = {1, 1}});
   keyframe.track_weights = keyframe.map_weights = {255, 255};
@@ -188,6 +188,8 @@ INSTANTIATE_TEST_SUITE_P(
                    "the pose is no rigid motion"},
         TrackFault{"Scaled", [](TrackResult& r) { r.reference_from_camera.linear() *= 1.1; },
                    "the pose is no rigid motion"},
+        TrackFault{"Mirrored", [](TrackResult& r) { r.world_from_camera.linear()(0, 0) = -1; },
+                   "the pose is no rigid motion"},
         TrackFault{"NoReference", [](TrackResult& r) { r.reference = kNoId; },
                    "the reference is key frame kNoId of 4"},
         TrackFault{"ReferenceToCome", [](TrackResult& r) { r.reference = 4; },
@@ -195,6 +197,8 @@ INSTANTIATE_TEST_SUITE_P(
         TrackFault{"Id", [](TrackResult& r) { r.keyframe->id = 2; },
                    "the key frame has id 2, but the next one is 3"},
         TrackFault{"Frame", [](TrackResult& r) { r.keyframe->frame = 6; }, "is of frame 6"},
+        TrackFault{"Time", [](TrackResult& r) { r.keyframe->time = kNan; },
+                   "the time of the key frame is not that of its frame"},
         TrackFault{"Camera", [](TrackResult& r) { r.keyframe->camera = nullptr; },
                    "the key frame has no camera"},
         TrackFault{"Features", [](TrackResult& r) { r.keyframe->features = nullptr; },
@@ -205,7 +209,11 @@ INSTANTIATE_TEST_SUITE_P(
                    "sees a landmark that is not in the map"},
         TrackFault{"KeyFramePose",
                    [](TrackResult& r) { r.keyframe->world_from_camera.matrix()(0, 0) = kNan; },
-                   "the pose of the key frame is no rigid motion"}),
+                   "the pose of the key frame is no rigid motion"},
+        TrackFault{"OtherPose", [](TrackResult& r) { r.world_from_camera.translation().x() = 5; },
+                   "the key frame has another pose than its frame"},
+        TrackFault{"LostKeyFrame", [](TrackResult& r) { r.state = TrackState::kLost; },
+                   "it made a key frame, but is LOST"}),
     [](const auto& test) { return test.param.name; });
 
 TEST(StageResults, AMapThatStaysAsItIsGetsNoKeyFrame) {
@@ -259,9 +267,14 @@ TEST(StageResults, WrongCorrectionsAreRefused) {
   };
   EXPECT_EQ(message({.keyframe_id_end = 2, .moved = {{1, Pose::Identity()}}}), "");
   EXPECT_THAT(message({.keyframe_id_end = 3}), HasSubstr("of a map with more key frames"));
-  EXPECT_THAT(message({.moved = {{2, Pose::Identity()}}}), HasSubstr("not there"));
-  EXPECT_THAT(message({.moved = {{1, Pose(Eigen::Scaling(2.0))}}}), HasSubstr("no rigid motion"));
-  EXPECT_THAT(message({.landmarks = {{0, Eigen::Vector3d::Zero()}}}), HasSubstr("a landmark"));
+  EXPECT_THAT(message({.moved = {{2, Pose::Identity()}}}), HasSubstr("names key frame 2 of 2"));
+  EXPECT_THAT(message({.moved = {{1, Pose::Identity()}}}),
+              HasSubstr("of a map with 0 key frames, but moves key frame 1"));
+  EXPECT_THAT(message({.keyframe_id_end = 2, .moved = {{1, Pose(Eigen::Scaling(2.0))}}}),
+              HasSubstr("the new pose of key frame 1 is no rigid motion"));
+  EXPECT_THAT(message({.landmarks = {{0, Eigen::Vector3d::Zero()}}}),
+              HasSubstr("names landmark 0 of 0"));
+  EXPECT_THAT(message({.fused = {{0, kNoId}}}), HasSubstr("names landmark 0 of 0"));
 }
 
 TEST(StageResults, WhoIsLostNeedsNoPose) {

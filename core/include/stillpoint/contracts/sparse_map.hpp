@@ -67,7 +67,8 @@ class STILLPOINT_EXPORT SparseMap {
 };
 
 /// Makes the next version of a map: elements are cloned when first changed, so that every copy
-/// others hold stays as it is. Keeps observations of key frames and landmarks consistent.
+/// others hold stays as it is. Keeps observations of key frames and landmarks consistent. Throws
+/// Error(kStage) for ids and features that are not there.
 class STILLPOINT_EXPORT MapEdit {
  public:
   explicit MapEdit(SparseMap map);
