@@ -7,6 +7,7 @@
 #include <string>
 
 #include "mcap_writer/mcap_writer.hpp"
+#include "run_messages/pose_messages.hpp"
 
 namespace stillpoint::output_mcap {
 
@@ -51,17 +52,15 @@ class McapOutput final : public Output {
 
   void write_pose(double time, const TrackResult& result);
   void write_image(const Frame& frame);
-  void write_path(const RunSummary& summary, const Header& header);
   void write_keyframes(const SparseMap& map, const Header& header);
-  void write_landmarks(const SparseMap& map, const Header& header);
-  void write_dense_map(const RunSummary& summary, const Header& header);
   void write_voxels(const RunSummary& summary, const Header& header);
   void write_cost_map(const RunSummary& summary, const Header& header);
 
   McapWriter writer_;
   const Topics topics_;
   const std::optional<ImageTopics> image_topics_;
-  std::optional<StampedPose> previous_;  // of the frame before, when it was tracked; in the map
+  const run_messages::Mounting mounting_;
+  run_messages::PoseSequence poses_{mounting_};
 };
 
 }  // namespace stillpoint::output_mcap

@@ -6,11 +6,9 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
-#include <opencv2/imgcodecs.hpp>
 #include <string>
 #include <string_view>
 
-#include "output_mcap/cost_map_file.hpp"
 #include "stillpoint/testing/test_recording.hpp"
 #include "support/recording_writer.hpp"
 
@@ -18,7 +16,6 @@ namespace stillpoint::output_mcap {
 namespace {
 
 namespace fs = std::filesystem;
-using mcap_writer::OccupancyGrid;
 using ::testing::HasSubstr;
 using testing::TemporaryFolder;
 
@@ -89,23 +86,6 @@ TEST_F(McapOutputTest, AFullDiskIsToldOnce) {
   EXPECT_NO_THROW(output.frame(report_at(2, TrackState::kTracking)));
 }
 
-TEST_F(McapOutputTest, ACostMapIsReadWithItsPlaceInTheWorld) {
-  cv::Mat image(2, 3, CV_8UC1, cv::Scalar(205));
-  image.at<std::uint8_t>(0, 0) = 0;    // upper left: occupied
-  image.at<std::uint8_t>(1, 2) = 254;  // lower right: free
-  cv::imwrite((folder_.path() / "map.pgm").string(), image);
-  folder_.write("map.yaml",
-                "image: \"map.pgm\"\nmode: trinary\nresolution: 0.05\norigin: [-1, 2, 0]\n"
-                "world_from_map: [0, 1.5, 0, 0.5, -0.5, 0.5, 0.5]\n");
-  const auto grid = read_cost_map(folder_.path());
-  ASSERT_TRUE(grid);
-  EXPECT_EQ(grid->resolution, 0.05);
-  const cv::Mat expected = (cv::Mat_<std::int8_t>(2, 3) << -1, -1, 0, 100, -1, -1);
-  EXPECT_EQ(cv::norm(grid->cells, expected, cv::NORM_INF), 0);
-  // x of the floor is z of the world, y is -x, z is -y.
-  EXPECT_LT((grid->header_from_origin.translation() - Eigen::Vector3d(-2, 1.5, -1)).norm(), 1e-9);
-}
-
 TEST_F(McapOutputTest, ADamagedOctreeIsNamed) {
   folder_.write("map.ot", "# Octomap OcTree file\nid ColorOcTree\nsize 7\nres 0.05\ndata\n");
   poses_.push_back({.time = 1});
@@ -118,26 +98,6 @@ TEST_F(McapOutputTest, ADamagedOctreeIsNamed) {
   } catch (const Error& error) {
     EXPECT_EQ(error.fault(), Fault::kData);
     EXPECT_THAT(error.what(), HasSubstr("map.ot"));
-  }
-}
-
-TEST_F(McapOutputTest, WithoutACostMapThereIsNone) {
-  EXPECT_FALSE(read_cost_map(folder_.path()));
-  EXPECT_FALSE(read_cost_map({}));
-}
-
-TEST_F(McapOutputTest, ABrokenCostMapIsNamed) {
-  for (const char* yaml : {"image: map.pgm\nresolution: 0.05\norigin: [0, 0, 0]\n"
-                           "world_from_map: [0, 0, 0, 0, 0, 0, 1]\n",  // no such image
-                           "resolution: [\n", "resolution: 0.05\n"}) {
-    folder_.write("map.yaml", yaml);
-    try {
-      read_cost_map(folder_.path());
-      FAIL() << yaml;
-    } catch (const Error& error) {
-      EXPECT_EQ(error.fault(), Fault::kData);
-      EXPECT_THAT(error.what(), HasSubstr("map.yaml: cannot read the cost map"));
-    }
   }
 }
 

@@ -50,8 +50,8 @@ foreach(file share/man/man1/stillpoint-run.1.gz share/bash-completion/completion
   endif()
 endforeach()
 expect_depends(stillpoint libopencv-dnn406 libyaml-cpp0.7 libsqlite3-0 libcairo2)
-if(output MATCHES "libfreenect|libopenni2")
-  message(FATAL_ERROR "the package stillpoint depends on the drivers of live cameras:\n${output}")
+if(output MATCHES "libfreenect|libopenni2|libddsc")
+  message(FATAL_ERROR "the package stillpoint depends on libraries that are loaded late:\n${output}")
 endif()
 
 unpack(libstillpoint-dev)

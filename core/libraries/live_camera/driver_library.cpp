@@ -13,13 +13,13 @@ DriverLibrary::DriverLibrary(std::string file, const std::string& package)
   if (handle_) return;
   const char* said = ::dlerror();  // begins with the file
   throw Error(Fault::kUsage, said ? said : file_ + ": cannot be loaded", {},
-              "install the camera's driver, on Debian the package " + package);
+              "install it, on Debian the package " + package);
 }
 
 void* DriverLibrary::symbol(const char* name) const {
   if (void* preloaded = ::dlsym(RTLD_DEFAULT, name)) return preloaded;
   if (void* own = ::dlsym(handle_, name)) return own;
-  throw Error(Fault::kUsage, std::string("the camera's driver has no function ") + name, file_,
+  throw Error(Fault::kUsage, std::string("it has no function ") + name, file_,
               "it is of another version than the one that Stillpoint was built for");
 }
 

@@ -15,7 +15,7 @@ using ::testing::HasSubstr;
 TEST(DriverLibrary, SaysWhichPackageIsMissing) {
   EXPECT_THAT(error_text(Fault::kUsage, [] { DriverLibrary("libnone.so.7", "libnone7"); }),
               AllOf(HasSubstr("libnone.so.7: cannot open shared object file"),
-                    HasSubstr("install the camera's driver, on Debian the package libnone7")));
+                    HasSubstr("install it, on Debian the package libnone7")));
 }
 
 TEST(DriverLibrary, FindsItsFunctions) {
@@ -26,7 +26,7 @@ TEST(DriverLibrary, FindsItsFunctions) {
 TEST(DriverLibrary, SaysWhichFunctionIsMissing) {
   const DriverLibrary mathematics("libm.so.6", "libc6");
   EXPECT_THAT(error_text(Fault::kUsage, [&] { mathematics.function<void()>("freenect_init"); }),
-              AllOf(HasSubstr("libm.so.6: the camera's driver has no function freenect_init"),
+              AllOf(HasSubstr("libm.so.6: it has no function freenect_init"),
                     HasSubstr("another version")));
 }
 

@@ -69,6 +69,12 @@ constexpr std::array kDefinitions{
                "std_msgs/Header header\nuint32 height\nuint32 width\n"
                "sensor_msgs/PointField[] fields\nbool is_bigendian\nuint32 point_step\n"
                "uint32 row_step\nuint8[] data\nbool is_dense\n"},
+    Definition{"octomap_msgs/Octomap",
+               "std_msgs/Header header\nbool binary\nstring id\nfloat64 resolution\nint8[] data\n"},
+    Definition{"diagnostic_msgs/KeyValue", "string key\nstring value\n"},
+    Definition{"diagnostic_msgs/DiagnosticStatus",
+               "byte OK=0\nbyte WARN=1\nbyte ERROR=2\nbyte STALE=3\nbyte level\nstring name\n"
+               "string message\nstring hardware_id\ndiagnostic_msgs/KeyValue[] values\n"},
     Definition{"visualization_msgs/UVCoordinate", "float32 u\nfloat32 v\n"},
     Definition{"visualization_msgs/MeshFile", "string filename\nuint8[] data\n"},
     Definition{"visualization_msgs/Marker",

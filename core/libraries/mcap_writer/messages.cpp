@@ -223,4 +223,29 @@ Bytes cdr_of(const OccupancyGrid& message) {
   return std::move(out).take();
 }
 
+Bytes cdr_of(const Octree& message) {
+  CdrWriter out;
+  put(out, message.header);
+  out.number(std::uint8_t{1});  // binary
+  out.text("OcTree");           // as which viewers take it, whatever else the tree could hold
+  out.number(message.resolution);
+  out.count(message.nodes.size());
+  out.raw(message.nodes);
+  return std::move(out).take();
+}
+
+Bytes cdr_of(const Diagnosis& message) {
+  CdrWriter out;
+  out.number(static_cast<std::uint8_t>(message.level));
+  out.text(message.name);
+  out.text(message.message);
+  out.text("");  // hardware_id
+  out.count(message.values.size());
+  for (const auto& [key, value] : message.values) {
+    out.text(key);
+    out.text(value);
+  }
+  return std::move(out).take();
+}
+
 }  // namespace stillpoint::mcap_writer

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <opencv2/core/mat.hpp>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "mcap_writer/byte_writer.hpp"
@@ -103,6 +104,23 @@ struct OccupancyGrid {
   cv::Mat cells;         ///< CV_8SC1; first row: smallest y
 };
 
+/// In OctoMap's binary format: occupied and free voxels.
+struct Octree {
+  static constexpr const char* kType = "octomap_msgs/Octomap";
+  Header header;
+  double resolution = 0;  ///< metres
+  Bytes nodes;            ///< what follows the header of a .bt file
+};
+
+/// How a part of a robot does.
+struct Diagnosis {
+  static constexpr const char* kType = "diagnostic_msgs/DiagnosticStatus";
+  enum class Level : std::uint8_t { kOk = 0, kWarning = 1, kError = 2 } level = Level::kOk;
+  std::string name;                                         ///< of the part
+  std::string message;                                      ///< of a word or two
+  std::vector<std::pair<std::string, std::string>> values;  ///< by keys
+};
+
 Bytes cdr_of(const Text& message);
 Bytes cdr_of(const Image& message);
 Bytes cdr_of(const CompressedImage& message);
@@ -114,5 +132,7 @@ Bytes cdr_of(const Transform& message);
 Bytes cdr_of(const Odometry& message);
 Bytes cdr_of(const Path& message);
 Bytes cdr_of(const OccupancyGrid& message);
+Bytes cdr_of(const Octree& message);
+Bytes cdr_of(const Diagnosis& message);
 
 }  // namespace stillpoint::mcap_writer

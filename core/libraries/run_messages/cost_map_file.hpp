@@ -6,10 +6,10 @@
 
 #include "mcap_writer/messages.hpp"
 
-namespace stillpoint::output_mcap {
+namespace stillpoint::run_messages {
 
 /// In Stillpoint's world, without a header. Nothing when the folder is empty or holds no cost map,
 /// which is so where no floor was found. Throws Error(kData) for files that are none.
 std::optional<mcap_writer::OccupancyGrid> read_cost_map(const std::filesystem::path& folder);
 
-}  // namespace stillpoint::output_mcap
+}  // namespace stillpoint::run_messages

@@ -1,4 +1,4 @@
-#include "output_mcap/cost_map_file.hpp"
+#include "run_messages/cost_map_file.hpp"
 
 #include <yaml-cpp/yaml.h>
 
@@ -12,7 +12,7 @@
 
 #include "stillpoint/error.hpp"
 
-namespace stillpoint::output_mcap {
+namespace stillpoint::run_messages {
 namespace {
 
 using mcap_writer::OccupancyGrid;
@@ -63,4 +63,4 @@ std::optional<OccupancyGrid> read_cost_map(const std::filesystem::path& folder) 
   }
 }
 
-}  // namespace stillpoint::output_mcap
+}  // namespace stillpoint::run_messages

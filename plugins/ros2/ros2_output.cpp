@@ -1,0 +1,196 @@
+#include "ros2/ros2_output.hpp"
+
+#include <cmath>
+#include <utility>
+
+#include "run_messages/cost_map_file.hpp"
+#include "run_messages/octree_file.hpp"
+#include "run_messages/point_clouds.hpp"
+
+namespace stillpoint::ros2 {
+namespace {
+
+using mcap_writer::Diagnosis;
+using run_messages::Mounting;
+
+constexpr std::chrono::seconds kLastPatience(2);  // at the end, for the readers' answers
+
+Mounting mounting_of(const Ros2Output::Options& options) {
+  Mounting mounting{.map = options.map_frame, .base = options.base_frame};
+  const std::vector<double>& numbers = options.base_from_camera;
+  if (numbers.empty()) return mounting;
+  const bool seven = numbers.size() == 7;
+  const Eigen::Quaterniond rotation =
+      seven ? Eigen::Quaterniond(numbers[6], numbers[3], numbers[4], numbers[5])
+            : Eigen::Quaterniond(0, 0, 0, 0);
+  if (!(std::abs(rotation.norm() - 1) < 0.01))
+    throw Error(Fault::kUsage, "needs x, y, z and a quaternion x, y, z, w of length 1",
+                "base_from_camera",
+                "'ros2 run tf2_ros tf2_echo BASE CAMERA' shows them, where tf knows both frames");
+  mounting.base_from_camera = Pose(rotation.normalized());
+  mounting.base_from_camera.translation() = Eigen::Vector3d(numbers[0], numbers[1], numbers[2]);
+  mounting.map_from_world = mounting.base_from_camera;
+  return mounting;
+}
+
+/// Every `period` seconds of the recording.
+bool due(double& next, double time, double period) {
+  if (time < next) return false;
+  next = time + period;
+  return true;
+}
+
+TrackedPose tracked_pose(const FrameReport& report) {
+  const TrackResult& result = report.result;
+  return {.frame = report.frame->index,
+          .time = report.frame->time,
+          .state = result.state,
+          .reference = result.reference,
+          .reference_from_camera = result.reference_from_camera,
+          .world_from_camera = result.world_from_camera};
+}
+
+}  // namespace
+
+void Ros2Output::Options::visit(OptionVisitor& v) {
+  v("name", name, {.help = "before the names of all topics but /tf"});
+  v("domain", domain, {.min = -1, .max = 232, .help = "of DDS; -1: that of ROS_DOMAIN_ID, or 0"});
+  v("map_frame", map_frame, {.help = "where the base was at the first frame"});
+  v("base_frame", base_frame, {.help = "of the robot; it must have no parent in tf"});
+  v("base_from_camera", base_from_camera,
+    {.help = "x, y, z and quaternion x, y, z, w of the camera in the base; empty: the base is the "
+             "camera, and the map has x where it looked, z up"});
+  v("path_period", path_period, {.min = 0, .unit = "s", .help = "from one path to the next"});
+  v("map_period", map_period,
+    {.min = 0, .unit = "s", .help = "from one landmarks and dense_map to the next"});
+}
+
+Ros2Output::Ros2Output(const Options& options, const StageContext& context)
+    : options_(options),
+      log_(context.log),
+      mounting_(mounting_of(options)),
+      sequence_(mounting_),
+      participant_(options.domain),
+      topics_([&] {
+        const auto writer = [&](const char* name, const char* type, Kept kept) {
+          return Writer(participant_, options.name + name, type, kept);
+        };
+        return Topics{
+            .transform = Writer(participant_, "/tf", mcap_writer::Transform::kType, Kept::kShortly),
+            .static_transform =
+                Writer(participant_, "/tf_static", mcap_writer::Transform::kType, Kept::kLast),
+            .odometry = writer("/odom", mcap_writer::Odometry::kType, Kept::kShortly),
+            .pose = writer("/pose", mcap_writer::PoseMessage::kType, Kept::kShortly),
+            .state = writer("/state", Diagnosis::kType, Kept::kLast),
+            .path = writer("/path", mcap_writer::Path::kType, Kept::kLast),
+            .landmarks = writer("/landmarks", mcap_writer::PointCloud::kType, Kept::kLast),
+            .dense_map = writer("/dense_map", mcap_writer::PointCloud::kType, Kept::kLast),
+            .octomap = writer("/octomap", mcap_writer::Octree::kType, Kept::kLast),
+            .grid = writer("/grid", mcap_writer::OccupancyGrid::kType, Kept::kLast)};
+      }()) {
+  mcap_writer::Transform world;
+  world.header.frame = mounting_.map;
+  world.child = world_frame();
+  world.header_from_child = mounting_.map_from_world;
+  publish(topics_.static_transform, world);
+}
+
+std::string Ros2Output::world_frame() const { return mounting_.map + "_optical"; }
+
+template <class Message>
+void Ros2Output::publish(const Writer& topic, const Message& message) {
+  if (!topic.write(cdr_of(message))) ++refused_;
+}
+
+void Ros2Output::frame(const FrameReport& report) {
+  const double time = report.frame->time;
+  poses_.push_back(tracked_pose(report));
+  publish_state(report);
+  if (const auto messages = sequence_.next(time, report.result)) {
+    publish(topics_.transform, messages->transform);
+    publish(topics_.odometry, messages->odometry);
+    publish(topics_.pose, messages->pose);
+  }
+  if (topics_.path.wanted() && due(next_path_, time, options_.path_period))
+    publish_path(*report.map, poses_, time);
+  if (topics_.landmarks.wanted() && due(next_map_, time, options_.map_period))
+    publish_landmarks(*report.map, time);
+  if (run_ && topics_.dense_map.wanted() && time >= next_dense_map_)
+    if (const auto points = run_->dense_map()) {  // or with the next frame
+      publish(topics_.dense_map, run_messages::dense_cloud(*points, mounting_, time));
+      next_dense_map_ = time + options_.map_period;
+    }
+}
+
+void Ros2Output::publish_state(const FrameReport& report) {
+  const TrackResult& result = report.result;
+  const bool tracking = result.state == TrackState::kTracking;
+  const bool lost = result.state == TrackState::kLost;
+  Diagnosis state{.level = tracking ? Diagnosis::Level::kOk : Diagnosis::Level::kWarning,
+                  .name = options_.name,
+                  .message = lost ? "lost" : name_of(result.state)};
+  state.values = {{"frame", std::to_string(report.frame->index)},
+                  {"inliers", std::to_string(result.inliers)},
+                  {"loops_closed", std::to_string(report.loops_closed)}};
+  if (tracking && result.uncertainty)
+    state.values.emplace_back("poorly_constrained",
+                              result.uncertainty->poorly_constrained() ? "true" : "false");
+  publish(topics_.state, state);
+}
+
+void Ros2Output::publish_path(const SparseMap& map, const std::vector<TrackedPose>& poses,
+                              double time) {
+  publish(topics_.path, run_messages::path_of(map, poses, mounting_, time));
+}
+
+void Ros2Output::publish_landmarks(const SparseMap& map, double time) {
+  publish(topics_.landmarks, run_messages::landmark_cloud(map, mounting_, time));
+}
+
+void Ros2Output::finish(const RunSummary& summary) {
+  run_.reset();
+  if (!summary.failure.empty())
+    publish(topics_.state, Diagnosis{.level = Diagnosis::Level::kError,
+                                     .name = options_.name,
+                                     .message = summary.failure});
+  if (!summary.poses.empty()) {
+    const double time = summary.poses.back().time;
+    if (topics_.path.wanted()) publish_path(summary.map, summary.poses, time);
+    if (topics_.landmarks.wanted()) publish_landmarks(summary.map, time);
+    if (topics_.dense_map.wanted())
+      if (const auto points = summary.dense_map(); !points.empty())
+        publish(topics_.dense_map, run_messages::dense_cloud(points, mounting_, time));
+    publish_files(summary.map_directory, time);
+  }
+  wait_for_readers();
+  if (refused_ > 0)
+    log_(LogLevel::kWarning,
+         "a reader was too slow: " + std::to_string(refused_) + " messages could not be published");
+}
+
+void Ros2Output::publish_files(const std::filesystem::path& map_directory, double time) {
+  if (topics_.octomap.wanted())
+    if (auto octree = run_messages::read_octree_message(map_directory)) {
+      octree->header = {time, world_frame()};
+      publish(topics_.octomap, *octree);
+    }
+  if (topics_.grid.wanted())
+    if (auto grid = run_messages::read_cost_map(map_directory)) {
+      grid->header = {time, mounting_.map};
+      grid->header_from_origin = mounting_.map_from_world * grid->header_from_origin;
+      publish(topics_.grid, *grid);
+    }
+}
+
+/// What is still on its way is lost when the process ends.
+void Ros2Output::wait_for_readers() const {
+  using std::chrono::steady_clock;
+  const auto deadline = steady_clock::now() + kLastPatience;
+  for (const Writer* topic :
+       {&topics_.transform, &topics_.odometry, &topics_.pose, &topics_.state, &topics_.path,
+        &topics_.landmarks, &topics_.dense_map, &topics_.octomap, &topics_.grid})
+    topic->wait_for_readers(
+        std::chrono::duration_cast<std::chrono::milliseconds>(deadline - steady_clock::now()));
+}
+
+}  // namespace stillpoint::ros2

@@ -1,0 +1,65 @@
+// What a run finds, published while it goes.
+#pragma once
+
+#include <stillpoint/sdk.hpp>
+#include <string>
+#include <vector>
+
+#include "ros2/participant.hpp"
+#include "run_messages/mounting.hpp"
+#include "run_messages/pose_messages.hpp"
+
+namespace stillpoint::ros2 {
+
+/// Of every frame tf, odometry, pose and state; of time to time, where somebody reads them, path,
+/// landmarks and dense map; at the end these, octree and occupancy grid. A reader that is too slow
+/// loses messages.
+class Ros2Output final : public Output {
+ public:
+  struct Options {
+    std::string name = "stillpoint";  ///< before the names of all topics but /tf
+    int domain = -1;                  ///< negative: that of ROS_DOMAIN_ID, or 0
+    std::string map_frame = "map";
+    std::string base_frame = mcap_writer::kCameraFrame;
+    std::vector<double> base_from_camera;  ///< x, y, z, then quaternion x, y, z, w; empty: the base
+                                           ///< is the camera
+    double path_period = 1.0;              ///< seconds
+    double map_period = 5.0;               ///< seconds
+
+    void visit(OptionVisitor& visitor);
+  };
+
+  Ros2Output(const Options& options, const StageContext& context);
+
+  void begin(const std::shared_ptr<LiveRun>& run) override { run_ = run; }
+  void frame(const FrameReport& report) override;
+  void finish(const RunSummary& summary) override;
+
+ private:
+  struct Topics {
+    Writer transform, static_transform, odometry, pose, state, path, landmarks, dense_map, octomap,
+        grid;
+  };
+
+  template <class Message>
+  void publish(const Writer& topic, const Message& message);
+  void publish_state(const FrameReport& report);
+  void publish_path(const SparseMap& map, const std::vector<TrackedPose>& poses, double time);
+  void publish_landmarks(const SparseMap& map, double time);
+  void publish_files(const std::filesystem::path& map_directory, double time);
+  void wait_for_readers() const;
+  std::string world_frame() const;
+
+  const Options options_;
+  std::function<void(LogLevel, std::string_view)> log_;
+  const run_messages::Mounting mounting_;
+  run_messages::PoseSequence sequence_;
+  Participant participant_;
+  Topics topics_;
+  std::shared_ptr<LiveRun> run_;
+  std::vector<TrackedPose> poses_;
+  double next_path_ = 0, next_map_ = 0, next_dense_map_ = 0;  // seconds
+  std::size_t refused_ = 0;                                   // messages
+};
+
+}  // namespace stillpoint::ros2

@@ -1,0 +1,145 @@
+#include "ros2/ros2_output.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "bag/bag_reader.hpp"
+#include "bag/messages.hpp"
+#include "support/dds_loopback.hpp"
+#include "support/error_text.hpp"
+#include "support/recording_writer.hpp"
+
+namespace stillpoint::ros2 {
+namespace {
+
+using bag::ByteReader;
+using ::testing::AllOf;
+using testing::error_text;
+using ::testing::HasSubstr;
+using testing::loopback_domain;
+
+constexpr auto kCdr = bag::Serialisation::kCdr;
+
+FrameReport report_at(double time, TrackState state, const Pose& world_from_camera) {
+  FrameReport report;
+  report.frame = std::make_shared<const Frame>(Frame{.time = time});
+  report.result.state = state;
+  report.result.world_from_camera = world_from_camera;
+  report.map = std::make_shared<const SparseMap>();
+  return report;
+}
+
+/// What is on the topics of an output, read with the decoder of bags.
+class Ros2OutputTest : public ::testing::Test {
+ protected:
+  Ros2OutputTest() { options_.domain = loopback_domain(); }
+
+  Reader reader(const std::string& topic, std::string_view type) const {
+    return {participant_, topic, type, 10, true};
+  }
+  static std::optional<Bytes> taken(const Reader& from) {
+    return from.take(std::chrono::steady_clock::now() + std::chrono::milliseconds(1));
+  }
+  RunSummary summary() const {
+    return {.map = map_, .poses = poses_, .source = source_, .times = times_};
+  }
+
+  const Participant participant_{loopback_domain()};
+  Ros2Output::Options options_;
+  SparseMap map_;
+  std::vector<TrackedPose> poses_;
+  SourceReport source_;
+  std::vector<StageTime> times_;
+};
+
+TEST_F(Ros2OutputTest, PublishesPosesOfTheBase) {
+  options_.base_frame = "base_link";
+  options_.base_from_camera = {0, 0, 1, -0.5, 0.5, -0.5, 0.5};  // looks forward
+  const Reader tf = reader("/tf", "tf2_msgs/TFMessage");
+  Ros2Output output(options_, {});
+  output.frame(report_at(2.5, TrackState::kTracking, Pose(Eigen::Translation3d(0, 0, 2))));
+  const auto message = taken(tf);
+  ASSERT_TRUE(message);
+  const auto transforms = bag::read_transforms(*message, kCdr);
+  ASSERT_EQ(transforms.size(), 1U);
+  EXPECT_EQ(transforms[0].parent, "map");
+  EXPECT_EQ(transforms[0].child, "base_link");
+  const Eigen::Vector3d position = transforms[0].parent_from_child.translation();
+  EXPECT_LT((position - Eigen::Vector3d(2, 0, 0)).norm(), 1e-9);
+}
+
+TEST_F(Ros2OutputTest, ALostCameraHasAStateAndNoPose) {
+  const Reader pose = reader("stillpoint/pose", "geometry_msgs/PoseStamped");
+  const Reader state = reader("stillpoint/state", "diagnostic_msgs/DiagnosticStatus");
+  Ros2Output output(options_, {});
+  output.frame(report_at(1, TrackState::kLost, Pose::Identity()));
+  EXPECT_FALSE(taken(pose));
+  const auto message = taken(state);
+  ASSERT_TRUE(message);
+  ByteReader fields(*message, kCdr);
+  EXPECT_EQ(fields.number<std::uint8_t>(), 1);  // WARN
+  EXPECT_EQ(fields.text(), "stillpoint");
+  EXPECT_EQ(fields.text(), "lost");
+}
+
+TEST_F(Ros2OutputTest, PublishesAPathOnceASecond) {
+  const Reader path = reader("stillpoint/path", "nav_msgs/Path");
+  Ros2Output output(options_, {});
+  for (int i = 0; i < 20; ++i)
+    output.frame(report_at(0.1 * i, TrackState::kTracking, Pose::Identity()));
+  std::vector<std::uint32_t> lengths;
+  while (const auto message = taken(path)) {
+    ByteReader fields(*message, kCdr);
+    fields.skip(8);
+    EXPECT_EQ(fields.text(), "map");
+    lengths.push_back(fields.number<std::uint32_t>());
+  }
+  EXPECT_EQ(lengths, (std::vector<std::uint32_t>{1, 11}));
+}
+
+TEST_F(Ros2OutputTest, PublishesTheMapFilesAtTheEnd) {
+  const testing::TemporaryFolder folder;
+  folder.write("map.bt", "# Octomap OcTree binary file\nid OcTree\nsize 1\nres 0.05\ndata\nab");
+  const Reader octomap = reader("stillpoint/octomap", "octomap_msgs/Octomap");
+  Ros2Output output(options_, {});
+  poses_.push_back({.time = 1});
+  RunSummary run = summary();
+  run.map_directory = folder.path();
+  output.finish(run);
+  const auto message = taken(octomap);
+  ASSERT_TRUE(message);
+  EXPECT_EQ(bag::header_of(*message, kCdr).frame, "map_optical");
+  ByteReader fields(*message, kCdr);
+  fields.skip(8);
+  fields.text();
+  EXPECT_EQ(fields.number<std::uint8_t>(), 1);
+  EXPECT_EQ(fields.text(), "OcTree");
+  EXPECT_EQ(fields.number<double>(), 0.05);
+  EXPECT_EQ(fields.number<std::uint32_t>(), 2U);
+}
+
+TEST_F(Ros2OutputTest, AFailureIsAState) {
+  const Reader state = reader("stillpoint/state", "diagnostic_msgs/DiagnosticStatus");
+  Ros2Output output(options_, {});
+  RunSummary run = summary();
+  run.failure = "the tracker failed";
+  output.finish(run);
+  const auto message = taken(state);
+  ASSERT_TRUE(message);
+  ByteReader fields(*message, kCdr);
+  EXPECT_EQ(fields.number<std::uint8_t>(), 2);  // ERROR
+  fields.text();
+  EXPECT_EQ(fields.text(), "the tracker failed");
+}
+
+TEST_F(Ros2OutputTest, RefusesAMountingThatIsNone) {
+  for (const std::vector<double>& numbers :
+       {std::vector<double>{1, 2, 3}, {0, 0, 0, 0, 0, 0, 0}, {0, 0, 0, 1, 1, 0, 0}}) {
+    options_.base_from_camera = numbers;
+    EXPECT_THAT(error_text(Fault::kUsage, [&] { Ros2Output(options_, {}); }),
+                AllOf(HasSubstr("base_from_camera: needs x, y, z"), HasSubstr("tf2_echo")));
+  }
+}
+
+}  // namespace
+}  // namespace stillpoint::ros2

@@ -1,0 +1,176 @@
+#include "ros2/ros2_source.hpp"
+
+#include <chrono>
+#include <cmath>
+#include <sstream>
+
+#include "bag/bag_reader.hpp"
+#include "bag/camera_model.hpp"
+#include "bag/raw_image.hpp"
+
+namespace stillpoint::ros2 {
+namespace {
+
+using std::chrono::steady_clock;
+
+template <class... Parts>
+std::string text_of(const Parts&... parts) {
+  std::ostringstream text;
+  (text << ... << parts);
+  return text.str();
+}
+
+steady_clock::time_point after(double seconds) {
+  return steady_clock::now() +
+         std::chrono::duration_cast<steady_clock::duration>(std::chrono::duration<double>(seconds));
+}
+
+/// What a message of this topic is read as; errors get the topic's name.
+template <class Read>
+auto reading(const Reader& reader, Read&& read) {
+  try {
+    return read();
+  } catch (const Error& error) {
+    throw Error(Fault::kData, error.what(), reader.topic());
+  }
+}
+
+CameraModel with_depth_factor(CameraModel model, double depth_factor) {
+  if (depth_factor > 0) model.depth_factor = depth_factor;
+  return model;
+}
+
+}  // namespace
+
+void Ros2Source::Options::visit(OptionVisitor& v) {
+  v("color_topic", color_topic, {.help = "sensor_msgs/Image"});
+  v("depth_topic", depth_topic,
+    {.help = "sensor_msgs/Image, of the size and view of the colour images"});
+  v("info_topic", info_topic,
+    {.help = "sensor_msgs/CameraInfo of the colour images; not used with a camera section"});
+  v("domain", domain, {.min = -1, .max = 232, .help = "of DDS; -1: that of ROS_DOMAIN_ID, or 0"});
+  v("reliable", reliable,
+    {.help = "have lost packets sent again; publishers that are not reliable are not heard"});
+  v("queue_size", queue_size,
+    {.min = 1,
+     .max = 10000,
+     .unit = "images",
+     .help = "of a topic that wait; older ones are lost"});
+  v("approximate", approximate, {.help = "stamps of colour and depth may differ"});
+  v("max_difference", max_difference,
+    {.min = 0, .max = 1, .unit = "s", .help = "of the stamps of a pair, if approximate"});
+  v("rectified", rectified, {.help = "the images are rectified: P of CameraInfo holds, not K, D"});
+  v("depth_factor", depth_factor,
+    {.min = 0, .max = 1e9, .help = "16-bit depth of one metre; 0: the camera's, 1000 in ROS"});
+  v("timeout", timeout,
+    {.min = 0.1,
+     .max = 86400,
+     .unit = "s",
+     .help = "without images: an error before the first pair, the end after it"});
+  v("limit", limit, {.min = 0, .unit = "frames", .help = "frames to read; 0 for no limit"});
+}
+
+Ros2Source::Ros2Source(const Options& options, const StageContext& context)
+    : options_(options),
+      log_(context.log),
+      participant_(options.domain),
+      color_reader_(participant_, options.color_topic, bag::kImageType, options.queue_size,
+                    options.reliable),
+      depth_reader_(participant_, options.depth_topic, bag::kImageType, options.queue_size,
+                    options.reliable) {
+  if (context.camera)
+    rectifier_.emplace(with_depth_factor(*context.camera, options.depth_factor));
+  else
+    info_reader_.emplace(participant_, options.info_topic, bag::kCameraInfoType, 1,
+                         options.reliable);
+  log_(LogLevel::kInfo, "waiting for " + options.color_topic + " and " + options.depth_topic);
+}
+
+void Ros2Source::wait_for_camera() {
+  const auto message = info_reader_->take(after(options_.timeout));
+  if (!message) fail(*info_reader_);
+  const CameraModel model = reading(*info_reader_, [&] {
+    return bag::camera_model(bag::read_camera_info(*message, bag::Serialisation::kCdr),
+                             options_.rectified, options_.info_topic);
+  });
+  rectifier_.emplace(with_depth_factor(model, options_.depth_factor));
+}
+
+bool Ros2Source::wait_for(std::optional<Image>& image, const Reader& reader, Kind kind) const {
+  if (image) return true;
+  const auto bytes = reader.take(after(options_.timeout));
+  if (!bytes) return false;
+  image = reading(reader, [&] {
+    const bag::ImageMessage message = bag::read_image(*bytes, bag::Serialisation::kCdr, false);
+    const cv::Mat pixels =
+        kind == Kind::kColor ? bag::color_pixels(message) : bag::depth_pixels(message);
+    return Image{bag::seconds(message.description.header.stamp), pixels.clone()};
+  });
+  return true;
+}
+
+std::optional<Frame> Ros2Source::next() {
+  if (options_.limit > 0 && given_ == static_cast<std::uint32_t>(options_.limit)) ended_ = true;
+  if (!ended_ && !rectifier_) wait_for_camera();
+  while (!ended_) {
+    const bool has_color = wait_for(color_, color_reader_, Kind::kColor);
+    if (!has_color || !wait_for(depth_, depth_reader_, Kind::kDepth)) {
+      if (given_ == 0) fail(has_color ? depth_reader_ : color_reader_);
+      log_(LogLevel::kWarning,
+           text_of("no images for ", options_.timeout, " s: this is taken for the end"));
+      ended_ = true;
+    } else if (auto frame = frame_of_waiting()) {
+      return frame;
+    }
+  }
+  return std::nullopt;
+}
+
+std::optional<Frame> Ros2Source::frame_of_waiting() {
+  const double ahead = color_->time - depth_->time;
+  if (std::abs(ahead) > (options_.approximate ? options_.max_difference : 0.0)) {
+    (ahead < 0 ? color_ : depth_).reset();
+    ++unpaired_;
+    if (given_ == 0 && unpaired_ % 100 == 0)
+      log_(LogLevel::kWarning,
+           text_of(unpaired_, " images, and no two with the same stamp: set source.approximate"));
+    return std::nullopt;
+  }
+  const Image color = *std::exchange(color_, std::nullopt);
+  const Image depth = *std::exchange(depth_, std::nullopt);
+  if (given_ > 0 && color.time <= last_time_) {
+    ++backwards_;
+    return std::nullopt;
+  }
+  Frame frame = reading(color_reader_,
+                        [&] { return rectifier_->frame(color.time, color.pixels, depth.pixels); });
+  frame.index = given_++;
+  last_time_ = frame.time;
+  return frame;
+}
+
+void Ros2Source::fail(const Reader& missing) const {
+  const int writers = missing.writers();
+  throw Error(Fault::kData,
+              text_of("no message for ", options_.timeout, " s; publishers: ", writers,
+                      unpaired_ > 0 ? text_of("; images without partner: ", unpaired_) : ""),
+              missing.topic(),
+              writers > 0
+                  ? "see whether they publish, with the same stamps for colour and depth, or "
+                    "set source.approximate"
+                  : "compare topic, domain and reliability with those of the publishers; "
+                    "source.timeout is how long to wait");
+}
+
+SourceReport Ros2Source::report() const {
+  SourceReport report;
+  report.skipped = unpaired_ + backwards_;
+  if (unpaired_ > 0)
+    report.warnings.push_back(text_of(unpaired_, " images had no partner of the same time"));
+  if (backwards_ > 0)
+    report.warnings.push_back(
+        text_of(backwards_, " pairs of images were not later than the one before"));
+  return report;
+}
+
+}  // namespace stillpoint::ros2

@@ -1,0 +1,70 @@
+// Frames of images that somebody publishes.
+#pragma once
+
+#include <opencv2/core/mat.hpp>
+#include <optional>
+#include <string>
+
+#include "ros2/participant.hpp"
+#include "stillpoint/sdk.hpp"
+#include "stillpoint/support/rectifier.hpp"
+
+namespace stillpoint::ros2 {
+
+/// Listens from its construction on. next() waits for CameraInfo, where the pipeline names no
+/// camera, and for a pair of images; it throws Error(kData) when none comes, and for images that
+/// cannot be read. Silence after the first pair is the end.
+class Ros2Source final : public Source {
+ public:
+  struct Options {
+    std::string color_topic = "rgb/image_raw";
+    std::string depth_topic = "depth_registered/image_raw";
+    std::string info_topic = "rgb/camera_info";
+    int domain = -1;               ///< negative: that of ROS_DOMAIN_ID, or 0
+    bool reliable = false;         ///< lost packets are sent again
+    int queue_size = 5;            ///< images that wait, of each topic
+    bool approximate = false;      ///< stamps of a pair may differ, by max_difference
+    double max_difference = 0.02;  ///< seconds
+    bool rectified = false;        ///< P of CameraInfo holds, not K and D
+    double depth_factor = 0.0;     ///< of 16-bit depth, value of one metre; 0: the camera's
+    double timeout = 5.0;          ///< seconds
+    int limit = 0;                 ///< frames; 0: none
+
+    void visit(OptionVisitor& visitor);
+  };
+
+  Ros2Source(const Options& options, const StageContext& context);
+
+  std::optional<Frame> next() override;
+  SourceReport report() const override;
+
+ private:
+  struct Image {
+    double time = 0.0;  ///< seconds, of the header
+    cv::Mat pixels;
+  };
+  enum class Kind { kColor, kDepth };
+
+  void wait_for_camera();
+  /// The next image of a topic becomes `image`, unless there is one. False when none comes in time.
+  bool wait_for(std::optional<Image>& image, const Reader& reader, Kind kind) const;
+  /// The waiting images, if they belong together and come after the frame before; otherwise one of
+  /// them is dropped.
+  std::optional<Frame> frame_of_waiting();
+  [[noreturn]] void fail(const Reader& missing) const;
+
+  Options options_;
+  std::function<void(LogLevel, std::string_view)> log_;
+  Participant participant_;
+  Reader color_reader_, depth_reader_;
+  std::optional<Reader> info_reader_;
+  std::optional<Rectifier> rectifier_;
+  std::optional<Image> color_, depth_;  // waiting for each other
+  bool ended_ = false;
+  std::uint32_t given_ = 0;    // frames
+  double last_time_ = 0.0;     // of the last frame, seconds
+  std::size_t unpaired_ = 0;   // images
+  std::size_t backwards_ = 0;  // pairs that are not later than the one before
+};
+
+}  // namespace stillpoint::ros2

@@ -1,0 +1,195 @@
+#include "ros2/ros2_source.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "support/bag_messages.hpp"
+#include "support/dds_loopback.hpp"
+#include "support/error_text.hpp"
+#include "support/source_frames.hpp"
+
+namespace stillpoint::ros2 {
+namespace {
+
+using ::testing::AllOf;
+using testing::camera_info_message;
+using testing::color_image;
+using testing::depth_image;
+using ::testing::ElementsAre;
+using testing::error_text;
+using ::testing::HasSubstr;
+using testing::image_message;
+using ::testing::IsEmpty;
+using testing::loopback_domain;
+
+constexpr std::int64_t kStart = 1'305'031'102'175'304'000;  // ns
+constexpr std::int64_t kInterval = 33'333'000;              // ns
+constexpr auto kRos2 = bag::Serialisation::kCdr;
+
+/// Publishers, and a source that hears them.
+class Ros2SourceTest : public ::testing::Test {
+ protected:
+  Ros2SourceTest() {
+    options_.domain = loopback_domain();
+    options_.timeout = 0.1;
+    options_.queue_size = 20;
+    context_.log = [this](LogLevel, std::string_view line) { log_.emplace_back(line); };
+  }
+  Ros2Source& source() {
+    if (!source_) source_.emplace(options_, context_);
+    return *source_;
+  }
+  void info(const testing::TestCameraInfo& camera = {}) {
+    source();
+    info_.write(camera_info_message(kRos2, camera));
+  }
+  void color(int i, const std::string& encoding = "bgr8") {
+    source();
+    color_.write(image_message(kRos2, stamp(i), "camera", color_image(i), encoding));
+  }
+  void depth(int i, std::int64_t later = 0) {
+    depth_.write(image_message(kRos2, stamp(i) + later, "camera", depth_image(1000 + i), "16UC1"));
+  }
+  static std::int64_t stamp(int i) { return kStart + kInterval * i; }
+
+  const Participant participant_{loopback_domain()};
+  const Writer color_{participant_, "rgb/image_raw", bag::kImageType, Kept::kShortly};
+  const Writer depth_{participant_, "depth_registered/image_raw", bag::kImageType, Kept::kShortly};
+  const Writer info_{participant_, "rgb/camera_info", bag::kCameraInfoType, Kept::kShortly};
+  Ros2Source::Options options_;
+  StageContext context_;
+  std::vector<std::string> log_;
+  std::optional<Ros2Source> source_;
+};
+
+TEST_F(Ros2SourceTest, GivesFramesUntilThereIsSilence) {
+  info();
+  for (int i = 0; i < 3; ++i) {
+    color(i);
+    depth(i);
+  }
+  for (std::uint32_t i = 0; i < 3; ++i) {
+    const auto frame = source().next();
+    ASSERT_TRUE(frame);
+    EXPECT_EQ(frame->index, i);
+    EXPECT_DOUBLE_EQ(frame->time, bag::seconds(stamp(static_cast<int>(i))));
+    EXPECT_EQ(frame->bgr.at<cv::Vec3b>(5, 7), cv::Vec3b(static_cast<std::uint8_t>(i), 100, 200));
+    EXPECT_FLOAT_EQ(frame->depth.at<float>(5, 7), 1.0F + 0.001F * static_cast<float>(i));
+    EXPECT_EQ(frame->camera->fx, 50);
+  }
+  EXPECT_FALSE(source().next());
+  EXPECT_FALSE(source().next());
+  EXPECT_THAT(log_.back(), HasSubstr("no images for 0.1 s: this is taken for the end"));
+  EXPECT_THAT(source().report().warnings, IsEmpty());
+}
+
+TEST_F(Ros2SourceTest, EndsAfterTheLimit) {
+  options_.limit = 1;
+  info();
+  color(0);
+  depth(0);
+  EXPECT_TRUE(source().next());
+  EXPECT_FALSE(source().next());
+}
+
+TEST_F(Ros2SourceTest, TakesTheCameraOfThePipeline) {
+  context_.camera = CameraModel{.name = "mine",
+                                .width = testing::kImageWidth,
+                                .height = testing::kImageHeight,
+                                .fx = 60,
+                                .depth_factor = 2000};
+  color(0);
+  depth(0);
+  const auto frame = source().next();
+  ASSERT_TRUE(frame);
+  EXPECT_EQ(frame->camera->fx, 60);
+  EXPECT_FLOAT_EQ(frame->depth.at<float>(5, 7), 0.5F);
+}
+
+TEST_F(Ros2SourceTest, TakesTheProjectionOfRectifiedImages) {
+  options_.rectified = true;
+  info({.distortion = {0.1, 0.2, 0.3, 0.4, 0.5}});
+  color(0);
+  depth(0);
+  EXPECT_EQ(source().next()->camera->fx, 45);
+}
+
+TEST_F(Ros2SourceTest, DropsImagesWithoutPartner) {
+  info();
+  color(0);
+  color(1);
+  depth(1);
+  depth(2);
+  color(3);
+  depth(3);
+  EXPECT_DOUBLE_EQ(source().next()->time, bag::seconds(stamp(1)));
+  EXPECT_DOUBLE_EQ(source().next()->time, bag::seconds(stamp(3)));
+  EXPECT_EQ(source().report().skipped, 2U);
+  EXPECT_THAT(source().report().warnings, ElementsAre(HasSubstr("2 images had no partner")));
+}
+
+TEST_F(Ros2SourceTest, PairsStampsThatDiffer) {
+  options_.approximate = true;
+  info();
+  color(0);
+  depth(0, 4'000'000);
+  depth(1, 25'000'000);  // too late for the second colour image, too early for the third
+  color(1);
+  color(2);
+  depth(2);
+  EXPECT_DOUBLE_EQ(source().next()->time, bag::seconds(stamp(0)));
+  EXPECT_DOUBLE_EQ(source().next()->time, bag::seconds(stamp(1) + kInterval));
+}
+
+TEST_F(Ros2SourceTest, TimeGoesForward) {
+  info();
+  for (const int i : {5, 4, 6}) {
+    color(i);
+    depth(i);
+  }
+  EXPECT_DOUBLE_EQ(source().next()->time, bag::seconds(stamp(5)));
+  EXPECT_DOUBLE_EQ(source().next()->time, bag::seconds(stamp(6)));
+  EXPECT_THAT(source().report().warnings, ElementsAre(HasSubstr("1 pairs of images were not")));
+}
+
+TEST_F(Ros2SourceTest, SaysWhichTopicIsSilent) {
+  EXPECT_THAT(error_text(Fault::kData, [&] { source().next(); }),
+              AllOf(HasSubstr("rgb/camera_info: no message for 0.1 s; publishers: 1"),
+                    HasSubstr("see whether they publish")));
+  info();
+  color(0);
+  EXPECT_THAT(error_text(Fault::kData, [&] { source().next(); }),
+              HasSubstr("depth_registered/image_raw: no message for 0.1 s; publishers: 1"));
+}
+
+TEST_F(Ros2SourceTest, SaysThatNobodyPublishes) {
+  options_.info_topic = "/none";
+  EXPECT_THAT(
+      error_text(Fault::kData, [&] { source().next(); }),
+      AllOf(HasSubstr("/none: no message for 0.1 s; publishers: 0"), HasSubstr("source.timeout")));
+}
+
+TEST_F(Ros2SourceTest, RefusesAnEncoding) {
+  info();
+  color(0, "bgr99");
+  depth(0);
+  EXPECT_THAT(error_text(Fault::kData, [&] { source().next(); }),
+              AllOf(HasSubstr("rgb/image_raw: "), HasSubstr("'bgr99'")));
+}
+
+TEST_F(Ros2SourceTest, RefusesAMessageThatIsCutShort) {
+  source();
+  info_.write({0, 1, 0, 0, 9, 9, 9, 9});
+  EXPECT_THAT(error_text(Fault::kData, [&] { source().next(); }),
+              HasSubstr("rgb/camera_info: the bytes end too early"));
+}
+
+TEST_F(Ros2SourceTest, RefusesImagesOfAnotherSizeThanTheirCamera) {
+  info({.width = 640, .height = 480});
+  color(0);
+  depth(0);
+  EXPECT_THAT(error_text(Fault::kData, [&] { source().next(); }), HasSubstr("rgb/image_raw: "));
+}
+
+}  // namespace
+}  // namespace stillpoint::ros2
