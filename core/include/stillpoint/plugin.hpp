@@ -159,9 +159,14 @@ void* create(OptionVisitor& visitor, const StageContext& context) {
 /// An entry for a class with a constructor from (Options, const StageContext&), (Options) or ().
 template <class Interface, class Implementation>
 constexpr PluginEntry provide(const char* type, const char* summary) {
-  static_assert(std::is_base_of_v<Interface, Implementation>);
+  static_assert(std::is_base_of_v<Interface, Implementation>,
+                "the class does not derive from the contract that it is provided for");
+  static_assert(
+      !std::is_abstract_v<Implementation>,
+      "the class leaves out a function of its contract, or gives it other arguments, which "
+      "'override' behind it would name");
   using Options = typename detail::OptionsOf<Implementation>::type;
-  static_assert(std::is_same_v<Options, detail::NoOptions> ||
+  static_assert(std::is_abstract_v<Implementation> || std::is_same_v<Options, detail::NoOptions> ||
                     std::is_constructible_v<Implementation, Options, const StageContext&> ||
                     std::is_constructible_v<Implementation, Options>,
                 "a class with Options needs a constructor that takes them, (Options) or (Options, "
