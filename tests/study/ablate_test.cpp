@@ -103,6 +103,7 @@ TEST_F(Ablate, AMovedStudyIsNotRunAnew) {
 
 TEST_F(Ablate, AFolderHoldsOneStudy) {
   ASSERT_EQ(ablate(kShort).exit_code, 0);
+  EXPECT_THAT(text_of(out() / "study.json"), HasSubstr("\"command\": \"stillpoint ablate "));
   const std::string results = text_of(out() / "results.csv");
   const std::string other = folder_.write("other.yaml", kShort).string();
   const Outcome refused = call({"ablate", other, "-o", out().string()});

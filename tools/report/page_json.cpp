@@ -207,8 +207,13 @@ Json report_json(const ReportData& data, const std::string& written_by) {
   Json tables = Json::array(), runs = Json::array();
   for (const Table& table : data.tables) tables.push_back(table_json(table));
   for (const RunData& run : data.runs) runs.push_back(listed_run(run));
-  return {{"title", data.title},     {"command", data.command}, {"origins", data.origins},
-          {"notes", data.notes},     {"tables", tables},        {"runs", runs},
+  return {{"title", data.title},
+          {"question", data.question},
+          {"command", data.command},
+          {"origins", data.origins},
+          {"notes", data.notes},
+          {"tables", tables},
+          {"runs", runs},
           {"written_by", written_by}};
 }
 

@@ -8,6 +8,7 @@
 #include "report/run_reader.hpp"
 #include "report/run_tables.hpp"
 #include "stillpoint/error.hpp"
+#include "study/claim.hpp"
 #include "study/matrix.hpp"
 #include "study/provenance.hpp"
 #include "study/text_file.hpp"
@@ -50,7 +51,7 @@ StudyResults results_of(const fs::path& folder, const Study& study) {
   StudyResults results{.study = study,
                        .cells = cells_of(study),
                        .results = {},
-                       .command = "stillpoint ablate " + (folder / "study.yaml").string()};
+                       .command = study::command_of(folder)};
   for (const Cell& cell : results.cells)
     results.results.push_back(study::read_result(run_folder(folder, study, cell)));
   return results;
@@ -129,7 +130,8 @@ ReportData read_runs(const std::vector<fs::path>& folders) {
 
 ReportData read_study(const fs::path& folder, const Study& study) {
   const StudyResults results = results_of(folder, study);
-  ReportData data{.title = last_name(folder), .command = results.command};
+  ReportData data{
+      .title = last_name(folder), .question = study.question, .command = results.command};
   for (std::size_t i = 0; i < results.cells.size(); ++i)
     if (fs::exists(run_folder(folder, study, results.cells[i])))
       data.runs.push_back(run_of_cell(folder, results, i));

@@ -65,7 +65,7 @@ class Ablation {
   void run() {
     make_folder(output_);
     const FolderLock lock(output_);
-    claim_folder(output_, file_.file);
+    claim_folder(output_, file_.file, command_);
     int signal = 0;
     {
       const Interrupt interrupt;

@@ -12,6 +12,8 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
+fs::path claim_of(const fs::path& folder) { return folder / "study.json"; }
+
 /// The study file that has claimed the folder; empty: none has.
 fs::path claimed_by(const fs::path& claim) {
   const std::string text = read_text(claim);
@@ -33,18 +35,25 @@ bool is_same_study(const fs::path& first, const fs::path& second) {
 
 }  // namespace
 
-void claim_folder(const fs::path& folder, const fs::path& study_file) {
-  const fs::path claim = folder / "study.json";
+void claim_folder(const fs::path& folder, const fs::path& study_file, const std::string& command) {
+  const fs::path claim = claim_of(folder);
   const fs::path file = fs::absolute(study_file).lexically_normal();
   const fs::path owner = claimed_by(claim);
-  if (owner == file) return;
-  if (!owner.empty() && !is_same_study(owner, file))
+  if (!owner.empty() && owner != file && !is_same_study(owner, file))
     throw Error(Fault::kUsage,
                 "holds the study '" + owner.stem().string() + "' (" + owner.string() + "), not '" +
                     file.stem().string() + "' (" + file.string() + ")",
                 folder.string(), "choose another folder with -o");
-  const Json json = {{"study", file.stem().string()}, {"file", file.string()}};
+  const Json json = {
+      {"study", file.stem().string()}, {"file", file.string()}, {"command", command}};
   write_text(claim, json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
+}
+
+std::string command_of(const fs::path& folder) {
+  const Json claim = Json::parse(read_text(claim_of(folder)), nullptr, false);
+  if (!claim.is_object() || !claim.contains("command") || !claim["command"].is_string())
+    return "stillpoint ablate " + (folder / "study.yaml").string();
+  return claim["command"].get<std::string>();
 }
 
 }  // namespace stillpoint::study

@@ -2,13 +2,18 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 
 namespace stillpoint::study {
 
-/// Writes `folder`/study.json, which says whose folder it is. Another study is one of another name,
-/// or of the same name from a file with other content, while the first file is still there: a
-/// study may be edited, moved and read from another installation. Throws Error(kUsage) that names
-/// both when the folder is another's.
-void claim_folder(const std::filesystem::path& folder, const std::filesystem::path& study_file);
+/// Writes `folder`/study.json, which says whose folder it is, and by which command. Another study
+/// is one of another name, or of the same name from a file with other content, while the first file
+/// is still there: a study may be edited, moved and read from another installation. Throws
+/// Error(kUsage) that names both when the folder is another's.
+void claim_folder(const std::filesystem::path& folder, const std::filesystem::path& study_file,
+                  const std::string& command);
+
+/// The last one that claimed the folder; where there is none, one that goes on with its study.
+std::string command_of(const std::filesystem::path& folder);
 
 }  // namespace stillpoint::study

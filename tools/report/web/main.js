@@ -15,6 +15,7 @@ function header(report) {
   document.getElementById('top').replaceChildren(
     el('div', {class: 'title'}, el('h1', {}, report.title),
        el('button', {type: 'button', class: 'theme', title: 'Dark or light', onclick: toggleTheme}, '◐')),
+    ...(report.question ? [el('p', {class: 'question'}, report.question)] : []),
     el('p', {class: 'origin'}, ...lines.filter(Boolean).flatMap((line, i) => i ? [el('br'), line] : [line])));
   document.getElementById('foot').replaceChildren(`Written by ${report.written_by}`);
 }
