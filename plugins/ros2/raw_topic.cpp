@@ -149,7 +149,7 @@ dds_entity_t create_raw_topic(dds_entity_t participant, const std::string& name,
   if (topic < 0)
     ddsi_sertype_fini(raw.get());
   else
-    raw.release();  // DDS's from now on
+    static_cast<void>(raw.release());  // DDS's from now on
   return topic;
 }
 

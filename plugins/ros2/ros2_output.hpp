@@ -1,6 +1,8 @@
 // What a run finds, published while it goes.
 #pragma once
 
+#include <functional>
+#include <memory>
 #include <stillpoint/sdk.hpp>
 #include <string>
 #include <vector>
@@ -11,7 +13,7 @@
 
 namespace stillpoint::ros2 {
 
-/// Of every frame tf, odometry, pose and state; of time to time, where somebody reads them, path,
+/// Of every frame tf, odometry, pose and state; from time to time, where somebody reads them, path,
 /// landmarks and dense map; at the end these, octree and occupancy grid. A reader that is too slow
 /// loses messages.
 class Ros2Output final : public Output {

@@ -1,6 +1,7 @@
 // Frames of images that somebody publishes.
 #pragma once
 
+#include <functional>
 #include <opencv2/core/mat.hpp>
 #include <optional>
 #include <string>

@@ -27,10 +27,6 @@ enum class Quality { kDefault, kSensorData, kTransientLocal };  // profiles of R
 /// Waits for what happens on threads of DDS.
 class News {
  public:
-  void tell() {
-    const std::lock_guard lock(mutex_);
-    changed_.notify_all();
-  }
   /// False when it has not become so in time. `condition` is called with the lock of edit().
   bool wait(const std::function<bool()>& condition, std::chrono::milliseconds time = kPatience) {
     std::unique_lock lock(mutex_);
