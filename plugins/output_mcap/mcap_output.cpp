@@ -4,14 +4,14 @@
 #include <utility>
 #include <vector>
 
-#include "run_messages/cost_map_file.hpp"
-#include "run_messages/point_clouds.hpp"
+#include "ros2_messages/cost_map_file.hpp"
+#include "ros2_messages/point_clouds.hpp"
 #include "semantic_octree/octree_reader.hpp"
 
 namespace stillpoint::output_mcap {
 namespace {
 
-using mcap_writer::kCameraFrame;
+using ros2_messages::kCameraFrame;
 
 constexpr int kJpegQuality = 85;  // per cent
 
@@ -19,27 +19,27 @@ constexpr int kJpegQuality = 85;  // per cent
 
 McapOutput::McapOutput(const Options& options, const StageContext& context)
     : writer_(context.output_directory / options.file, options.compression),
-      topics_{.transform = writer_.add_channel<mcap_writer::Transform>("/tf"),
-              .odometry = writer_.add_channel<mcap_writer::Odometry>("/odometry"),
-              .state = writer_.add_channel<mcap_writer::Text>("/tracking_state"),
-              .keyframe = writer_.add_channel<mcap_writer::PoseMessage>("/keyframe"),
-              .path = writer_.add_channel<mcap_writer::Path>("/path"),
-              .keyframes = writer_.add_channel<mcap_writer::Path>("/keyframes"),
-              .landmarks = writer_.add_channel<mcap_writer::PointCloud>("/landmarks"),
-              .dense_map = writer_.add_channel<mcap_writer::PointCloud>("/dense_map"),
-              .voxels = writer_.add_channel<mcap_writer::Voxels>("/voxels"),
-              .cost_map = writer_.add_channel<mcap_writer::OccupancyGrid>("/cost_map")},
+      topics_{.transform = writer_.add_channel<ros2_messages::Transform>("/tf"),
+              .odometry = writer_.add_channel<ros2_messages::Odometry>("/odometry"),
+              .state = writer_.add_channel<ros2_messages::Text>("/tracking_state"),
+              .keyframe = writer_.add_channel<ros2_messages::PoseMessage>("/keyframe"),
+              .path = writer_.add_channel<ros2_messages::Path>("/path"),
+              .keyframes = writer_.add_channel<ros2_messages::Path>("/keyframes"),
+              .landmarks = writer_.add_channel<ros2_messages::PointCloud>("/landmarks"),
+              .dense_map = writer_.add_channel<ros2_messages::PointCloud>("/dense_map"),
+              .voxels = writer_.add_channel<ros2_messages::Voxels>("/voxels"),
+              .cost_map = writer_.add_channel<ros2_messages::OccupancyGrid>("/cost_map")},
       image_topics_(
           options.images
               ? std::optional(ImageTopics{
-                    writer_.add_channel<mcap_writer::CompressedImage>(
+                    writer_.add_channel<ros2_messages::CompressedImage>(
                         "/camera/color/image_raw/compressed"),
-                    writer_.add_channel<mcap_writer::CameraInfo>("/camera/color/camera_info")})
+                    writer_.add_channel<ros2_messages::CameraInfo>("/camera/color/camera_info")})
               : std::nullopt) {}
 
 void McapOutput::frame(const FrameReport& report) {
   const double time = report.frame->time;
-  writer_.write(topics_.state, time, mcap_writer::Text{name_of(report.result.state)});
+  writer_.write(topics_.state, time, ros2_messages::Text{name_of(report.result.state)});
   write_pose(time, report.result);
   if (image_topics_) write_image(*report.frame);
 }
@@ -54,23 +54,24 @@ void McapOutput::write_pose(double time, const TrackResult& result) {
 
 void McapOutput::write_image(const Frame& frame) {
   const Header header{frame.time, kCameraFrame};
-  mcap_writer::CompressedImage image{header, "jpeg"};
+  ros2_messages::CompressedImage image{header, "jpeg"};
   cv::imencode(".jpg", frame.bgr, image.file, {cv::IMWRITE_JPEG_QUALITY, kJpegQuality});
   writer_.write(image_topics_->image, frame.time, image);
-  writer_.write(image_topics_->camera, frame.time, mcap_writer::CameraInfo{header, *frame.camera});
+  writer_.write(image_topics_->camera, frame.time,
+                ros2_messages::CameraInfo{header, *frame.camera});
 }
 
 void McapOutput::finish(const RunSummary& summary) {
   if (!summary.poses.empty()) {
     const Header header{summary.poses.back().time, mounting_.map};
     writer_.write(topics_.path, header.time,
-                  run_messages::path_of(summary.map, summary.poses, mounting_, header.time));
+                  ros2_messages::path_of(summary.map, summary.poses, mounting_, header.time));
     write_keyframes(summary.map, header);
     writer_.write(topics_.landmarks, header.time,
-                  run_messages::landmark_cloud(summary.map, mounting_, header.time));
+                  ros2_messages::landmark_cloud(summary.map, mounting_, header.time));
     if (const auto points = summary.dense_map(); !points.empty())
       writer_.write(topics_.dense_map, header.time,
-                    run_messages::dense_cloud(points, mounting_, header.time));
+                    ros2_messages::dense_cloud(points, mounting_, header.time));
     write_voxels(summary, header);
     write_cost_map(summary, header);
   }
@@ -78,7 +79,7 @@ void McapOutput::finish(const RunSummary& summary) {
 }
 
 void McapOutput::write_keyframes(const SparseMap& map, const Header& header) {
-  mcap_writer::Path keyframes{header, {}};
+  ros2_messages::Path keyframes{header, {}};
   for (KeyFrameId id = 0; id < map.keyframe_id_end(); ++id)
     if (const KeyFrame* keyframe = map.keyframe(id))
       keyframes.poses.push_back(
@@ -91,16 +92,16 @@ void McapOutput::write_voxels(const RunSummary& summary, const Header& header) {
   const std::filesystem::path file = summary.map_directory / "map.ot";
   if (summary.map_directory.empty() || !std::filesystem::exists(file)) return;
   const semantic_octree::SavedOctree map = semantic_octree::read_octree(file);
-  mcap_writer::Voxels voxels{header, map.tree->getResolution(), {}, {}};
+  ros2_messages::Voxels voxels{header, map.tree->getResolution(), {}, {}};
   for (const LabelledPoint& point : semantic_octree::occupied_points(*map.tree)) {
-    voxels.centres.push_back(run_messages::point_in_map(mounting_, point.position.cast<double>()));
-    voxels.rgb.push_back(run_messages::rgb_of(point));
+    voxels.centres.push_back(ros2_messages::point_in_map(mounting_, point.position.cast<double>()));
+    voxels.rgb.push_back(ros2_messages::rgb_of(point));
   }
   writer_.write(topics_.voxels, header.time, voxels);
 }
 
 void McapOutput::write_cost_map(const RunSummary& summary, const Header& header) {
-  if (auto grid = run_messages::read_cost_map(summary.map_directory)) {
+  if (auto grid = ros2_messages::read_cost_map(summary.map_directory)) {
     grid->header = header;
     grid->header_from_origin = mounting_.map_from_world * grid->header_from_origin;
     writer_.write(topics_.cost_map, header.time, *grid);

@@ -6,15 +6,15 @@
 #include <stillpoint/sdk.hpp>
 #include <string>
 
-#include "mcap_writer/mcap_writer.hpp"
-#include "run_messages/pose_messages.hpp"
+#include "ros2_messages/mcap_writer.hpp"
+#include "ros2_messages/pose_messages.hpp"
 
 namespace stillpoint::output_mcap {
 
-using mcap_writer::ChannelId;
-using mcap_writer::Compression;
-using mcap_writer::Header;
-using mcap_writer::McapWriter;
+using ros2_messages::ChannelId;
+using ros2_messages::Compression;
+using ros2_messages::Header;
+using ros2_messages::McapWriter;
 
 /// Written as the run goes: tf, odometry and state of every frame, a pose for each key frame,
 /// images on request. At the end, with the time of the last frame: path, key frames, landmarks,
@@ -59,8 +59,8 @@ class McapOutput final : public Output {
   McapWriter writer_;
   const Topics topics_;
   const std::optional<ImageTopics> image_topics_;
-  const run_messages::Mounting mounting_;
-  run_messages::PoseSequence poses_{mounting_};
+  const ros2_messages::Mounting mounting_;
+  ros2_messages::PoseSequence poses_{mounting_};
 };
 
 }  // namespace stillpoint::output_mcap

@@ -5,11 +5,11 @@
 
 #include <string>
 
-#include "mcap_writer/byte_writer.hpp"
+#include "ros2_messages/byte_writer.hpp"
 
 namespace stillpoint::ros2 {
 
-using mcap_writer::Bytes;
+using ros2_messages::Bytes;
 
 /// Messages in CDR, with its header of four bytes: a sample for dds_write() and dds_take() is a
 /// `Bytes`. Samples that dds_take() lends are not supported. `type` as DDS names it. Negative: the

@@ -3,15 +3,15 @@
 #include <cmath>
 #include <utility>
 
-#include "run_messages/cost_map_file.hpp"
-#include "run_messages/octree_file.hpp"
-#include "run_messages/point_clouds.hpp"
+#include "ros2_messages/cost_map_file.hpp"
+#include "ros2_messages/octree_file.hpp"
+#include "ros2_messages/point_clouds.hpp"
 
 namespace stillpoint::ros2 {
 namespace {
 
-using mcap_writer::Diagnosis;
-using run_messages::Mounting;
+using ros2_messages::Diagnosis;
+using ros2_messages::Mounting;
 
 constexpr std::chrono::seconds kLastPatience(2);  // at the end, for the readers' answers
 
@@ -76,19 +76,20 @@ Ros2Output::Ros2Output(const Options& options, const StageContext& context)
           return Writer(participant_, options.name + name, type, kept);
         };
         return Topics{
-            .transform = Writer(participant_, "/tf", mcap_writer::Transform::kType, Kept::kShortly),
+            .transform =
+                Writer(participant_, "/tf", ros2_messages::Transform::kType, Kept::kShortly),
             .static_transform =
-                Writer(participant_, "/tf_static", mcap_writer::Transform::kType, Kept::kLast),
-            .odometry = writer("/odom", mcap_writer::Odometry::kType, Kept::kShortly),
-            .pose = writer("/pose", mcap_writer::PoseMessage::kType, Kept::kShortly),
+                Writer(participant_, "/tf_static", ros2_messages::Transform::kType, Kept::kLast),
+            .odometry = writer("/odom", ros2_messages::Odometry::kType, Kept::kShortly),
+            .pose = writer("/pose", ros2_messages::PoseMessage::kType, Kept::kShortly),
             .state = writer("/state", Diagnosis::kType, Kept::kLast),
-            .path = writer("/path", mcap_writer::Path::kType, Kept::kLast),
-            .landmarks = writer("/landmarks", mcap_writer::PointCloud::kType, Kept::kLast),
-            .dense_map = writer("/dense_map", mcap_writer::PointCloud::kType, Kept::kLast),
-            .octomap = writer("/octomap", mcap_writer::Octree::kType, Kept::kLast),
-            .grid = writer("/grid", mcap_writer::OccupancyGrid::kType, Kept::kLast)};
+            .path = writer("/path", ros2_messages::Path::kType, Kept::kLast),
+            .landmarks = writer("/landmarks", ros2_messages::PointCloud::kType, Kept::kLast),
+            .dense_map = writer("/dense_map", ros2_messages::PointCloud::kType, Kept::kLast),
+            .octomap = writer("/octomap", ros2_messages::Octree::kType, Kept::kLast),
+            .grid = writer("/grid", ros2_messages::OccupancyGrid::kType, Kept::kLast)};
       }()) {
-  mcap_writer::Transform world;
+  ros2_messages::Transform world;
   world.header.frame = mounting_.map;
   world.child = world_frame();
   world.header_from_child = mounting_.map_from_world;
@@ -117,7 +118,7 @@ void Ros2Output::frame(const FrameReport& report) {
     publish_landmarks(*report.map, time);
   if (run_ && topics_.dense_map.wanted() && time >= next_dense_map_)
     if (const auto points = run_->dense_map()) {  // or with the next frame
-      publish(topics_.dense_map, run_messages::dense_cloud(*points, mounting_, time));
+      publish(topics_.dense_map, ros2_messages::dense_cloud(*points, mounting_, time));
       next_dense_map_ = time + options_.map_period;
     }
 }
@@ -140,11 +141,11 @@ void Ros2Output::publish_state(const FrameReport& report) {
 
 void Ros2Output::publish_path(const SparseMap& map, const std::vector<TrackedPose>& poses,
                               double time) {
-  publish(topics_.path, run_messages::path_of(map, poses, mounting_, time));
+  publish(topics_.path, ros2_messages::path_of(map, poses, mounting_, time));
 }
 
 void Ros2Output::publish_landmarks(const SparseMap& map, double time) {
-  publish(topics_.landmarks, run_messages::landmark_cloud(map, mounting_, time));
+  publish(topics_.landmarks, ros2_messages::landmark_cloud(map, mounting_, time));
 }
 
 void Ros2Output::finish(const RunSummary& summary) {
@@ -159,7 +160,7 @@ void Ros2Output::finish(const RunSummary& summary) {
     if (topics_.landmarks.wanted()) publish_landmarks(summary.map, time);
     if (topics_.dense_map.wanted())
       if (const auto points = summary.dense_map(); !points.empty())
-        publish(topics_.dense_map, run_messages::dense_cloud(points, mounting_, time));
+        publish(topics_.dense_map, ros2_messages::dense_cloud(points, mounting_, time));
     publish_files(summary.map_directory, time);
   }
   wait_for_readers();
@@ -170,12 +171,12 @@ void Ros2Output::finish(const RunSummary& summary) {
 
 void Ros2Output::publish_files(const std::filesystem::path& map_directory, double time) {
   if (topics_.octomap.wanted())
-    if (auto octree = run_messages::read_octree_message(map_directory)) {
+    if (auto octree = ros2_messages::read_octree_message(map_directory)) {
       octree->header = {time, world_frame()};
       publish(topics_.octomap, *octree);
     }
   if (topics_.grid.wanted())
-    if (auto grid = run_messages::read_cost_map(map_directory)) {
+    if (auto grid = ros2_messages::read_cost_map(map_directory)) {
       grid->header = {time, mounting_.map};
       grid->header_from_origin = mounting_.map_from_world * grid->header_from_origin;
       publish(topics_.grid, *grid);

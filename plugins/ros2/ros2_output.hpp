@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "ros2/participant.hpp"
-#include "run_messages/mounting.hpp"
-#include "run_messages/pose_messages.hpp"
+#include "ros2_messages/mounting.hpp"
+#include "ros2_messages/pose_messages.hpp"
 
 namespace stillpoint::ros2 {
 
@@ -22,7 +22,7 @@ class Ros2Output final : public Output {
     std::string name = "stillpoint";  ///< before the names of all topics but /tf
     int domain = -1;                  ///< negative: that of ROS_DOMAIN_ID, or 0
     std::string map_frame = "map";
-    std::string base_frame = mcap_writer::kCameraFrame;
+    std::string base_frame = ros2_messages::kCameraFrame;
     std::vector<double> base_from_camera;  ///< x, y, z, then quaternion x, y, z, w; empty: the base
                                            ///< is the camera
     double path_period = 1.0;              ///< seconds
@@ -54,8 +54,8 @@ class Ros2Output final : public Output {
 
   const Options options_;
   std::function<void(LogLevel, std::string_view)> log_;
-  const run_messages::Mounting mounting_;
-  run_messages::PoseSequence sequence_;
+  const ros2_messages::Mounting mounting_;
+  ros2_messages::PoseSequence sequence_;
   Participant participant_;
   Topics topics_;
   std::shared_ptr<LiveRun> run_;

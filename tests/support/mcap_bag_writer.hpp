@@ -1,4 +1,4 @@
-// MCAP files, by the specification (https://mcap.dev/spec). The library mcap_writer, whose files
+// MCAP files, by the specification (https://mcap.dev/spec). The library ros2_messages, whose files
 // are read in tests/integration/record_test.cpp, writes the one kind of file that is best: here are
 // those without chunks, without an index or an end, and with messages of any type, as others leave
 // them.

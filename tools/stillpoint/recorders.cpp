@@ -3,7 +3,7 @@
 #include <string>
 #include <utility>
 
-#include "mcap_writer/frames.hpp"
+#include "ros2_messages/frames.hpp"
 #include "stillpoint/engine/pipeline_config.hpp"
 #include "stillpoint/error.hpp"
 #include "stillpoint/support/atomic_file.hpp"
@@ -13,7 +13,7 @@
 namespace stillpoint {
 namespace {
 
-namespace mcap = mcap_writer;
+namespace mcap = ros2_messages;
 
 std::filesystem::path in_made_folder(const std::filesystem::path& file) {
   std::error_code error;

@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <memory>
 
-#include "mcap_writer/mcap_writer.hpp"
+#include "ros2_messages/mcap_writer.hpp"
 #include "simulation/recording_writer.hpp"
 #include "stillpoint/contracts/camera.hpp"
 #include "stillpoint/contracts/output.hpp"
@@ -42,8 +42,8 @@ class McapRecorder final : public Output {
   void finish(const RunSummary& summary) override;
 
  private:
-  mcap_writer::McapWriter writer_;
-  mcap_writer::ChannelId color_, color_camera_, depth_, depth_camera_;
+  ros2_messages::McapWriter writer_;
+  ros2_messages::ChannelId color_, color_camera_, depth_, depth_camera_;
 };
 
 /// By the name: what ends in .mcap is a file, all else a folder.

@@ -1,12 +1,12 @@
-#include "mcap_writer/messages.hpp"
+#include "ros2_messages/messages.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "mcap_writer/cdr_writer.hpp"
+#include "ros2_messages/cdr_writer.hpp"
 
-namespace stillpoint::mcap_writer {
+namespace stillpoint::ros2_messages {
 namespace {
 
 constexpr std::uint64_t kSecond = 1'000'000'000;  // ns
@@ -248,4 +248,4 @@ Bytes cdr_of(const Diagnosis& message) {
   return std::move(out).take();
 }
 
-}  // namespace stillpoint::mcap_writer
+}  // namespace stillpoint::ros2_messages

@@ -10,7 +10,7 @@
 #include <type_traits>
 #include <vector>
 
-namespace stillpoint::mcap_writer {
+namespace stillpoint::ros2_messages {
 
 using Bytes = std::vector<std::uint8_t>;
 static_assert(std::endian::native == std::endian::little, "numbers are copied as they are");
@@ -32,4 +32,4 @@ inline void append_letters(Bytes& out, std::string_view text) {
   out.insert(out.end(), text.begin(), text.end());
 }
 
-}  // namespace stillpoint::mcap_writer
+}  // namespace stillpoint::ros2_messages

@@ -10,11 +10,11 @@
 #include <utility>
 #include <vector>
 
-#include "mcap_writer/byte_writer.hpp"
+#include "ros2_messages/byte_writer.hpp"
 #include "stillpoint/contracts/camera.hpp"
 #include "stillpoint/pose_math.hpp"
 
-namespace stillpoint::mcap_writer {
+namespace stillpoint::ros2_messages {
 
 /// Nanoseconds since 1970. ROS 2 has 32 bits for the seconds: times outside become the nearest one
 /// inside.
@@ -135,4 +135,4 @@ Bytes cdr_of(const OccupancyGrid& message);
 Bytes cdr_of(const Octree& message);
 Bytes cdr_of(const Diagnosis& message);
 
-}  // namespace stillpoint::mcap_writer
+}  // namespace stillpoint::ros2_messages

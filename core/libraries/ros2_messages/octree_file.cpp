@@ -1,4 +1,4 @@
-#include "run_messages/octree_file.hpp"
+#include "ros2_messages/octree_file.hpp"
 
 #include <cstdlib>
 #include <fstream>
@@ -7,13 +7,13 @@
 
 #include "stillpoint/error.hpp"
 
-namespace stillpoint::run_messages {
+namespace stillpoint::ros2_messages {
 
-std::optional<mcap_writer::Octree> read_octree_message(const std::filesystem::path& folder) {
+std::optional<Octree> read_octree_message(const std::filesystem::path& folder) {
   const std::filesystem::path file = folder / "map.bt";
   if (folder.empty() || !std::filesystem::exists(file)) return std::nullopt;
   std::ifstream in(file, std::ios::binary);
-  mcap_writer::Octree octree;
+  Octree octree;
   std::string line;
   while (std::getline(in, line) && line != "data")
     if (line.starts_with("res ")) octree.resolution = std::strtod(line.c_str() + 4, nullptr);
@@ -23,4 +23,4 @@ std::optional<mcap_writer::Octree> read_octree_message(const std::filesystem::pa
   return octree;
 }
 
-}  // namespace stillpoint::run_messages
+}  // namespace stillpoint::ros2_messages

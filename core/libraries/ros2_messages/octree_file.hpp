@@ -4,12 +4,12 @@
 #include <filesystem>
 #include <optional>
 
-#include "mcap_writer/messages.hpp"
+#include "ros2_messages/messages.hpp"
 
-namespace stillpoint::run_messages {
+namespace stillpoint::ros2_messages {
 
 /// Without a header; its axes are those of Stillpoint's world. Nothing when the folder is empty or
 /// holds no octree. Throws Error(kData) for a file that is none.
-std::optional<mcap_writer::Octree> read_octree_message(const std::filesystem::path& folder);
+std::optional<Octree> read_octree_message(const std::filesystem::path& folder);
 
-}  // namespace stillpoint::run_messages
+}  // namespace stillpoint::ros2_messages

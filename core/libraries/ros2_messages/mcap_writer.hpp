@@ -11,11 +11,11 @@
 #include <utility>
 #include <vector>
 
-#include "mcap_writer/byte_writer.hpp"
-#include "mcap_writer/compression.hpp"
-#include "mcap_writer/messages.hpp"
+#include "ros2_messages/byte_writer.hpp"
+#include "ros2_messages/compression.hpp"
+#include "ros2_messages/messages.hpp"
 
-namespace stillpoint::mcap_writer {
+namespace stillpoint::ros2_messages {
 
 using ChannelId = std::uint16_t;
 
@@ -88,4 +88,4 @@ class McapWriter {
   std::uint64_t messages_ = 0;
 };
 
-}  // namespace stillpoint::mcap_writer
+}  // namespace stillpoint::ros2_messages

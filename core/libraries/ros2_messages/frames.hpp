@@ -4,7 +4,7 @@
 
 #include "stillpoint/pose_math.hpp"
 
-namespace stillpoint::mcap_writer {
+namespace stillpoint::ros2_messages {
 
 /// Does not move; jumps of the camera in it are loops that were closed.
 inline constexpr const char* kMapFrame = "map";
@@ -21,4 +21,4 @@ inline Pose map_from_world() {
   return pose;
 }
 
-}  // namespace stillpoint::mcap_writer
+}  // namespace stillpoint::ros2_messages

@@ -1,4 +1,4 @@
-#include "mcap_writer/mcap_writer.hpp"
+#include "ros2_messages/mcap_writer.hpp"
 
 #include <libdeflate.h>
 
@@ -9,11 +9,11 @@
 #include <exception>
 #include <string_view>
 
-#include "mcap_writer/message_type.hpp"
+#include "ros2_messages/message_type.hpp"
 #include "stillpoint/error.hpp"
 
 // Names of records and fields are those of the specification, https://mcap.dev/spec.
-namespace stillpoint::mcap_writer {
+namespace stillpoint::ros2_messages {
 namespace {
 
 enum Opcode : std::uint8_t {
@@ -288,4 +288,4 @@ void McapWriter::put(std::span<const std::uint8_t> bytes) {
               "read");
 }
 
-}  // namespace stillpoint::mcap_writer
+}  // namespace stillpoint::ros2_messages

@@ -1,8 +1,6 @@
-#include "run_messages/point_clouds.hpp"
+#include "ros2_messages/point_clouds.hpp"
 
-namespace stillpoint::run_messages {
-
-using mcap_writer::PointCloud;
+namespace stillpoint::ros2_messages {
 
 std::uint32_t rgb_of(const LabelledPoint& point) {
   const auto [red, green, blue] = point.rgb;
@@ -32,4 +30,4 @@ PointCloud dense_cloud(const std::vector<LabelledPoint>& points, const Mounting&
   return cloud;
 }
 
-}  // namespace stillpoint::run_messages
+}  // namespace stillpoint::ros2_messages

@@ -1,4 +1,4 @@
-#include "mcap_writer/message_type.hpp"
+#include "ros2_messages/message_type.hpp"
 
 #include <algorithm>
 #include <array>
@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <vector>
 
-namespace stillpoint::mcap_writer {
+namespace stillpoint::ros2_messages {
 namespace {
 
 struct Definition {
@@ -129,4 +129,4 @@ std::string schema_text(std::string_view type) {
   return text;
 }
 
-}  // namespace stillpoint::mcap_writer
+}  // namespace stillpoint::ros2_messages

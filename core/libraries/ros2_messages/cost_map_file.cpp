@@ -1,4 +1,4 @@
-#include "run_messages/cost_map_file.hpp"
+#include "ros2_messages/cost_map_file.hpp"
 
 #include <yaml-cpp/yaml.h>
 
@@ -12,10 +12,8 @@
 
 #include "stillpoint/error.hpp"
 
-namespace stillpoint::run_messages {
+namespace stillpoint::ros2_messages {
 namespace {
-
-using mcap_writer::OccupancyGrid;
 
 constexpr std::uint8_t kOccupiedPixel = 0, kFreePixel = 254;  // anything else: unknown
 
@@ -63,4 +61,4 @@ std::optional<OccupancyGrid> read_cost_map(const std::filesystem::path& folder) 
   }
 }
 
-}  // namespace stillpoint::run_messages
+}  // namespace stillpoint::ros2_messages

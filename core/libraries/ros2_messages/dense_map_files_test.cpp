@@ -4,13 +4,13 @@
 #include <opencv2/core.hpp>
 #include <opencv2/imgcodecs.hpp>
 
-#include "run_messages/cost_map_file.hpp"
-#include "run_messages/octree_file.hpp"
+#include "ros2_messages/cost_map_file.hpp"
+#include "ros2_messages/octree_file.hpp"
 #include "stillpoint/error.hpp"
 #include "support/error_text.hpp"
 #include "support/recording_writer.hpp"
 
-namespace stillpoint::run_messages {
+namespace stillpoint::ros2_messages {
 namespace {
 
 using testing::error_text;
@@ -63,7 +63,7 @@ TEST_F(DenseMapFiles, AnOctreeIsWhatFollowsItsHeader) {
   const auto octree = read_octree_message(folder_.path());
   ASSERT_TRUE(octree);
   EXPECT_EQ(octree->resolution, 0.05);
-  EXPECT_EQ(octree->nodes, (mcap_writer::Bytes{'a', 'b', 'c'}));
+  EXPECT_EQ(octree->nodes, (Bytes{'a', 'b', 'c'}));
   EXPECT_FALSE(read_octree_message({}));
 }
 
@@ -74,4 +74,4 @@ TEST_F(DenseMapFiles, ABrokenOctreeIsNamed) {
 }
 
 }  // namespace
-}  // namespace stillpoint::run_messages
+}  // namespace stillpoint::ros2_messages

@@ -3,17 +3,17 @@
 
 #include <string>
 
-#include "mcap_writer/frames.hpp"
+#include "ros2_messages/frames.hpp"
 #include "stillpoint/pose_math.hpp"
 
-namespace stillpoint::run_messages {
+namespace stillpoint::ros2_messages {
 
 /// The map is where the base was at the first frame. By default the base is the camera, and the map
 /// has x where that looked, y to its left, z up.
 struct Mounting {
-  std::string map = mcap_writer::kMapFrame;      ///< name of the frame
-  std::string base = mcap_writer::kCameraFrame;  ///< name of the frame
-  Pose map_from_world = mcap_writer::map_from_world();
+  std::string map = kMapFrame;      ///< name of the frame
+  std::string base = kCameraFrame;  ///< name of the frame
+  Pose map_from_world = ros2_messages::map_from_world();
   Pose base_from_camera = Pose::Identity();
 
   Pose map_from_base(const Pose& world_from_camera) const {
@@ -21,4 +21,4 @@ struct Mounting {
   }
 };
 
-}  // namespace stillpoint::run_messages
+}  // namespace stillpoint::ros2_messages

@@ -1,4 +1,4 @@
-#include "mcap_writer/compression.hpp"
+#include "ros2_messages/compression.hpp"
 
 #include <lz4frame.h>
 #include <zstd.h>
@@ -7,7 +7,7 @@
 
 #include "stillpoint/error.hpp"
 
-namespace stillpoint::mcap_writer {
+namespace stillpoint::ros2_messages {
 namespace {
 
 [[noreturn]] void fail(const char* reason) {
@@ -61,4 +61,4 @@ Bytes compressed(const Bytes& data, Compression compression) {
   return data;
 }
 
-}  // namespace stillpoint::mcap_writer
+}  // namespace stillpoint::ros2_messages

@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-namespace stillpoint::mcap_writer {
+namespace stillpoint::ros2_messages {
 
 /// "geometry_msgs/msg/PoseStamped".
 std::string schema_name(std::string_view type);
@@ -13,4 +13,4 @@ std::string schema_name(std::string_view type);
 /// of all types in it: what MCAP calls `ros2msg`.
 std::string schema_text(std::string_view type);
 
-}  // namespace stillpoint::mcap_writer
+}  // namespace stillpoint::ros2_messages

@@ -9,10 +9,10 @@
 #include <string_view>
 #include <utility>
 
-#include "mcap_writer/byte_writer.hpp"
+#include "ros2_messages/byte_writer.hpp"
 #include "stillpoint/error.hpp"
 
-namespace stillpoint::mcap_writer {
+namespace stillpoint::ros2_messages {
 
 /// Appends the fields of one message in the order of its definition.
 class CdrWriter {
@@ -49,4 +49,4 @@ class CdrWriter {
   Bytes bytes_ = {0, 1, 0, 0};  // CDR_LE, no options
 };
 
-}  // namespace stillpoint::mcap_writer
+}  // namespace stillpoint::ros2_messages

@@ -4,16 +4,16 @@
 #include <optional>
 #include <vector>
 
-#include "mcap_writer/messages.hpp"
-#include "run_messages/mounting.hpp"
+#include "ros2_messages/messages.hpp"
+#include "ros2_messages/mounting.hpp"
 #include "stillpoint/contracts/output.hpp"
 
-namespace stillpoint::run_messages {
+namespace stillpoint::ros2_messages {
 
 struct PoseMessages {
-  mcap_writer::Transform transform;
-  mcap_writer::Odometry odometry;
-  mcap_writer::PoseMessage pose;
+  Transform transform;
+  Odometry odometry;
+  PoseMessage pose;
 };
 
 /// Messages of one frame after the other. The velocity is that from the frame before, where that
@@ -31,7 +31,7 @@ class PoseSequence {
 };
 
 /// Of the tracked frames, as the map's key frames are now.
-mcap_writer::Path path_of(const SparseMap& map, const std::vector<TrackedPose>& poses,
-                          const Mounting& mounting, double time);
+Path path_of(const SparseMap& map, const std::vector<TrackedPose>& poses, const Mounting& mounting,
+             double time);
 
-}  // namespace stillpoint::run_messages
+}  // namespace stillpoint::ros2_messages

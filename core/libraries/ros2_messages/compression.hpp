@@ -1,9 +1,9 @@
 // Compression of chunks.
 #pragma once
 
-#include "mcap_writer/byte_writer.hpp"
+#include "ros2_messages/byte_writer.hpp"
 
-namespace stillpoint::mcap_writer {
+namespace stillpoint::ros2_messages {
 
 enum class Compression { kNone, kLz4, kZstd };
 
@@ -13,4 +13,4 @@ const char* name_of(Compression compression);
 /// Quickly rather than tightly: a frame of LZ4, or one of Zstandard.
 Bytes compressed(const Bytes& data, Compression compression);
 
-}  // namespace stillpoint::mcap_writer
+}  // namespace stillpoint::ros2_messages

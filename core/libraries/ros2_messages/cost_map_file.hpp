@@ -4,12 +4,12 @@
 #include <filesystem>
 #include <optional>
 
-#include "mcap_writer/messages.hpp"
+#include "ros2_messages/messages.hpp"
 
-namespace stillpoint::run_messages {
+namespace stillpoint::ros2_messages {
 
 /// In Stillpoint's world, without a header. Nothing when the folder is empty or holds no cost map,
 /// which is so where no floor was found. Throws Error(kData) for files that are none.
-std::optional<mcap_writer::OccupancyGrid> read_cost_map(const std::filesystem::path& folder);
+std::optional<OccupancyGrid> read_cost_map(const std::filesystem::path& folder);
 
-}  // namespace stillpoint::run_messages
+}  // namespace stillpoint::ros2_messages

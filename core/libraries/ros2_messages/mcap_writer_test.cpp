@@ -1,4 +1,4 @@
-#include "mcap_writer/mcap_writer.hpp"
+#include "ros2_messages/mcap_writer.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -8,13 +8,13 @@
 #include <limits>
 #include <string>
 
-#include "mcap_writer/frames.hpp"
-#include "mcap_writer/message_type.hpp"
+#include "ros2_messages/frames.hpp"
+#include "ros2_messages/message_type.hpp"
 #include "stillpoint/error.hpp"
 #include "support/recording_writer.hpp"
 
 // tests/mcap reads files by the specification, and with the readers of others.
-namespace stillpoint::mcap_writer {
+namespace stillpoint::ros2_messages {
 namespace {
 
 namespace fs = std::filesystem;
@@ -129,4 +129,4 @@ TEST(Frames, TheMapHasItsZAxisUp) {
 }
 
 }  // namespace
-}  // namespace stillpoint::mcap_writer
+}  // namespace stillpoint::ros2_messages

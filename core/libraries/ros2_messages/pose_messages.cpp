@@ -1,8 +1,8 @@
-#include "run_messages/pose_messages.hpp"
+#include "ros2_messages/pose_messages.hpp"
 
 #include "stillpoint/support/trajectory.hpp"
 
-namespace stillpoint::run_messages {
+namespace stillpoint::ros2_messages {
 namespace {
 
 /// Of the base in its own frame, from one pose to the next: m/s and rad/s.
@@ -34,7 +34,7 @@ std::optional<PoseMessages> PoseSequence::next(double time, const TrackResult& r
     return std::nullopt;
   }
   const Pose map_from_base = mounting_.map_from_base(result.world_from_camera);
-  const mcap_writer::Header header{time, mounting_.map};
+  const Header header{time, mounting_.map};
   PoseMessages messages{.transform = {header, mounting_.base, map_from_base},
                         .odometry = {header, mounting_.base, map_from_base},
                         .pose = {header, map_from_base}};
@@ -47,13 +47,13 @@ std::optional<PoseMessages> PoseSequence::next(double time, const TrackResult& r
   return messages;
 }
 
-mcap_writer::Path path_of(const SparseMap& map, const std::vector<TrackedPose>& poses,
-                          const Mounting& mounting, double time) {
-  mcap_writer::Path path{{time, mounting.map}, {}};
+Path path_of(const SparseMap& map, const std::vector<TrackedPose>& poses, const Mounting& mounting,
+             double time) {
+  Path path{{time, mounting.map}, {}};
   for (const TrackedPose& pose : poses)
     if (const auto in_world = world_from_camera(map, pose))
       path.poses.push_back({pose.time, mounting.map_from_base(*in_world)});
   return path;
 }
 
-}  // namespace stillpoint::run_messages
+}  // namespace stillpoint::ros2_messages

@@ -1,8 +1,8 @@
-#include "run_messages/pose_messages.hpp"
+#include "ros2_messages/pose_messages.hpp"
 
 #include <gtest/gtest.h>
 
-namespace stillpoint::run_messages {
+namespace stillpoint::ros2_messages {
 namespace {
 
 /// The camera is 1 m above the base, looking forward.
@@ -57,4 +57,4 @@ TEST(PoseSequence, UncertaintyIsThatOfTheBaseInTheMap) {
 }
 
 }  // namespace
-}  // namespace stillpoint::run_messages
+}  // namespace stillpoint::ros2_messages
