@@ -97,7 +97,13 @@ Participant::Participant(int domain) {
                  "see whether there is a network, and what CYCLONEDDS_URI says");
 }
 
-Participant::~Participant() { dds_delete(id_); }
+Participant::~Participant() {
+  try {
+    dds_delete(id_);
+  } catch (const Error&) {
+    // A library without this function: the process ends what was begun.
+  }
+}
 
 Writer::Writer(const Participant& participant, const std::string& topic, std::string_view type,
                Kept kept)
