@@ -94,5 +94,18 @@ INSTANTIATE_TEST_SUITE_P(Cases, WrongResults,
                                   wrong.how;
                          });
 
+TEST(WrongResultsAtTheEnd, ASourceWithoutFramesIsSaid) {
+  const TemporaryFolder folder;
+  const fs::path pipeline = folder.write("empty.yaml",
+                                         "version: 1\nsource: {type: wrong, how: no_frames}\n"
+                                         "tracker: {type: wrong, how: right}\n");
+  const Outcome outcome =
+      call({"run", pipeline.string(), "-o", (folder.path() / "out").string()},
+           {.environment = {{"STILLPOINT_PLUGIN_PATH",
+                             std::string(STILLPOINT_BINARY_DIR) + "/tests/plugins_bad/plugins"}}});
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_THAT(outcome.err, HasSubstr("warning: the source gave no frame"));
+}
+
 }  // namespace
 }  // namespace stillpoint::testing

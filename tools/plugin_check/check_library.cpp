@@ -124,8 +124,9 @@ LibraryResult check_library(
     const CheckRequest& request,
     const std::function<void(const TypeResult& type, const CaseResult& result)>& done) {
   if (std::error_code error; !fs::is_regular_file(request.library, error))
-    throw Error(Fault::kUsage, "there is no such file", request.library.string(),
-                "give the library, build/libstillpoint_NAME.so");
+    throw Error(Fault::kUsage,
+                fs::is_directory(request.library, error) ? "is a folder" : "there is no such file",
+                request.library.string(), "give the library, build/libstillpoint_NAME.so");
   LibraryResult library = library_of(request);
   const std::vector<Scenario> scenarios = make_scenarios();
   for (TypeResult& type : library.types)

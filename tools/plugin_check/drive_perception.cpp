@@ -41,7 +41,7 @@ class SourceDrive final : public Drive {
     observer_.call("report", {}, [&] { return stage_.report(); });
     observer_.call("ground_truth", {}, [&] { return stage_.ground_truth(); });
     if (next_ == 0)
-      throw Failure({"it gave no frame", "a run without frames is an error",
+      throw Failure({"it gave no frame", "a run without frames has no result",
                      "throw Error(Fault::kData) in the constructor when there is nothing to read"});
     if (next_ == kMaxSourceFrames) return;
     if (observer_.call("next", next_, [&] { return stage_.next(); }))
@@ -151,7 +151,7 @@ class MovingCheckerDrive final : public FrameDrive<MovingChecker> {
     const MovingPoints result = call(
         "check", i, [&] { return stage_.check(*input(i - 1).frame, *input(i).frame, history(i)); });
     check("check", i, [&] {
-      check_moving_points(result);
+      check_moving_points(result, input(i).frame->gray.size());
       check_thoroughly(result);
     });
     observer_.saw(result.reliable);
@@ -191,7 +191,7 @@ class MapCheckerDrive final : public FrameDrive<MapChecker> {
     const MapEvidence result =
         call("check", i, [&] { return stage_.check(*now.frame, guesses, map_); });
     check("check", i, [&] {
-      check_evidence(result);
+      check_evidence(result, now.frame->gray.size());
       check_thoroughly(result);
     });
     observer_.saw(result.log_odds);

@@ -120,6 +120,7 @@ std::vector<Scenario> make_scenarios() {
   all.push_back(named(usual, "usual recording", "no run can use the stage",
                       "the contract's header says what each function must give; how to follow a "
                       "case with gdb: the page 'Debugging a plugin'"));
+  all.back().is_usual = true;
   all.push_back(named(
       with_frames(few, [](Frame& frame) { frame.depth = cv::Scalar(0); }), "images without depth",
       "a sensor measures nothing that is too near, and nothing in the sun",

@@ -29,6 +29,7 @@ struct Scenario {
   std::string remedy;  ///< for a stage that fails on it
   std::vector<Input> inputs;
   KeyFrameId first_keyframe = 0;
+  bool is_usual = false;  ///< nothing is missing or odd: a map of it is not empty
   bool of_images = true;  ///< false: only labels, points and weights differ from the usual
   /// For trackers only: from this input on, the map stays as it is.
   std::optional<std::size_t> localised_from = {};

@@ -81,6 +81,8 @@ bool run_and_print(Stages stages, const PipelineConfig& config, const RunFolder&
   }
   folder.remove_earlier_files();
   print();
+  if (table->no_frames() && table->complete())
+    folder.log(LogLevel::kWarning, "the source gave no frame: the trajectory is empty");
   if (table->nothing_tracked())
     folder.log(
         LogLevel::kWarning,

@@ -18,8 +18,9 @@ class RunTable final : public Output {
   void print(std::ostream& stream) const;
   /// False when the run was stopped or failed.
   bool complete() const { return complete_; }
+  bool no_frames() const { return tracking_.frames == 0; }
   /// There were frames, and none of them has a pose.
-  bool nothing_tracked() const { return tracking_.frames > 0 && tracking_.tracked == 0; }
+  bool nothing_tracked() const { return !no_frames() && tracking_.tracked == 0; }
 
  private:
   void print_run(std::ostream& stream) const;

@@ -11,7 +11,7 @@ namespace {
 MapEvidence compare(MapChecker& checker, const Frame& frame, std::span<const Pose> guesses,
                     const SparseMap& map, bool thorough) {
   MapEvidence found = checker.check(frame, guesses, map);
-  check_evidence(found);
+  check_evidence(found, frame.gray.size());
   if (thorough) check_thoroughly(found);
   return found;
 }

@@ -11,7 +11,7 @@ namespace {
 MovingPoints check_motion(MovingChecker& checker, const Frame& previous, const Frame& frame,
                           const TrackingHistory& history, bool thorough) {
   MovingPoints found = checker.check(previous, frame, history);
-  check_moving_points(found);
+  check_moving_points(found, frame.gray.size());
   if (thorough) check_thoroughly(found);
   return found;
 }

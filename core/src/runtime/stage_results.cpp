@@ -2,8 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <cstdlib>
 #include <opencv2/core.hpp>
+#include <optional>
+#include <sstream>
 #include <string>
+#include <vector>
 
 #include "stillpoint/error.hpp"
 #include "stillpoint/runtime/stage_requirement.hpp"
@@ -12,8 +17,9 @@
 namespace stillpoint {
 namespace {
 
-constexpr double kLargestSkew = 1e-3;  // of a rotation matrix from an orthonormal one
-constexpr double kSamePose = 1e-6;     // relative difference of two matrices
+constexpr double kLargestSkew = 1e-3;   // of a rotation matrix from an orthonormal one
+constexpr double kSamePose = 1e-6;      // relative difference of two matrices
+constexpr float kFarthestMedian = 200;  // metres; a room's is above that in millimetres
 
 /// `what` is in the plural: "the labels".
 void check_image(const cv::Mat& image, cv::Size frame, const std::string& what,
@@ -49,6 +55,43 @@ int highest(const cv::Mat& image) {
   double value = 0;
   cv::minMaxLoc(image, nullptr, &value);
   return static_cast<int>(value);
+}
+
+std::string text_of(const cv::Point2f& position) {
+  std::ostringstream text;
+  text << position.x << ", " << position.y;
+  return text.str();
+}
+
+std::optional<cv::Point2f> position_outside(const MovingPoints& moving, cv::Size frame) {
+  const cv::Rect image({}, frame);
+  for (const PointMotion& point : moving.points)
+    for (const cv::Point2f& position : {point.previous, point.current})
+      if (!image.contains(cv::Point(position))) return position;
+  return std::nullopt;
+}
+
+/// Whether squares of one number of pixels, so many in each direction, cover a frame; what is left
+/// of it at the right and below may have cells of its own or none.
+bool are_cells(cv::Size cells, cv::Size frame) {
+  for (int side = 1; side <= std::max(frame.width, frame.height); ++side)
+    if (std::abs(cells.width * side - frame.width) < side &&
+        std::abs(cells.height * side - frame.height) < side)
+      return true;
+  return false;
+}
+
+/// Of the pixels with a measurement, from a sample of the image; 0 without any.
+float median_depth(const cv::Mat& depth) {
+  constexpr int kStep = 8;  // pixels
+  std::vector<float> measured;
+  for (int y = 0; y < depth.rows; y += kStep)
+    for (int x = 0; x < depth.cols; x += kStep)
+      if (const float z = depth.at<float>(y, x); z > 0) measured.push_back(z);
+  if (measured.empty()) return 0;
+  const auto middle = measured.begin() + static_cast<std::ptrdiff_t>(measured.size() / 2);
+  std::ranges::nth_element(measured, middle);
+  return *middle;
 }
 
 void check_objects(const Segmentation& segmentation, std::size_t classes) {
@@ -130,6 +173,13 @@ void check_frame(const Frame& frame, std::uint32_t index, const Frame* previous)
   require_of_stage(!previous || previous->gray.size() == frame.gray.size(),
                    "the images have another size than those before",
                    "all images of a run have one size");
+  if (previous) return;
+  const float depth = median_depth(frame.depth);
+  require_of_stage(
+      depth < kFarthestMedian,
+      "half of the first depth image lies beyond " +
+          std::to_string(static_cast<int>(std::min(depth, 1e9F))) + " m",
+      "give depth in metres; of images in other units, the camera's depth_factor says it");
 }
 
 void check_segmentation(const Segmentation& segmentation, cv::Size frame, std::size_t classes) {
@@ -151,7 +201,7 @@ void check_segmentation(const Segmentation& segmentation, cv::Size frame, std::s
                    "number instances from 1, as in the list of objects");
 }
 
-void check_moving_points(const MovingPoints& moving) {
+void check_moving_points(const MovingPoints& moving, cv::Size frame) {
   require_of_stage(std::ranges::all_of(moving.points,
                                        [](const PointMotion& point) {
                                          return std::isfinite(point.previous.x + point.previous.y +
@@ -161,10 +211,19 @@ void check_moving_points(const MovingPoints& moving) {
   require_of_stage(!moving.camera_motion || is_pose(*moving.camera_motion),
                    "the camera's motion is no rigid motion",
                    "leave camera_motion empty where it was not found");
+  if (const auto outside = position_outside(moving, frame))
+    require_of_stage(false, "a point at " + text_of(*outside) + " is not in the image",
+                     "points are in pixels of the frame; leave out those that left it");
 }
 
-void check_evidence(const MapEvidence& evidence) {
-  if (!evidence.log_odds.empty()) check_type(evidence.log_odds, CV_32FC1, "the evidence");
+void check_evidence(const MapEvidence& evidence, cv::Size frame) {
+  if (evidence.log_odds.empty()) return;
+  check_type(evidence.log_odds, CV_32FC1, "the evidence");
+  require_of_stage(are_cells(evidence.log_odds.size(), frame),
+                   "the evidence has " + size_text(evidence.log_odds.size()) +
+                       " cells, which do not cover the frame of " + size_text(frame) +
+                       " pixels as squares",
+                   "give one value per square of n x n pixels, from the upper left corner on");
 }
 
 void check_weights(const StaticWeights& weights, const Segmentation& segmentation, cv::Size frame) {

@@ -141,14 +141,40 @@ TEST(StageResults, WrongWeightsAreRefused) {
 
 TEST(StageResults, WrongMotionAndEvidenceAreRefused) {
   MovingPoints moving{.points = {{.previous = {1, 2}, .current = {1, 2}}}, .reliable = true};
-  EXPECT_EQ(message_of([&] { check_moving_points(moving); }), "");
+  const auto message = [&] { return message_of([&] { check_moving_points(moving, kSize); }); };
+  EXPECT_EQ(message(), "");
+  moving.points[0].previous = {-1, 2};
+  EXPECT_THAT(message(), HasSubstr("a point at -1, 2 is not in the image; points are in pixels"));
+  moving.points[0].previous = {3, 2.75F};
+  EXPECT_THAT(message(), HasSubstr("a point at 3, 2.75 is not in the image"));
   moving.points[0].current.y = static_cast<float>(kNan);
-  EXPECT_THAT(message_of([&] { check_moving_points(moving); }), HasSubstr("a point is not finite"));
+  EXPECT_THAT(message(), HasSubstr("a point is not finite"));
   moving = {.camera_motion = Pose(Eigen::Scaling(2.0))};
-  EXPECT_THAT(message_of([&] { check_moving_points(moving); }), HasSubstr("no rigid motion"));
-  EXPECT_EQ(message_of([] { check_evidence({}); }), "");
-  EXPECT_THAT(message_of([] { check_evidence({cv::Mat(1, 1, CV_64FC1)}); }),
-              HasSubstr("the evidence is of CV_64FC1"));
+  EXPECT_THAT(message(), HasSubstr("no rigid motion"));
+}
+
+TEST(StageResults, WrongEvidenceIsRefused) {
+  const auto message = [](cv::Size cells, int type = CV_32FC1, cv::Size frame = {251, 187}) {
+    return message_of([&] { check_evidence({cv::Mat(cells, type)}, frame); });
+  };
+  EXPECT_EQ(message({}), "");
+  EXPECT_EQ(message({251, 187}), "");
+  EXPECT_EQ(message({62, 46}), "");
+  EXPECT_EQ(message({63, 47}), "");
+  EXPECT_EQ(message({1, 1}, CV_32FC1, {4, 3}), "");
+  EXPECT_THAT(message({62, 46}, CV_64FC1), HasSubstr("the evidence is of CV_64FC1"));
+  EXPECT_THAT(message({62, 62}), HasSubstr("the evidence has 62 x 62 cells, which do not cover "
+                                           "the frame of 251 x 187 pixels as squares; give one"));
+  EXPECT_THAT(message({187, 251}), HasSubstr("do not cover"));
+}
+
+TEST(StageResults, DepthInMillimetresIsRefused) {
+  Frame frame = right_frame();
+  frame.depth.setTo(1530);
+  EXPECT_THAT(message_of([&] { check_frame(frame, 0, nullptr); }),
+              HasSubstr("half of the first depth image lies beyond 1530 m; give depth in metres;"));
+  frame.depth.setTo(0);
+  EXPECT_EQ(message_of([&] { check_frame(frame, 0, nullptr); }), "");
 }
 
 TrackResult right_result(const Frame& frame) {

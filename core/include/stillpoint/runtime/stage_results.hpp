@@ -25,11 +25,11 @@ STILLPOINT_EXPORT void check_frame(const Frame& frame, std::uint32_t index, cons
 STILLPOINT_EXPORT void check_segmentation(const Segmentation& segmentation, cv::Size frame,
                                           std::size_t classes);
 
-/// Of a moving check.
-STILLPOINT_EXPORT void check_moving_points(const MovingPoints& moving);
+/// Of a moving check, for frames of this size.
+STILLPOINT_EXPORT void check_moving_points(const MovingPoints& moving, cv::Size frame);
 
-/// Of a map check.
-STILLPOINT_EXPORT void check_evidence(const MapEvidence& evidence);
+/// Of a map check, for a frame of this size.
+STILLPOINT_EXPORT void check_evidence(const MapEvidence& evidence, cv::Size frame);
 
 /// Of a decision on these labels.
 STILLPOINT_EXPORT void check_weights(const StaticWeights& weights, const Segmentation& segmentation,
