@@ -93,6 +93,8 @@ TEST_F(NewPlugin, NamesThatCannotBe) {
   expect_refused(make("tracker", std::string(65, 'a')), "has 65 characters; take at most 64");
   EXPECT_EQ(make("tracker", std::string(64, 'a')).exit_code, 0);
   EXPECT_EQ(make("tracker", "tester").exit_code, 0);
+  expect_refused(make("tracker", "orb"), "'orb' is already a type of tracker, in ");
+  EXPECT_EQ(make("segmenter", "orb").exit_code, 0);
 }
 
 TEST_F(NewPlugin, FoldersThatAreTaken) {

@@ -92,6 +92,19 @@ void require_name(const std::string& name) {
         "", "take another one, as in my_" + name);
 }
 
+/// A plugin of one's own replaces the one of its type that is there wherever its folder is searched
+/// first.
+void require_new_type(const NewPlugin& plugin) {
+  const LateCalls late = watch_loading();
+  Registry registry;
+  for (const fs::path& folder : default_plugin_folders()) registry.search(folder);
+  if (const PluginType* type = registry.find(plugin.kind, plugin.name))
+    throw Error(Fault::kUsage,
+                "'" + plugin.name + "' is already a type of " + plugin.kind + ", in " +
+                    type->library.string(),
+                "", "take another name, as in my_" + plugin.name);
+}
+
 void require_free(const fs::path& folder) {
   std::error_code error;
   const fs::file_status status = fs::status(folder, error);
@@ -256,6 +269,7 @@ void print_next_steps(const NewPlugin& plugin) {
 void make(NewPlugin plugin) {
   require_kind(plugin.kind);
   require_name(plugin.name);
+  require_new_type(plugin);
   if (plugin.folder.empty()) plugin.folder = plugin.name;
   require_free(plugin.folder);
   const Files project = project_of(plugin);
