@@ -48,8 +48,10 @@ TEST_F(LiveView, StartsAnewForWhoComesAgain) {
 
 TEST_F(LiveView, ClosesOnWhatNoPageOfItsOwnSays) {
   output->frame(report_of(0));
-  for (const std::string& wrong : {std::string("x"), std::string(), std::string("\x01\x01\xff", 3),
-                                   std::string("\x02\x01\x07", 3)}) {
+  constexpr auto kOther = static_cast<char>(kProtocol + 1);
+  for (const std::string& wrong :
+       {std::string("x"), std::string(), std::string{static_cast<char>(kProtocol), 1, '\xff'},
+        std::string{kOther, 1, 7}}) {
     TestViewer viewer(port(*output));
     viewer.send(wrong);
     EXPECT_FALSE(viewer.next());

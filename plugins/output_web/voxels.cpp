@@ -1,6 +1,7 @@
 #include "output_web/voxels.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <tuple>
 #include <utility>
 
@@ -15,6 +16,16 @@ bool precedes(const LabelledPoint& a, const LabelledPoint& b) {
   return key(a) < key(b);
 }
 
+/// Seen again, nearly every voxel's changes a little: sent is a change of this step only.
+std::uint8_t occupancy_step(const LabelledPoint& voxel) {
+  constexpr float kSteps = 15;
+  return static_cast<std::uint8_t>(std::lround(kSteps * std::clamp(voxel.occupancy, 0.0F, 1.0F)));
+}
+
+bool look_alike(const LabelledPoint& a, const LabelledPoint& b) {
+  return a.rgb == b.rgb && a.label == b.label && occupancy_step(a) == occupancy_step(b);
+}
+
 void write_position(const LabelledPoint& voxel, MessageWriter& writer) {
   for (const float value : voxel.position) writer.number(value);
 }
@@ -25,6 +36,7 @@ void write(const Voxels& changed, const Voxels& removed, MessageWriter& writer) 
     write_position(voxel, writer);
     for (const std::uint8_t channel : voxel.rgb) writer.number(channel);
     writer.number(voxel.label);
+    writer.number(occupancy_step(voxel));
   }
   writer.end();
   if (removed.empty()) return;
@@ -51,7 +63,7 @@ VoxelsPtr write_voxel_changes(const VoxelsPtr& before, const VoxelsPtr& after, s
       continue;
     }
     const bool is_new = old == before->end() || precedes(*now, *old);
-    if (is_new || now->rgb != old->rgb || now->label != old->label) changed.push_back(*now);
+    if (is_new || !look_alike(*now, *old)) changed.push_back(*now);
     if (!is_new) ++old;
     known.push_back(*now++);
   }

@@ -11,6 +11,8 @@
 namespace stillpoint::output_web {
 namespace {
 
+constexpr std::size_t kVoxelBytes = 17;
+
 LabelledPoint voxel(float x, std::uint8_t label = 0) {
   return {.position = {x, 0, 0}, .rgb = {1, 2, 3}, .label = label};
 }
@@ -21,7 +23,7 @@ class Scene {
   void take(const Records& records) {
     if (const auto found = records.find(Record::kVoxels); found != records.end())
       for (const std::string& list : found->second)
-        for (std::size_t at = 0; at < list.size(); at += 16)
+        for (std::size_t at = 0; at < list.size(); at += kVoxelBytes)
           labels[number_at<float>(list, at)] = number_at<std::uint8_t>(list, at + 15);
     if (const auto found = records.find(Record::kVoxelsRemoved); found != records.end())
       for (const std::string& list : found->second)
@@ -52,8 +54,20 @@ TEST_F(VoxelChanges, AreWhatHasChangedOnly) {
   EXPECT_EQ(scene.labels, (std::map<float, int>{{1, 0}, {2, 0}, {3, 0}}));
   const std::size_t header = 1 + 5;
   EXPECT_EQ(send(sorted_voxels({voxel(1), voxel(2), voxel(3)})), header);
-  EXPECT_EQ(send(sorted_voxels({voxel(1), voxel(2, 7), voxel(4)})), header + 2 * 16 + 5 + 12);
+  EXPECT_EQ(send(sorted_voxels({voxel(1), voxel(2, 7), voxel(4)})),
+            header + 2 * kVoxelBytes + 5 + 12);
   EXPECT_EQ(scene.labels, (std::map<float, int>{{1, 0}, {2, 7}, {4, 0}}));
+}
+
+TEST_F(VoxelChanges, OfOccupancyAreSentFromAFifteenthOn) {
+  LabelledPoint seen = voxel(1);
+  seen.occupancy = 0.72F;
+  send(sorted_voxels({seen}));
+  const std::size_t header = 1 + 5;
+  seen.occupancy = 0.73F;
+  EXPECT_EQ(send(sorted_voxels({seen})), header);
+  seen.occupancy = 0.8F;
+  EXPECT_EQ(send(sorted_voxels({seen})), header + kVoxelBytes);
 }
 
 TEST_F(VoxelChanges, ComeInPartsThatAddUp) {
@@ -66,7 +80,7 @@ TEST_F(VoxelChanges, ComeInPartsThatAddUp) {
     const VoxelsPtr now = sorted_voxels(wanted);
     int parts = 0;
     while (known != now) {
-      EXPECT_LE(send(now, 10), 1 + 5 + 10 * 16 + 5u);
+      EXPECT_LE(send(now, 10), 1 + 5 + 10 * kVoxelBytes + 5);
       ASSERT_LT(++parts, 4);
     }
     EXPECT_EQ(parts, 3);

@@ -116,6 +116,13 @@ TEST(PluginsCheck, ATrackerThatChangesAMapThatStaysAsItIsFails) {
   EXPECT_THAT(outcome.err, HasSubstr("1 of 1 cases failed"));
 }
 
+TEST(PluginsCheck, AMapThatIsNotSavedFails) {
+  const Outcome outcome = call({"plugins", "check", library(kBad, "wrong_results"),
+                                "map_backend/wrong", "--case", "usual recording"});
+  EXPECT_EQ(outcome.exit_code, 1) << outcome.out;
+  EXPECT_THAT(outcome.out, HasSubstr("save() wrote no file, although key frames were integrated"));
+}
+
 TEST(PluginsCheck, TheyPassTheUsualRecording) {
   for (const std::string how : {"shared", "fixed_size", "unfinished"}) {
     const Outcome outcome = call({"plugins", "check", library(kBad, "careless"), "--set",
@@ -185,6 +192,7 @@ TEST(PluginsCheck, RefusesWhatIsNotThere) {
   };
   const std::string good = library(kShipped, "map_checks");
   EXPECT_THAT(error_of({"nowhere.so"}), HasSubstr("nowhere.so: there is no such file"));
+  EXPECT_THAT(error_of({kBad.string()}), HasSubstr("plugins: is a folder; give the library"));
   EXPECT_THAT(error_of({good, "depth_consistancy"}),
               HasSubstr("did you mean 'depth_consistency'?"));
   EXPECT_THAT(error_of({good, "--case", "black image"}), HasSubstr("did you mean 'black images'?"));

@@ -165,7 +165,10 @@ class MapBackendDrive final : public FrameDrive<MapBackend> {
   void finish() override {
     save();
     const auto points = observer_.call("occupied", {}, [&] { return stage_.occupied(); });
-    for (const LabelledPoint& point : points) observer_.saw(point.label);
+    for (const LabelledPoint& point : points) {
+      require_right(point);
+      observer_.saw(point.label);
+    }
     observer_.saw(points.size());
     points_ = points.size();
     save();  // a map may be saved more than once
@@ -186,12 +189,31 @@ class MapBackendDrive final : public FrameDrive<MapBackend> {
     moved_.push_back({keyframe.id, keyframe.world_from_camera});
   }
 
+  static void require_right(const LabelledPoint& point) {
+    if (!point.position.allFinite())
+      throw Failure({"a point of occupied() has no finite position",
+                     "viewers and point clouds cannot place it", "leave out such points"});
+    if (!(point.occupancy >= 0 && point.occupancy <= 1))
+      throw Failure({"a point of occupied() has occupancy " + std::to_string(point.occupancy),
+                     "viewers take it for a probability",
+                     "give 0 to 1, or leave it at 1 where the map has none"});
+  }
+
   void save() {
     observer_.call("save", {}, [&] { stage_.save(folder_); });
-    for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder_))
-      if (entry.is_regular_file() && entry.file_size() == 0)
+    bool wrote = false;
+    for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder_)) {
+      if (!entry.is_regular_file()) continue;
+      wrote = true;
+      if (entry.file_size() == 0)
         throw Failure({"save() wrote an empty file, " + entry.path().filename().string(),
-                       "whoever opens it finds nothing", "write the file, or none"});
+                       "whoever opens it finds nothing", "leave out files that hold nothing"});
+    }
+    if (!wrote && scenario_.is_usual)
+      throw Failure({"save() wrote no file, although key frames were integrated",
+                     "a run ends with an empty folder for its dense map",
+                     "write into the folder that save() is given, with commit() where the files "
+                     "are AtomicFile"});
   }
 
   std::vector<MovedKeyFrame> moved_;

@@ -56,7 +56,8 @@ std::vector<LabelledPoint> occupied_points(const SemanticOctree& tree) {
     const auto color = voxel.getColor();
     points.push_back({.position = at.cast<float>(),
                       .rgb = {color.r, color.g, color.b},
-                      .label = voxel.classes().best()});
+                      .label = voxel.classes().best(),
+                      .occupancy = static_cast<float>(voxel.getOccupancy())});
   });
   return points;
 }

@@ -1,6 +1,6 @@
 // Messages as the plugin's README.md lays them out: little-endian numbers in records.
 
-export const PROTOCOL = 1;
+export const PROTOCOL = 2;
 const ASK = 1, DO = 2;
 export const COMMANDS = {pause: 1, goOn: 2, step: 3, end: 4, saveMap: 5};
 
@@ -93,7 +93,8 @@ const RECORDS = {
   13: ['fit', (r) => ({worldFromTruth: r.pose(), rmse: r.f32(), pairs: r.u32()})],
   14: ['end', (r) => JSON.parse(r.text())],
   15: ['steering', (r) => JSON.parse(r.text())],
-  16: ['voxels', (r) => r.all(() => ({position: r.floats(3), rgb: [r.u8(), r.u8(), r.u8()], label: r.u8()}))],
+  16: ['voxels', (r) => r.all(() => ({
+    position: r.floats(3), rgb: [r.u8(), r.u8(), r.u8()], label: r.u8(), occupancy: r.u8() / 15}))],
   17: ['voxelsRemoved', (r) => r.all(() => r.floats(3))],
 };
 

@@ -30,9 +30,9 @@ export class VoxelLayer {
     const cell = smallestGap(voxels.map(({position}) => position[0]));
     const positions = new Float32Array(3 * voxels.length), colors = new Float32Array(3 * voxels.length);
     const color = new Color();
-    voxels.forEach(({position, rgb, label}, i) => {
+    voxels.forEach(({position, rgb, label, occupancy}, i) => {
       positions.set(position, 3 * i);
-      surfaceColor(mode, {rgb, label, height: -position[1]}, run.hello.classes, color);
+      surfaceColor(mode, {rgb, label, height: -position[1], occupancy}, run.hello.classes, color);
       if (position.reduce((sum, x) => sum + Math.floor(x / cell), 0) & 1) color.multiplyScalar(ODD_SHADE);
       colors.set([color.r, color.g, color.b], 3 * i);
     });

@@ -17,7 +17,7 @@ namespace stillpoint {
 class STILLPOINT_EXPORT MapBackend {
  public:
   static constexpr const char* kKind = "map_backend";
-  static constexpr std::uint32_t kApi = 1;  ///< see kPluginApi
+  static constexpr std::uint32_t kApi = 2;  ///< see kPluginApi
   virtual ~MapBackend();
 
   /// Once per key frame, in order, after local mapping has refined it.
