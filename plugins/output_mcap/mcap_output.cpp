@@ -18,7 +18,8 @@ constexpr int kJpegQuality = 85;  // per cent
 }  // namespace
 
 McapOutput::McapOutput(const Options& options, const StageContext& context)
-    : writer_(context.output_directory / options.file, options.compression),
+    : map_period_(options.map_period),
+      writer_(context.output_directory / options.file, options.compression),
       topics_{.transform = writer_.add_channel<ros2_messages::Transform>("/tf"),
               .odometry = writer_.add_channel<ros2_messages::Odometry>("/odometry"),
               .state = writer_.add_channel<ros2_messages::Text>("/tracking_state"),
@@ -42,6 +43,23 @@ void McapOutput::frame(const FrameReport& report) {
   writer_.write(topics_.state, time, ros2_messages::Text{name_of(report.result.state)});
   write_pose(time, report.result);
   if (image_topics_) write_image(*report.frame);
+  if (map_period_ > 0) write_map_so_far(report);
+}
+
+void McapOutput::write_map_so_far(const FrameReport& report) {
+  const double time = report.frame->time;
+  const Header header{time, mounting_.map};
+  if (!next_map_) next_map_ = next_dense_map_ = time + map_period_;
+  if (time >= *next_map_) {
+    write_keyframes(*report.map, header);
+    write_landmarks(*report.map, header);
+    next_map_ = time + map_period_;
+  }
+  if (!run_ || time < *next_dense_map_) return;
+  if (const auto points = run_->dense_map()) {  // or with the next frame
+    if (!points->empty()) write_dense_map(*points, header);
+    next_dense_map_ = time + map_period_;
+  }
 }
 
 void McapOutput::write_pose(double time, const TrackResult& result) {
@@ -62,20 +80,28 @@ void McapOutput::write_image(const Frame& frame) {
 }
 
 void McapOutput::finish(const RunSummary& summary) {
+  run_.reset();
   if (!summary.poses.empty()) {
     const Header header{summary.poses.back().time, mounting_.map};
     writer_.write(topics_.path, header.time,
                   ros2_messages::path_of(summary.map, summary.poses, mounting_, header.time));
     write_keyframes(summary.map, header);
-    writer_.write(topics_.landmarks, header.time,
-                  ros2_messages::landmark_cloud(summary.map, mounting_, header.time));
-    if (const auto points = summary.dense_map(); !points.empty())
-      writer_.write(topics_.dense_map, header.time,
-                    ros2_messages::dense_cloud(points, mounting_, header.time));
+    write_landmarks(summary.map, header);
+    if (const auto points = summary.dense_map(); !points.empty()) write_dense_map(points, header);
     write_voxels(summary, header);
     write_cost_map(summary, header);
   }
   writer_.finish();
+}
+
+void McapOutput::write_landmarks(const SparseMap& map, const Header& header) {
+  writer_.write(topics_.landmarks, header.time,
+                ros2_messages::landmark_cloud(map, mounting_, header.time));
+}
+
+void McapOutput::write_dense_map(const std::vector<LabelledPoint>& points, const Header& header) {
+  writer_.write(topics_.dense_map, header.time,
+                ros2_messages::dense_cloud(points, mounting_, header.time));
 }
 
 void McapOutput::write_keyframes(const SparseMap& map, const Header& header) {

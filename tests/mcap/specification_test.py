@@ -28,6 +28,7 @@ outputs:
   - {type: mcap, file: zstd.mcap, images: true}
   - {type: mcap, file: lz4.mcap, compression: lz4}
   - {type: mcap, file: none.mcap, compression: none}
+  - {type: mcap, file: often.mcap, map_period: 0.19}
 runtime: {mode: inline}
 """
 FULL = """tracker: {type: orb}
@@ -215,6 +216,17 @@ class Run(unittest.TestCase):
         self.assertEqual(len(points), cloud["width"])
         self.assertGreater(len(points), 100)
         self.assertGreater(sorted(x for x, _, _ in points)[len(points) // 2], 0.5)  # in front of it
+
+    def test_the_map_grows_while_the_run_goes(self):
+        messages = mcap("run/often.mcap").messages
+        begin = messages["/tf"][0][0]
+        sizes = {"/keyframes": lambda path: len(path["poses"]), "/landmarks": lambda cloud: cloud["width"],
+                 "/dense_map": lambda cloud: cloud["width"]}
+        for topic, size in sizes.items():
+            times = [round(1e-9 * (time - begin), 2) for time, _ in messages[topic]]
+            self.assertEqual(times, [0.2, 0.4, 0.6, 0.77], topic)  # and at the end
+            self.assertGreater(size(messages[topic][-1][1]), size(messages[topic][0][1]), topic)
+            self.assertEqual(messages[topic][-1], self.messages[topic][-1], topic)
 
     def test_a_torn_file_has_all_of_its_whole_chunks(self):
         data = (FOLDER / "run/zstd.mcap").read_bytes()
