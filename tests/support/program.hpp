@@ -90,6 +90,17 @@ class Program {
       if (!read_more()) return false;
     return true;
   }
+  /// The whole line of standard error that holds `text`; empty when the program ended without it.
+  std::string wait_for_line(const std::string& text) {
+    std::size_t at = std::string::npos, end = std::string::npos;
+    while (end == std::string::npos) {
+      at = outcome_.err.find(text);
+      if (at != std::string::npos) end = outcome_.err.find('\n', at);
+      if (end == std::string::npos && !read_more()) return {};
+    }
+    const std::size_t begin = outcome_.err.rfind('\n', at) + 1;  // npos + 1 is 0
+    return outcome_.err.substr(begin, end - begin);
+  }
   void send(int signal) const { ::kill(process_, signal); }
   /// Nobody listens to standard error any more.
   void stop_reading() {

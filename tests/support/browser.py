@@ -1,4 +1,4 @@
-"""test_browser.py CHROMIUM URL CONDITION [PICTURE]: opens the page, waits until the JavaScript expression holds, and
+"""browser.py CHROMIUM URL CONDITION [PICTURE]: opens the page, waits until the JavaScript expression holds, and
 prints the document; errors of its scripts go to standard error. With PICTURE, a PNG of it, of 1280 x 800 px.
 
 Speaks the DevTools protocol over a WebSocket: JSON in text frames."""
@@ -14,7 +14,7 @@ import tempfile
 
 WAIT = """new Promise((resolve, reject) => {
   const look = () => (CONDITION) ? resolve(document.documentElement.outerHTML) : setTimeout(look, 50);
-  setTimeout(() => reject(new Error('not within 20 s: ' + document.body.innerText)), 20000);
+  setTimeout(() => reject(new Error('not within a minute: ' + document.body.innerText)), 60000);
   look();
 })"""
 
