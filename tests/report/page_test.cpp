@@ -2,14 +2,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <cstdlib>
 #include <nlohmann/json.hpp>
-#include <sstream>
 
 #include "report/page_json.hpp"
 #include "report/report_reader.hpp"
 #include "report/run_reader.hpp"
 #include "study/cell_result.hpp"
+#include "support/browser.hpp"
 #include "support/program.hpp"
 #include "support/simulated_recording.hpp"
 
@@ -28,7 +27,8 @@ const fs::path& finished_run() {
     const fs::path path = folder.path() / "a run";
     const Outcome outcome =
         call({"run", "stillpoint", "--dataset", recording_with_people().string(), "-o",
-              path.string(), "--quiet", "--images", "--set", "runtime.mode=inline"});
+              path.string(), "--quiet", "--images", "--with", "web.port=0", "--with",
+              "web.record=live.html", "--set", "runtime.mode=inline"});
     EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
     return path;
   }();
@@ -58,6 +58,7 @@ TEST(RunReader, HasAllThatARunHasLeft) {
   EXPECT_FALSE(run.stages.empty());
   EXPECT_FALSE(run.pictures.empty());
   EXPECT_FALSE(run.octree.empty());
+  EXPECT_EQ(run.live_view, finished_run() / "live.html");
   double largest = 0.0;
   for (const report::TracePoint& point : run.trace)
     largest = std::max(largest, std::abs((point.truth - point.estimate).norm() - point.error_m));
@@ -73,7 +74,8 @@ TEST(ReportProgram, WritesPageAndTablesOfARunAndChangesNothingElse) {
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_THAT(outcome.out, AllOf(HasSubstr("page.html"), HasSubstr("tables: page.tex, page.csv")));
   EXPECT_THAT(text_of(page), AllOf(HasSubstr("id=\"report\">"), HasSubstr("id=\"run-0\">"),
-                                   HasSubstr("id=\"map-0\">"), HasSubstr("id=\"picture-0-0\">")));
+                                   HasSubstr("id=\"map-0\">"), HasSubstr("id=\"picture-0-0\">"),
+                                   HasSubstr("id=\"replay-0\">")));
   EXPECT_THAT(text_of(folder.path() / "new/page.tex"), HasSubstr("\\toprule"));
   EXPECT_THAT(text_of(folder.path() / "new/page.csv"), HasSubstr("Runs,a run,ATE RMSE (m),0.0"));
   EXPECT_EQ(text_of(finished_run() / "summary.json"), before);
@@ -221,29 +223,16 @@ TEST(ReportProgram, AnIncompleteStudySaysSo) {
   EXPECT_THAT(csv, HasSubstr("walking,plain,0.1,0.1000,0\n"));
 }
 
-fs::path browser() {
-  const char* path = std::getenv("PATH");
-  std::istringstream folders(path ? path : "");
-  for (std::string folder; std::getline(folders, folder, ':');)
-    for (const char* name : {"chromium", "chromium-browser", "google-chrome"})
-      if (fs::exists(fs::path(folder) / name)) return fs::path(folder) / name;
-  return {};
-}
-
 /// What probe.js has seen in the page.
 nlohmann::json probed(const fs::path& page, const TemporaryFolder& folder) {
   std::string text = text_of(page);
   const std::string script =
       "<script>" + text_of(fs::path(STILLPOINT_SOURCE_DIR) / "tests/report/probe.js") + "</script>";
   text.insert(text.rfind("</body>"), script);
-  const fs::path probe = folder.write("probe.html", text), dom = folder.path() / "dom.html";
-  const std::string command =
-      "'" + browser().string() + "' --headless=new --no-sandbox --use-angle=swiftshader " +
-      "--enable-unsafe-swiftshader --window-size=1366,900 --virtual-time-budget=30000 " +
-      "--user-data-dir='" + (folder.path() / "profile").string() + "' --dump-dom 'file://" +
-      probe.string() + "' > '" + dom.string() + "' 2> '" + dom.string() + ".err'";
-  EXPECT_EQ(std::system(command.c_str()), 0) << text_of(dom.string() + ".err");
-  const std::string result = text_of(dom), begin = "<pre id=\"probe\">";
+  const fs::path probe = folder.write("probe.html", text);
+  const std::string result =
+      document_in_browser("file://" + probe.string(), "document.getElementById('probe') !== null");
+  const std::string begin = "<pre id=\"probe\">";
   const std::size_t from = result.find(begin);
   if (from == std::string::npos) return {{"ready", "never"}};
   const std::size_t to = result.find("</pre>", from);
@@ -252,7 +241,7 @@ nlohmann::json probed(const fs::path& page, const TemporaryFolder& folder) {
 
 TEST(ReportPage, DrawsSortsAndTurnsInABrowser) {
   SKIP_WITHOUT_PAGE();
-  if (browser().empty()) GTEST_SKIP() << "no chromium in PATH: apt-get install chromium";
+  SKIP_WITHOUT_BROWSER();
   const TemporaryFolder folder;
   const fs::path page = folder.path() / "report.html";
   const Outcome outcome = call({"report", finished_run().string(), "-o", page.string()});
@@ -269,6 +258,7 @@ TEST(ReportPage, DrawsSortsAndTurnsInABrowser) {
             seen["falling"].get<std::vector<double>>());
   EXPECT_EQ(seen["turned"], true);
   EXPECT_EQ(seen["repainted"], true);
+  EXPECT_EQ(seen["replayed"], true);
 }
 
 }  // namespace

@@ -90,6 +90,10 @@ TEST(OptionChanges, AreWhatDiffersButTheRecordingAndTheSeed) {
   EXPECT_EQ(recording_of_pipeline("source: {path: /a}"), "/a");
   EXPECT_EQ(recording_of_pipeline("source: {type: x}"), "");
   EXPECT_EQ(recording_of_pipeline("source: ["), "");
+  EXPECT_EQ(live_view_of_pipeline("outputs: [{type: web, port: 0}, {type: web, record: a.html}]"),
+            "a.html");
+  for (const char* without : {"outputs: [{type: web}]", "outputs: []", "source: 1", "outputs: ["})
+    EXPECT_EQ(live_view_of_pipeline(without), "") << without;
 }
 
 TEST(Thinning, KeepsPeaks) {

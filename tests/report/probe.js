@@ -1,4 +1,5 @@
-// Put behind a report's page by the test: waits until it is drawn, sorts a table, turns the map, and writes what it saw.
+// Put behind a report's page by the test: waits until it is drawn, sorts a table, turns the map, replays the run, and
+// writes what it saw.
 const seen = {errors: []};
 addEventListener('error', event => seen.errors.push(event.message));
 addEventListener('unhandledrejection', event => seen.errors.push(String(event.reason)));
@@ -33,6 +34,16 @@ function turnMap() {
   seen.repainted = canvas.toDataURL() !== shown;
 }
 
+/** Whether the recorded live view loads within the page. */
+function replay() {
+  const loaded = new Promise(resolve => {
+    setTimeout(() => resolve(false), 10000);
+    document.addEventListener('load', event => event.target.matches?.('.replay iframe') && resolve(true), true);
+  });
+  document.querySelector('.replay-run').click();
+  return loaded;
+}
+
 /** Whether something other than one colour is on it. */
 function isDrawn(canvas) {
   const {data} = canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height);
@@ -42,7 +53,7 @@ function isDrawn(canvas) {
 function look() {
   const ready = document.documentElement.dataset.ready;
   if (!ready) return setTimeout(look, 50);
-  setTimeout(() => {
+  setTimeout(async () => {
     try {
       seen.ready = ready;
       seen.charts = [...document.querySelectorAll('.uplot canvas')].filter(isDrawn).length;
@@ -50,6 +61,7 @@ function look() {
       seen.pictures = [...document.querySelectorAll('.frames img')].filter(i => i.naturalWidth).length;
       sortTwice();
       turnMap();
+      seen.replayed = await replay();
     } catch (error) {
       seen.errors.push(String(error));
     }

@@ -79,4 +79,14 @@ std::string recording_of_pipeline(const std::string& yaml) {
   }
 }
 
+std::string live_view_of_pipeline(const std::string& yaml) {
+  try {
+    for (const YAML::Node& output : YAML::Load(yaml)["outputs"])
+      if (output["type"].Scalar() == "web" && output["record"]) return output["record"].Scalar();
+    return "";
+  } catch (const YAML::Exception&) {
+    return "";
+  }
+}
+
 }  // namespace stillpoint::report

@@ -15,4 +15,7 @@ std::vector<OptionChange> option_changes(const std::string& base, const std::str
 /// The folder of the recording that a pipeline reads; empty: it reads none, or cannot be read.
 std::string recording_of_pipeline(const std::string& yaml);
 
+/// The page that an output `web` of the pipeline records; empty: none, or it cannot be read.
+std::string live_view_of_pipeline(const std::string& yaml);
+
 }  // namespace stillpoint::report

@@ -45,7 +45,8 @@ std::string jpeg_of(const std::filesystem::path& file) {
 
 class Blocks {
  public:
-  Blocks(const ReportData& data, const PageLimits& limits) : limits_(limits) {
+  Blocks(const ReportData& data, const std::filesystem::path& folder, const PageLimits& limits)
+      : folder_(folder), limits_(limits) {
     points_ = std::clamp<std::size_t>(kAllPoints / std::max<std::size_t>(1, data.runs.size()), 200,
                                       limits.points);
   }
@@ -56,6 +57,7 @@ class Blocks {
     std::string text;
     add_pictures(run, id, json, text);
     add_map(run, id, json, text);
+    add_replay(run, id, json, text);
     return block("run-" + id, text_of(json)) + text;
   }
 
@@ -102,21 +104,40 @@ class Blocks {
     }
   }
 
+  void add_replay(const RunData& run, const std::string& id, Json& json, std::string& text) {
+    if (run.live_view.empty()) return;
+    const std::size_t room = limits_.replay_bytes - std::min(limits_.replay_bytes, replays_);
+    // Most of it are pictures in base64: packed and in base64 again, it is about as large.
+    std::error_code unreadable;
+    std::string packed;
+    if (std::filesystem::file_size(run.live_view, unreadable) < 2 * room)
+      packed = block("replay-" + id, study::read_text(run.live_view));
+    if (packed.empty() || packed.size() > room) {
+      json["replay"]["file"] = std::filesystem::proximate(run.live_view, folder_).string();
+      return;
+    }
+    replays_ += packed.size();
+    text += packed;
+    json["replay"]["id"] = "replay-" + id;
+  }
+
+  const std::filesystem::path& folder_;
   const PageLimits& limits_;
-  std::size_t points_ = 0, pictures_ = 0, maps_ = 0;
+  std::size_t points_ = 0, pictures_ = 0, maps_ = 0, replays_ = 0;
 };
 
 }  // namespace
 
 std::string filled_page(const std::filesystem::path& page, const ReportData& data,
-                        const std::string& written_by, const PageLimits& limits) {
+                        const std::filesystem::path& folder, const std::string& written_by,
+                        const PageLimits& limits) {
   std::string text = study::read_text(page);
   const std::size_t place = text.find(kPlace);
   if (place == std::string::npos)
     throw Error(Fault::kUsage, "this build of Stillpoint has no page for reports", page.string(),
                 "build it with npm and esbuild installed and STILLPOINT_WITH_PAGES=ON");
   std::string blocks = block("report", text_of(report_json(data, written_by)));
-  Blocks of_runs(data, limits);
+  Blocks of_runs(data, folder, limits);
   for (std::size_t i = 0; i < data.runs.size(); ++i) blocks += of_runs.of(data.runs[i], i);
   return text.replace(place, kPlace.size(), blocks);
 }

@@ -14,11 +14,14 @@ struct PageLimits {
   std::size_t voxels = 250'000;           ///< of a map
   std::size_t map_bytes = 6'000'000;      ///< of all maps; what comes after is left out
   std::size_t picture_bytes = 4'000'000;  ///< of all pictures, likewise
+  std::size_t replay_bytes = 6'000'000;   ///< of all recorded live views, likewise
 };
 
-/// `page` is the built template; `written_by` names the program. What is left out is said in the
+/// `page` is the built template; `folder` is where the filled one will lie, for recordings of live
+/// views that are too large for it; `written_by` names the program. What is left out is said in the
 /// page. Throws Error(kUsage) when the template cannot be used.
 std::string filled_page(const std::filesystem::path& page, const ReportData& data,
-                        const std::string& written_by, const PageLimits& limits = {});
+                        const std::filesystem::path& folder, const std::string& written_by,
+                        const PageLimits& limits = {});
 
 }  // namespace stillpoint::report

@@ -101,7 +101,8 @@ struct RunData {
   std::string base;  ///< what the changes are against, for a heading
   std::vector<OptionChange> changes;
   std::vector<Picture> pictures;
-  std::filesystem::path octree;  ///< map/map.ot; empty: none
+  std::filesystem::path octree;     ///< map/map.ot; empty: none
+  std::filesystem::path live_view;  ///< recorded by an output `web`; empty: none
 };
 
 struct ReportData {

@@ -214,6 +214,9 @@ RunData read_run(const fs::path& folder, const std::string& name, fs::path recor
   choose_pictures(run, recording);
   std::error_code unreadable;
   if (const fs::path map = folder / "map/map.ot"; fs::exists(map, unreadable)) run.octree = map;
+  const fs::path live_view = fs::path(live_view_of_pipeline(run.yaml)).filename();
+  if (!live_view.empty() && fs::is_regular_file(folder / live_view, unreadable))
+    run.live_view = folder / live_view;
   return run;
 }
 

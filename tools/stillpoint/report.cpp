@@ -90,8 +90,8 @@ void write_report(const ReportArguments& arguments) {
               << arguments.figures.string() << ", each as SVG and PDF\n";
   const study::Origin here =
       study::origin_of({.version = STILLPOINT_VERSION, .commit = built_from_commit()});
-  const std::string html =
-      filled_page(page_file(), data, "Stillpoint " STILLPOINT_VERSION ", " + here.date);
+  const std::string html = filled_page(page_file(), data, fs::absolute(page).parent_path(),
+                                       "Stillpoint " STILLPOINT_VERSION ", " + here.date);
   const auto beside = [&](const char* ending) {
     return fs::absolute(page).replace_extension(ending);
   };

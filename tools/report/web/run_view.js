@@ -5,6 +5,7 @@ import {frameGrid} from './frames.js';
 import {mapView} from './map.js';
 import {optionFigures} from './options.js';
 import {colourBar, pathPlot} from './paths.js';
+import {replayView} from './replay.js';
 import {seriesChart} from './series.js';
 import {stageFigures} from './stages.js';
 import {table} from './tables.js';
@@ -119,7 +120,8 @@ export async function runView(run) {
   if (run.pictures.length) parts.push(section('Frames', run.pictures.every(p => p.recorded) ? null
     : el('p', {class: 'quiet'}, 'Green: features that fit the pose; yellow: that do not; orange: moving; grey: '
     + 'unmatched. Blue: labelled, but used; red: not used. A click enlarges.'), frameGrid(run)));
-  if (run.map) parts.push(section('Dense map', await mapView(run.map, run.path)));
+  const maps = [run.map && await mapView(run.map, run.path), run.replay && replayView(run.replay)].filter(Boolean);
+  if (maps.length) parts.push(section('Map', ...maps));
   parts.push(section('Options', ...optionFigures(run)));
   parts.push(el('p', {class: 'quiet'}, `${run.folder}${run.made_by ? ' · ' + run.made_by : ''}`));
   return el('div', {class: 'run'}, ...parts.filter(Boolean));
