@@ -5,6 +5,7 @@
 #include <functional>
 
 #include "fixtures.hpp"
+#include "study/table_cells.hpp"
 
 namespace stillpoint::study {
 namespace {
@@ -91,6 +92,11 @@ TEST_F(Comparison, AFailedRunIsWorseThanAnyOther) {
 TEST_F(Comparison, NeedsABaseline) {
   const StudyResults results{.study = study_, .cells = {}, .results = {}, .command = ""};
   EXPECT_TRUE(compare_with_baseline(results).empty());
+}
+
+TEST(RatioCells, SmallRatiosCanBeToldFromNone) {
+  EXPECT_EQ(ratio_cell(spread_of({0.0030, 0.0034, 0.0044})).text, "0.0034 (0.0032–0.0039)");
+  EXPECT_EQ(ratio_cell(spread_of({0.9})).text, "0.90");
 }
 
 }  // namespace

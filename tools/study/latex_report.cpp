@@ -8,6 +8,7 @@
 #include "study/latex_table.hpp"
 #include "study/paired_comparison.hpp"
 #include "study/provenance.hpp"
+#include "study/table_cells.hpp"
 
 namespace stillpoint::study {
 namespace {
@@ -193,10 +194,11 @@ class LatexReport {
 
   static std::string ratio(const std::optional<Spread>& spread) {
     if (!spread) return kEmpty;
-    std::string text = fixed(spread->median, 2);
+    const int digits = ratio_digits(*spread);
+    std::string text = fixed(spread->median, digits);
     if (spread->count > 1)
-      text += " {\\scriptsize (" + fixed(spread->first_quartile, 2) + "--" +
-              fixed(spread->third_quartile, 2) + ")}";
+      text += " {\\scriptsize (" + fixed(spread->first_quartile, digits) + "--" +
+              fixed(spread->third_quartile, digits) + ")}";
     return text;
   }
 

@@ -15,12 +15,15 @@ TableCell spread_cell(const std::optional<Spread>& spread, int digits) {
   return cell;
 }
 
+int ratio_digits(const Spread& ratio) { return ratio.median < 0.1 ? 4 : 2; }
+
 TableCell ratio_cell(const std::optional<Spread>& ratio) {
   if (!ratio) return {.text = kNothing};
-  TableCell cell = number_cell(ratio->median, 2);
+  const int digits = ratio_digits(*ratio);
+  TableCell cell = number_cell(ratio->median, digits);
   if (ratio->count > 1)
-    cell.text +=
-        " (" + fixed(ratio->first_quartile, 2) + "–" + fixed(ratio->third_quartile, 2) + ")";
+    cell.text += " (" + fixed(ratio->first_quartile, digits) + "–" +
+                 fixed(ratio->third_quartile, digits) + ")";
   return cell;
 }
 

@@ -14,6 +14,9 @@ inline constexpr const char* kNothing = "–";  ///< a cell without a figure
 /// "0.0021 (0.0020–0.0022)", "5.0 (-3.0 to 9.0)": median (smallest–largest).
 TableCell spread_cell(const std::optional<Spread>& spread, int digits);
 
+/// Decimals of a ratio: so many that one of 0.0034 can be told from none.
+int ratio_digits(const Spread& ratio);
+
 /// "0.90 (0.88–0.92)": median (quartiles).
 TableCell ratio_cell(const std::optional<Spread>& ratio);
 
