@@ -26,9 +26,23 @@ function(stillpoint_link_opencv target scope)
   target_link_libraries(${target} ${scope} ${ARGN})
 endfunction()
 
+# For targets that a sanitizer takes long to compile and that compute little. Headers that are precompiled for
+# libraries fit another level of optimisation.
+function(stillpoint_sanitize_quickly target)
+  if(NOT CMAKE_CXX_FLAGS MATCHES "-fsanitize")
+    return()
+  endif()
+  target_compile_options(${target} PRIVATE -O0)
+  get_target_property(type ${target} TYPE)
+  if(type STREQUAL "STATIC_LIBRARY")
+    set_target_properties(${target} PROPERTIES DISABLE_PRECOMPILE_HEADERS ON)
+  endif()
+endfunction()
+
 # For targets that compute nothing themselves.
 function(stillpoint_compile_quickly target)
   target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)
+  stillpoint_sanitize_quickly(${target})
 endfunction()
 
 # Headers that most files include are parsed once: one set for the code of libraries, one for test
