@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <opencv2/core.hpp>
 #include <string>
+#include <tuple>
 
 #include "support/absolute_error.hpp"
 #include "support/simulated_recording.hpp"
@@ -30,20 +31,23 @@ void list_repeatedly(const RecordingCopy& recording, int images, int frames) {
   recording.write("depth.txt", depths);
 }
 
-class Interruption : public ::testing::TestWithParam<const char*> {};
+/// In a mode, by a signal: Ctrl-C, or the end of the terminal.
+class Interruption : public ::testing::TestWithParam<std::tuple<const char*, int>> {};
 
 TEST_P(Interruption, LeavesWhatWasComputed) {
   constexpr int kListed = 1000;
+  const auto [mode, signal] = GetParam();
   const TemporaryFolder folder;
   const RecordingCopy recording(20);
   list_repeatedly(recording, 20, kListed);
   const fs::path out = folder.path() / "out";
   Program program({"run", "orb_baseline", "--dataset", recording.path().string(), "-o",
-                   out.string(), "--set", std::string("runtime.mode=") + GetParam()});
+                   out.string(), "--set", std::string("runtime.mode=") + mode});
   ASSERT_TRUE(program.wait_for(" key frames  tracking")) << "no line of progress";
-  program.send(SIGINT);
+  program.send(signal);
+  if (signal == SIGHUP) program.send(signal);  // shell and kernel both tell it
   const Outcome outcome = program.finish();
-  EXPECT_EQ(outcome.signal, SIGINT) << outcome.exit_code;
+  EXPECT_EQ(outcome.signal, signal) << outcome.exit_code;
   EXPECT_THAT(outcome.err, HasSubstr("stopped; what was computed until then is saved"));
 
   const auto summary = json_file(out / "summary.json");
@@ -85,8 +89,13 @@ TEST(ReaderThatGoes, CostsNoResults) {
   EXPECT_EQ(count_poses(out / "trajectory.txt"), 20u);
 }
 
-INSTANTIATE_TEST_SUITE_P(Modes, Interruption, ::testing::Values("inline", "threaded"),
-                         [](const auto& mode) { return std::string(mode.param); });
+INSTANTIATE_TEST_SUITE_P(Modes, Interruption,
+                         ::testing::Combine(::testing::Values("inline", "threaded"),
+                                            ::testing::Values(SIGINT, SIGHUP)),
+                         [](const auto& test) {
+                           return std::string(std::get<0>(test.param)) +
+                                  (std::get<1>(test.param) == SIGHUP ? "_HangUp" : "_CtrlC");
+                         });
 
 // Depth stays: without any, a pair counts as unusable and tracking would never see the frame.
 class Darkness : public ::testing::Test {

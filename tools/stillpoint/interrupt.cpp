@@ -32,6 +32,7 @@ void wake() {
 }
 
 extern "C" void on_signal(int signal) {
+  if (signal == SIGHUP && signals > 0) return;  // shell and kernel both tell it: no insistence
   received = signal;
   if (++signals == 2) {  // the third one ends the process
     std::signal(SIGINT, SIG_DFL);
@@ -63,11 +64,16 @@ Interrupt::Interrupt(std::function<void(const std::string& line)> say) {
   action.sa_flags = SA_RESTART;
   sigaction(SIGINT, &action, nullptr);
   sigaction(SIGTERM, &action, nullptr);
+  struct sigaction hang_up {};
+  sigaction(SIGHUP, nullptr, &hang_up);
+  heeds_hang_up_ = hang_up.sa_handler != SIG_IGN;
+  if (heeds_hang_up_) sigaction(SIGHUP, &action, nullptr);
 }
 
 Interrupt::~Interrupt() {
   std::signal(SIGINT, SIG_DFL);
   std::signal(SIGTERM, SIG_DFL);
+  if (heeds_hang_up_) std::signal(SIGHUP, SIG_DFL);
   watcher_.request_stop();
   wake();
   watcher_.join();

@@ -8,9 +8,10 @@
 
 namespace stillpoint {
 
-/// While it lives, the first SIGINT or SIGTERM requests a stop; should a stage not return for a
-/// second after that, `say` is told. The second one gives up the stages under way (see StageGuard),
-/// or ends the process as usual when there are none; so does the third in any case. One at a time.
+/// While it lives, the first SIGINT, SIGTERM or SIGHUP (the terminal is gone; unless nohup ignores
+/// it) requests a stop; should a stage not return for a second after that, `say` is told. The
+/// second one gives up the stages under way (see StageGuard), or ends the process as usual when
+/// there are none; so does the third in any case. One at a time.
 class Interrupt {
  public:
   explicit Interrupt(std::function<void(const std::string& line)> say = [](const auto&) {});
@@ -26,6 +27,7 @@ class Interrupt {
   void watch(const std::stop_token& end, const std::function<void(const std::string& line)>& say);
 
   std::stop_source stop_;
+  bool heeds_hang_up_ = true;
   std::jthread watcher_;
 };
 
