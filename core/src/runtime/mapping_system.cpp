@@ -1,5 +1,6 @@
 #include "stillpoint/runtime/mapping_system.hpp"
 
+#include <exception>
 #include <utility>
 
 #include "stillpoint/runtime/stage_results.hpp"
@@ -120,7 +121,12 @@ std::vector<LabelledPoint> MappingSystem::dense_points() {
 std::optional<std::vector<LabelledPoint>> MappingSystem::dense_points_if_idle() {
   const std::unique_lock lock(dense_mutex_, std::try_to_lock);
   if (!lock || !map_backend_.present()) return std::nullopt;
-  return map_backend_.call_unmeasured({}, &MapBackend::occupied);
+  try {
+    return map_backend_.call_unmeasured({}, &MapBackend::occupied);
+  } catch (...) {  // whoever asked may go on without it; a run cannot
+    stop_.fail(std::current_exception());
+    throw;
+  }
 }
 
 bool MappingSystem::save(const std::filesystem::path& directory) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <atomic>
 #include <condition_variable>
 #include <functional>
 #include <map>
@@ -260,10 +261,12 @@ class FakeBackend final : public MapBackend {
   }
   void save(const std::filesystem::path&) override { journal_.write("save", 0); }
   std::vector<LabelledPoint> occupied() const override {
+    if (fails_once.exchange(false)) throw std::logic_error("a broken cell");
     return std::vector<LabelledPoint>(poses.size());
   }
 
   std::map<KeyFrameId, Pose> poses;
+  mutable std::atomic<bool> fails_once = false;  // in occupied()
 
  private:
   Journal& journal_;

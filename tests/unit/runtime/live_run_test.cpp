@@ -131,6 +131,28 @@ TEST_P(LiveRunTest, SavesTheMapWhereTheProgramSays) {
   EXPECT_GT(load_map(map_file).keyframe_id_end(), 0u);
 }
 
+// Also where an output catches what it is told: what has crashed cannot be gone on with.
+TEST_P(LiveRunTest, ADenseMapThatCannotBeReadEndsTheRun) {
+  fixture.backend->fails_once = true;
+  bool told = false;
+  steering->on_frame = [&] {
+    try {
+      while (!told) steering->run->dense_map();
+    } catch (const Error&) {
+      told = true;
+    }
+  };
+  try {
+    engine().run();
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_THAT(error.what(), ::testing::HasSubstr("dense mapping (cloud) failed: a broken cell"));
+  }
+  EXPECT_TRUE(told);
+  EXPECT_EQ(fixture.output->finished, 1);
+  EXPECT_THAT(fixture.journal.entries("save"), ::testing::SizeIs(1));
+}
+
 TEST_P(LiveRunTest, ReachesNothingAfterTheEnd) {
   engine().run();  // the engine is gone, the run is kept
   EXPECT_THROW(steering->run->save_map(), Error);

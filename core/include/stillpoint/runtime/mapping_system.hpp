@@ -47,7 +47,8 @@ class MappingSystem {
   int loops() const { return loops_; }
   /// What the dense map holds now. From any thread.
   std::vector<LabelledPoint> dense_points();
-  /// The same, but nothing while a key frame is being mapped, or without a dense map.
+  /// The same, but nothing while a key frame is being mapped, or without a dense map. What it
+  /// throws ends the run as well.
   std::optional<std::vector<LabelledPoint>> dense_points_if_idle();
   /// Writes the dense map as it is now into `directory`; false: there is none. From any thread.
   bool save(const std::filesystem::path& directory);
