@@ -123,6 +123,14 @@ TEST(PluginsCheck, AMapThatIsNotSavedFails) {
   EXPECT_THAT(outcome.out, HasSubstr("save() wrote no file, although key frames were integrated"));
 }
 
+TEST(PluginsCheck, AnOutputThatForgetsToCommitItsFileFails) {
+  const Outcome outcome = call({"plugins", "check", library(kBad, "wrong_results"), "output/wrong",
+                                "--case", "usual recording"});
+  EXPECT_EQ(outcome.exit_code, 1) << outcome.out;
+  EXPECT_THAT(outcome.out,
+              HasSubstr("finish() leaves a file whose name ends in .part, wrong.txt.part"));
+}
+
 TEST(PluginsCheck, TheyPassTheUsualRecording) {
   for (const std::string how : {"shared", "fixed_size", "unfinished"}) {
     const Outcome outcome = call({"plugins", "check", library(kBad, "careless"), "--set",

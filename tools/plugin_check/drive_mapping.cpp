@@ -236,9 +236,19 @@ class OutputDrive final : public FrameDrive<Output> {
                              .failure = "tracking (orb) failed on frame 3: out of memory",
                              .dense_map = [] { return std::vector<LabelledPoint>(3); }};
     observer_.call("finish", {}, [&] { stage_.finish(summary); });
+    require_no_unfinished_file();
   }
 
  private:
+  void require_no_unfinished_file() const {
+    for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder_))
+      if (entry.path().extension() == ".part")
+        throw Failure(
+            {"finish() leaves a file whose name ends in .part, " + entry.path().filename().string(),
+             "an AtomicFile without commit() is deleted when the run ends",
+             "call commit() in finish()"});
+  }
+
   // Waiting, tracking, lost and found again, as in a run that has known bad times.
   void at(std::size_t i) override {
     const Input& now = input(i);
