@@ -183,6 +183,11 @@ Files project_of(const NewPlugin& plugin) {
   const fs::path templates = installation_folder() / "share/stillpoint/templates";
   Files files = files_in(templates / plugin.kind);
   files.merge(files_in(templates / "common"));
+  // Packages should hold no .gitignore (lintian: package-contains-vcs-control-file).
+  if (auto ignored = files.extract("gitignore")) {
+    ignored.key() = ".gitignore";
+    files.insert(std::move(ignored));
+  }
   std::string about = std::move(files["about.md"]);
   files.erase("about.md");
   about.erase(about.find_last_not_of('\n') + 1);
