@@ -52,17 +52,17 @@ double noise(const Eigen::Vector3d& at, std::uint64_t seed) {
   const Eigen::Vector3d cell = at.array().floor();
   const Eigen::Array3d t = at - cell;
   const Eigen::Array3d s = t * t * (3 - 2 * t);
+  const Eigen::Matrix<std::int64_t, 3, 1> first = cell.cast<std::int64_t>();
   double sum = 0;
   for (int corner = 0; corner < 8; ++corner) {
     double weight = 1;
-    Eigen::Vector3d point = cell;
+    Eigen::Matrix<std::int64_t, 3, 1> point = first;
     for (int axis = 0; axis < 3; ++axis) {
       const bool upper = corner >> axis & 1;
       weight *= upper ? s[axis] : 1 - s[axis];
       point[axis] += upper;
     }
-    sum += weight *
-           hashed(std::llround(point.x()), std::llround(point.y()), std::llround(point.z()), seed);
+    sum += weight * hashed(point.x(), point.y(), point.z(), seed);
   }
   return sum;
 }
