@@ -24,7 +24,7 @@ namespace {
 
 // Most mistakes do no visible harm without AddressSanitizer.
 #ifdef __SANITIZE_ADDRESS__
-constexpr std::uint64_t kCases = 10'000;
+constexpr std::uint64_t kCases = 5'000;
 #else
 constexpr std::uint64_t kCases = 1'000;
 #endif
