@@ -144,22 +144,27 @@ void OctomapBackend::save(const std::filesystem::path& directory) {
   save_cost_map(directory);
 }
 
-void OctomapBackend::save_cost_map(const std::filesystem::path& directory) const {
+void OctomapBackend::save_cost_map(const std::filesystem::path& directory) {
   const auto floor = floor_of(tree_, options_.cost_map);
   if (!floor) {
-    log_(LogLevel::kWarning,
-         "no floor was seen, so there is no cost map; map_backend.cost_map.floor can say where it "
-         "is");
+    warn_once(
+        "no floor was seen, so there is no cost map; map_backend.cost_map.floor can say where it "
+        "is");
     return;
   }
   std::optional<CostMap> map;
   try {
     map = project(tree_, *floor, options_.cost_map);
   } catch (const Error& error) {  // the other files are still useful
-    log_(LogLevel::kWarning, error.what());
+    warn_once(error.what());
     return;
   }
   write_cost_map(*map, directory / "map");
+}
+
+// The map may be saved every few seconds.
+void OctomapBackend::warn_once(const std::string& what) {
+  if (warned_.insert(what).second) log_(LogLevel::kWarning, what);
 }
 
 // Neighbouring pixels are about a third of a voxel apart at the end of the range, or every pixel is

@@ -3,7 +3,9 @@
 
 #include <functional>
 #include <map>
+#include <set>
 #include <span>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -83,10 +85,12 @@ class OctomapBackend final : public MapBackend {
   double moved_by(const Entry& entry) const;
   /// Returns the number of scans.
   std::size_t fuse_again(std::span<const std::size_t> entries);
-  void save_cost_map(const std::filesystem::path& directory) const;
+  void save_cost_map(const std::filesystem::path& directory);
+  void warn_once(const std::string& what);
 
   Options options_;
   std::function<void(LogLevel, std::string_view)> log_;
+  std::set<std::string> warned_;
   MapClasses classes_;
   OccupancyModel model_;
   SemanticOctree tree_;

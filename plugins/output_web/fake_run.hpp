@@ -20,6 +20,7 @@ class FakeRun final : public LiveRun {
   void step() override { write("step"); }
   void stop() override { write("stop"); }
   std::optional<std::vector<LabelledPoint>> dense_map() override { return dense; }
+  bool save_dense_map(const std::filesystem::path&) override { return false; }
   std::filesystem::path map_file() const override { return "/secret/folder/room.map"; }
   void save_map() override {
     write("save");

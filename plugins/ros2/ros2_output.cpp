@@ -3,8 +3,6 @@
 #include <cmath>
 #include <utility>
 
-#include "ros2_messages/cost_map_file.hpp"
-#include "ros2_messages/octree_file.hpp"
 #include "ros2_messages/point_clouds.hpp"
 
 namespace stillpoint::ros2 {
@@ -62,11 +60,12 @@ void Ros2Output::Options::visit(OptionVisitor& v) {
              "camera, and the map has x where it looked, z up"});
   v("path_period", path_period, {.min = 0, .unit = "s", .help = "from one path to the next"});
   v("map_period", map_period,
-    {.min = 0, .unit = "s", .help = "from one landmarks and dense_map to the next"});
+    {.min = 0, .unit = "s", .help = "from one landmarks, dense_map, octomap and grid to the next"});
 }
 
 Ros2Output::Ros2Output(const Options& options, const StageContext& context)
     : options_(options),
+      may_save_meanwhile_(!context.deterministic),
       log_(context.log),
       mounting_(mounting_of(options)),
       sequence_(mounting_),
@@ -103,6 +102,11 @@ void Ros2Output::publish(const Writer& topic, const Message& message) {
   if (!topic.write(cdr_of(message))) ++refused_;
 }
 
+void Ros2Output::begin(const std::shared_ptr<LiveRun>& run) {
+  run_ = run;
+  if (may_save_meanwhile_) dense_files_.emplace(run, options_.map_period);
+}
+
 void Ros2Output::frame(const FrameReport& report) {
   const double time = report.frame->time;
   poses_.push_back(tracked_pose(report));
@@ -121,6 +125,16 @@ void Ros2Output::frame(const FrameReport& report) {
       publish(topics_.dense_map, ros2_messages::dense_cloud(*points, mounting_, time));
       next_dense_map_ = time + options_.map_period;
     }
+  if (dense_files_) publish_dense_files(time);
+}
+
+// A map that cannot be written is no reason to end the run.
+void Ros2Output::publish_dense_files(double time) try {
+  if (auto files = dense_files_->next(time, dense_files_wanted())) publish(std::move(*files), time);
+} catch (const std::exception& error) {
+  if (!std::exchange(has_warned_, true))
+    log_(LogLevel::kWarning,
+         std::string("octomap and grid cannot be published now: ") + error.what());
 }
 
 void Ros2Output::publish_state(const FrameReport& report) {
@@ -150,6 +164,7 @@ void Ros2Output::publish_landmarks(const SparseMap& map, double time) {
 
 void Ros2Output::finish(const RunSummary& summary) {
   run_.reset();
+  dense_files_.reset();
   if (!summary.failure.empty())
     publish(topics_.state, Diagnosis{.level = Diagnosis::Level::kError,
                                      .name = options_.name,
@@ -161,7 +176,7 @@ void Ros2Output::finish(const RunSummary& summary) {
     if (topics_.dense_map.wanted())
       if (const auto points = summary.dense_map(); !points.empty())
         publish(topics_.dense_map, ros2_messages::dense_cloud(points, mounting_, time));
-    publish_files(summary.map_directory, time);
+    publish(read_dense_files(summary.map_directory, dense_files_wanted()), time);
   }
   wait_for_readers();
   if (refused_ > 0)
@@ -169,18 +184,20 @@ void Ros2Output::finish(const RunSummary& summary) {
          "a reader was too slow: " + std::to_string(refused_) + " messages could not be published");
 }
 
-void Ros2Output::publish_files(const std::filesystem::path& map_directory, double time) {
-  if (topics_.octomap.wanted())
-    if (auto octree = ros2_messages::read_octree_message(map_directory)) {
-      octree->header = {time, world_frame()};
-      publish(topics_.octomap, *octree);
-    }
-  if (topics_.grid.wanted())
-    if (auto grid = ros2_messages::read_cost_map(map_directory)) {
-      grid->header = {time, mounting_.map};
-      grid->header_from_origin = mounting_.map_from_world * grid->header_from_origin;
-      publish(topics_.grid, *grid);
-    }
+DenseFilesWanted Ros2Output::dense_files_wanted() const {
+  return {.octree = topics_.octomap.wanted(), .grid = topics_.grid.wanted()};
+}
+
+void Ros2Output::publish(DenseFiles files, double time) {
+  if (files.octree) {
+    files.octree->header = {time, world_frame()};
+    publish(topics_.octomap, *files.octree);
+  }
+  if (files.grid) {
+    files.grid->header = {time, mounting_.map};
+    files.grid->header_from_origin = mounting_.map_from_world * files.grid->header_from_origin;
+    publish(topics_.grid, *files.grid);
+  }
 }
 
 /// What is still on its way is lost when the process ends.

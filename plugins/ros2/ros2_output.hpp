@@ -3,18 +3,20 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <stillpoint/sdk.hpp>
 #include <string>
 #include <vector>
 
+#include "ros2/dense_files.hpp"
 #include "ros2/participant.hpp"
 #include "ros2_messages/mounting.hpp"
 #include "ros2_messages/pose_messages.hpp"
 
 namespace stillpoint::ros2 {
 
-/// Of every frame tf, odometry, pose and state; from time to time, where somebody reads them, path,
-/// landmarks and dense map; at the end these, octree and occupancy grid. A reader that is too slow
+/// Of every frame tf, odometry, pose and state; from time to time and at the end, where somebody
+/// reads them, path, landmarks, dense map, octree and occupancy grid. A reader that is too slow
 /// loses messages.
 class Ros2Output final : public Output {
  public:
@@ -33,7 +35,7 @@ class Ros2Output final : public Output {
 
   Ros2Output(const Options& options, const StageContext& context);
 
-  void begin(const std::shared_ptr<LiveRun>& run) override { run_ = run; }
+  void begin(const std::shared_ptr<LiveRun>& run) override;
   void frame(const FrameReport& report) override;
   void finish(const RunSummary& summary) override;
 
@@ -48,17 +50,22 @@ class Ros2Output final : public Output {
   void publish_state(const FrameReport& report);
   void publish_path(const SparseMap& map, const std::vector<TrackedPose>& poses, double time);
   void publish_landmarks(const SparseMap& map, double time);
-  void publish_files(const std::filesystem::path& map_directory, double time);
+  DenseFilesWanted dense_files_wanted() const;
+  void publish_dense_files(double time);
+  void publish(DenseFiles files, double time);
   void wait_for_readers() const;
   std::string world_frame() const;
 
   const Options options_;
+  const bool may_save_meanwhile_;  // saving changes when the dense map is brought up to date
   std::function<void(LogLevel, std::string_view)> log_;
   const ros2_messages::Mounting mounting_;
   ros2_messages::PoseSequence sequence_;
   Participant participant_;
   Topics topics_;
   std::shared_ptr<LiveRun> run_;
+  std::optional<DenseFilesReader> dense_files_;
+  bool has_warned_ = false;
   std::vector<TrackedPose> poses_;
   double next_path_ = 0, next_map_ = 0, next_dense_map_ = 0;  // seconds
   std::size_t refused_ = 0;                                   // messages

@@ -3,6 +3,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <atomic>
+#include <fstream>
+
 #include "bag/bag_reader.hpp"
 #include "bag/messages.hpp"
 #include "support/dds_loopback.hpp"
@@ -97,9 +100,68 @@ TEST_F(Ros2OutputTest, PublishesAPathOnceASecond) {
   EXPECT_EQ(lengths, (std::vector<std::uint32_t>{1, 11}));
 }
 
+constexpr const char* kOctree =
+    "# Octomap OcTree binary file\nid OcTree\nsize 1\nres 0.05\ndata\nab";
+
+/// A run that can be asked for its dense map only.
+class MappingRun final : public LiveRun {
+ public:
+  Pause pause() override { return nullptr; }
+  void step() override {}
+  void stop() override {}
+  std::optional<std::vector<LabelledPoint>> dense_map() override { return std::nullopt; }
+  bool save_dense_map(const std::filesystem::path& directory) override {
+    const bool first = saves++ == 0;
+    if (disk_is_full) throw Error(Fault::kUsage, "no room left");
+    if (first) return false;  // a key frame is being mapped
+    std::ofstream(directory / "map.bt", std::ios::binary) << kOctree;
+    return true;
+  }
+  std::filesystem::path map_file() const override { return {}; }
+  void save_map() override {}
+
+  bool disk_is_full = false;
+  std::atomic<int> saves = 0;
+};
+
+TEST_F(Ros2OutputTest, PublishesTheOctreeWhileItGrows) {
+  const Reader octomap = reader("stillpoint/octomap", "octomap_msgs/Octomap");
+  const auto run = std::make_shared<MappingRun>();
+  StageContext context;
+  context.deterministic = false;
+  Ros2Output output(options_, context);
+  output.begin(run);
+  std::vector<std::int64_t> stamps;  // ns
+  for (double time = 0; stamps.size() < 2 && time < 10'000; time += 0.1) {
+    output.frame(report_at(time, TrackState::kTracking, Pose::Identity()));
+    if (const auto message = taken(octomap)) stamps.push_back(bag::header_of(*message, kCdr).stamp);
+  }
+  ASSERT_EQ(stamps.size(), 2U);
+  EXPECT_GE(stamps[1] - stamps[0], 4'999'999'000);  // map_period
+  EXPECT_EQ(run->saves, 3);
+}
+
+TEST_F(Ros2OutputTest, AnOctreeThatCannotBeSavedIsNoReasonToEndTheRun) {
+  const Reader octomap = reader("stillpoint/octomap", "octomap_msgs/Octomap");
+  const auto run = std::make_shared<MappingRun>();
+  run->disk_is_full = true;
+  std::string log;
+  StageContext context;
+  context.deterministic = false;
+  context.log = [&](LogLevel, std::string_view text) { log += text; };
+  Ros2Output output(options_, context);
+  output.begin(run);
+  for (double time = 0; run->saves < 2 && time < 10'000; time += 0.1) {
+    output.frame(report_at(time, TrackState::kTracking, Pose::Identity()));
+    EXPECT_FALSE(taken(octomap));
+  }
+  EXPECT_EQ(run->saves, 2);
+  EXPECT_EQ(log, "octomap and grid cannot be published now: no room left");
+}
+
 TEST_F(Ros2OutputTest, PublishesTheMapFilesAtTheEnd) {
   const testing::TemporaryFolder folder;
-  folder.write("map.bt", "# Octomap OcTree binary file\nid OcTree\nsize 1\nres 0.05\ndata\nab");
+  folder.write("map.bt", kOctree);
   const Reader octomap = reader("stillpoint/octomap", "octomap_msgs/Octomap");
   Ros2Output output(options_, {});
   poses_.push_back({.time = 1});

@@ -47,15 +47,21 @@ double ControlledRun::paused_seconds() const {
 }
 
 std::optional<std::vector<LabelledPoint>> ControlledRun::dense_map() {
-  const std::lock_guard lock(reach_mutex_);
+  const std::shared_lock lock(reach_mutex_);
   if (!reach_) return std::nullopt;
   return reach_->dense_map();
+}
+
+bool ControlledRun::save_dense_map(const std::filesystem::path& directory) {
+  const std::shared_lock lock(reach_mutex_);
+  return reach_ && reach_->save_dense_map(directory);
 }
 
 void ControlledRun::save_map() {
   if (map_file_.empty())
     throw Error(Fault::kUsage, "the program has named no file for the sparse map");
-  const std::lock_guard lock(reach_mutex_);
+  const std::shared_lock lock(reach_mutex_);
+  const std::lock_guard one_at_a_time(save_mutex_);
   if (!reach_) throw Error(Fault::kUsage, "the run has ended", map_file_.string());
   stillpoint::save_map(*reach_->map(), map_file_);
 }

@@ -3,6 +3,7 @@
 #include <exception>
 #include <utility>
 
+#include "stillpoint/runtime/stage_guard.hpp"
 #include "stillpoint/runtime/stage_results.hpp"
 #include "stillpoint/runtime/thorough_checks.hpp"
 
@@ -132,6 +133,23 @@ std::optional<std::vector<LabelledPoint>> MappingSystem::dense_points_if_idle() 
 bool MappingSystem::save(const std::filesystem::path& directory) {
   if (!map_backend_.present()) return false;
   const std::lock_guard lock(dense_mutex_);
+  save_locked(directory);
+  return true;
+}
+
+bool MappingSystem::save_if_idle(const std::filesystem::path& directory) {
+  const std::unique_lock lock(dense_mutex_, std::try_to_lock);
+  if (!lock || !has_integrated_) return false;
+  try {
+    save_locked(directory);
+  } catch (...) {  // without room for files a run can go on, but not after a crash
+    if (StageGuard::has_ended_a_call()) stop_.fail(std::current_exception());
+    throw;
+  }
+  return true;
+}
+
+void MappingSystem::save_locked(const std::filesystem::path& directory) {
   map_backend_.call_unmeasured({}, [&](MapBackend& backend) {
     std::error_code error;
     std::filesystem::create_directories(directory, error);
@@ -140,7 +158,6 @@ bool MappingSystem::save(const std::filesystem::path& directory) {
                   "choose another folder for the run");
     backend.save(directory);
   });
-  return true;
 }
 
 void MappingSystem::map(NewKeyFrame item) {
@@ -197,6 +214,7 @@ void MappingSystem::map_densely(const DenseItem& item) {
   if (const auto* keyframe = std::get_if<std::shared_ptr<const DenseKeyFrame>>(&item)) {
     dense_frame_ = (*keyframe)->frame->index;
     map_backend_.call("dense", dense_frame_, &MapBackend::integrate, **keyframe);
+    has_integrated_ = true;
   } else {
     map_backend_.call("dense", dense_frame_, &MapBackend::move,
                       std::get<std::vector<MovedKeyFrame>>(item));

@@ -87,8 +87,10 @@ Pipeline::Pipeline(Stages stages, const RuntimeOptions& runtime,
       decision_(std::move(stages.decision), "decision", times_),
       tracker_(std::move(stages.tracker), "tracking", times_),
       controlled_run_(std::make_shared<ControlledRun>(
-          ControlledRun::Reach{.map = [this] { return mapping_.snapshot(); },
-                               .dense_map = [this] { return mapping_.dense_points_if_idle(); }},
+          ControlledRun::Reach{
+              .map = [this] { return mapping_.snapshot(); },
+              .dense_map = [this] { return mapping_.dense_points_if_idle(); },
+              .save_dense_map = [this](const auto& into) { return mapping_.save_if_idle(into); }},
           std::move(stages.map_file))),
       segmentation_(std::move(stages.segmenter), std::move(stages.propagator), segmentation,
                     runtime.mode, stop_, times_),

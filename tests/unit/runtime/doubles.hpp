@@ -252,6 +252,7 @@ class FakeBackend final : public MapBackend {
   explicit FakeBackend(Journal& journal) : journal_(journal) {}
   void integrate(const DenseKeyFrame& keyframe) override {
     journal_.write("integrate", keyframe.frame->index);
+    if (while_integrating) while_integrating();
     if (!keyframe.segmentation || !keyframe.weights) throw std::logic_error("incomplete");
     poses[keyframe.id] = keyframe.world_from_camera;
   }
@@ -267,6 +268,7 @@ class FakeBackend final : public MapBackend {
 
   std::map<KeyFrameId, Pose> poses;
   mutable std::atomic<bool> fails_once = false;  // in occupied()
+  std::function<void()> while_integrating;
 
  private:
   Journal& journal_;

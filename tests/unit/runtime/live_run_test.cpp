@@ -153,10 +153,35 @@ TEST_P(LiveRunTest, ADenseMapThatCannotBeReadEndsTheRun) {
   EXPECT_THAT(fixture.journal.entries("save"), ::testing::SizeIs(1));
 }
 
+TEST_P(LiveRunTest, SavesTheDenseMapAtTheLatestWhenNoKeyFrameIsBeingMapped) {
+  const fs::path dense = folder.path() / "dense";
+  bool saved = false;
+  steering->on_frame = [&] {
+    for (int i = 0; i < 1'000'000 && !saved; ++i) saved = steering->run->save_dense_map(dense);
+  };
+  engine().run();
+  EXPECT_TRUE(saved);
+  EXPECT_TRUE(fs::is_directory(dense));
+  EXPECT_THAT(fixture.journal.entries("save"), ::testing::SizeIs(2));  // and at the end
+}
+
+TEST_P(LiveRunTest, SavesNoDenseMapBeforeThereIsOneOrWhileAKeyFrameIsBeingMapped) {
+  bool saved = false;
+  const fs::path dense = folder.path() / "dense";
+  steering->on_begin = [&] { saved |= steering->run->save_dense_map(dense); };
+  fixture.backend->while_integrating = [&] {
+    std::thread([&] { saved |= steering->run->save_dense_map(dense); }).join();
+  };
+  engine().run();
+  EXPECT_FALSE(saved);
+  EXPECT_FALSE(fs::exists(dense));
+}
+
 TEST_P(LiveRunTest, ReachesNothingAfterTheEnd) {
   engine().run();  // the engine is gone, the run is kept
   EXPECT_THROW(steering->run->save_map(), Error);
   EXPECT_FALSE(steering->run->dense_map());
+  EXPECT_FALSE(steering->run->save_dense_map(folder.path() / "after_the_end"));
   EXPECT_TRUE(steering->run->pause());
   steering->run->step();
   steering->run->stop();

@@ -7,6 +7,7 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <shared_mutex>
 #include <stop_token>
 #include <vector>
 
@@ -22,6 +23,7 @@ class ControlledRun final : public LiveRun, public std::enable_shared_from_this<
   struct Reach {
     std::function<MapStore::Snapshot()> map;
     std::function<std::optional<std::vector<LabelledPoint>>()> dense_map;
+    std::function<bool(const std::filesystem::path&)> save_dense_map;
   };
   ControlledRun(Reach reach, std::filesystem::path map_file)
       : map_file_(std::move(map_file)), reach_(std::move(reach)) {}
@@ -30,6 +32,7 @@ class ControlledRun final : public LiveRun, public std::enable_shared_from_this<
   void step() override;
   void stop() override { stop_.request_stop(); }
   std::optional<std::vector<LabelledPoint>> dense_map() override;
+  bool save_dense_map(const std::filesystem::path& directory) override;
   std::filesystem::path map_file() const override { return map_file_; }
   void save_map() override;
 
@@ -55,8 +58,9 @@ class ControlledRun final : public LiveRun, public std::enable_shared_from_this<
   bool step_ = false;  // one frame may begin
   double paused_seconds_ = 0.0;
 
-  std::mutex reach_mutex_;      // held during calls
-  std::optional<Reach> reach_;  // guarded by reach_mutex_; nothing after end()
+  std::shared_mutex reach_mutex_;  // shared by calls, which may be long; end() waits for them
+  std::optional<Reach> reach_;     // guarded by reach_mutex_; nothing after end()
+  std::mutex save_mutex_;          // two would write into one file
 };
 
 }  // namespace stillpoint

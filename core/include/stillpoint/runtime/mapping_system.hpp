@@ -52,6 +52,8 @@ class MappingSystem {
   std::optional<std::vector<LabelledPoint>> dense_points_if_idle();
   /// Writes the dense map as it is now into `directory`; false: there is none. From any thread.
   bool save(const std::filesystem::path& directory);
+  /// The same; false as well while a key frame is being mapped, and before the first.
+  bool save_if_idle(const std::filesystem::path& directory);
 
  private:
   // In all of these, `frame` is the key frame's that asked first, for messages and times.
@@ -73,6 +75,7 @@ class MappingSystem {
   };
   using LoopItem = std::variant<std::shared_ptr<const LoopQuery>, AdjustRequest>;
 
+  void save_locked(const std::filesystem::path& directory);
   void map(NewKeyFrame item);
   void correct(const Correction& item);
   void close_loop(const LoopQuery& query);
@@ -90,6 +93,7 @@ class MappingSystem {
   KeyFrameId next_keyframe_;       // of the thread that pushes
   std::mutex dense_mutex_;         // held while the dense map is called: anybody may read it
   std::uint32_t dense_frame_ = 0;  // given last to the dense map, for messages and times
+  bool has_integrated_ = false;    // a key frame; guarded by dense_mutex_
   std::atomic<int> loops_ = 0;
   // Used by the loop thread: a correction was sent that the maps of waiting queries do not have.
   bool correction_pending_ = false;

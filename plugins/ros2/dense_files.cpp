@@ -1,0 +1,92 @@
+#include "ros2/dense_files.hpp"
+
+#include <stdlib.h>  // mkdtemp
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <string>
+#include <system_error>
+
+#include "ros2_messages/cost_map_file.hpp"
+#include "ros2_messages/octree_file.hpp"
+
+namespace stillpoint::ros2 {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int kNice = 10;            // a tenth of tracking's share of the processor
+constexpr double kFirstRetry = 0.2;  // seconds
+constexpr double kRest = 20;         // times what saving and reading took
+
+class TemporaryFolder {
+ public:
+  TemporaryFolder() {
+    std::string path = (fs::temp_directory_path() / "stillpoint_ros2_XXXXXX").string();
+    if (!::mkdtemp(path.data()))
+      throw Error(Fault::kUsage, "cannot be made: " + std::generic_category().message(errno), path,
+                  "set TMPDIR to a folder that can be written");
+    path_ = path;
+  }
+  ~TemporaryFolder() {
+    std::error_code ignored;
+    fs::remove_all(path_, ignored);
+  }
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+
+  const fs::path& path() const { return path_; }
+
+ private:
+  fs::path path_;
+};
+
+// Tracking comes first. On Linux, the nice value belongs to a thread.
+void lower_priority() {
+  const auto self = static_cast<id_t>(::gettid());
+  ::setpriority(PRIO_PROCESS, self, ::getpriority(PRIO_PROCESS, self) + kNice);
+}
+
+}  // namespace
+
+DenseFiles read_dense_files(const fs::path& folder, DenseFilesWanted wanted) {
+  DenseFiles files;
+  if (wanted.octree) files.octree = ros2_messages::read_octree_message(folder);
+  if (wanted.grid) files.grid = ros2_messages::read_cost_map(folder);
+  return files;
+}
+
+DenseFilesReader::Read DenseFilesReader::save_and_read(LiveRun& run, DenseFilesWanted wanted) {
+  lower_priority();
+  const auto begin = std::chrono::steady_clock::now();
+  const TemporaryFolder folder;
+  Read read;
+  if (run.save_dense_map(folder.path())) read.files = read_dense_files(folder.path(), wanted);
+  read.took = std::chrono::steady_clock::now() - begin;
+  return read;
+}
+
+std::optional<DenseFiles> DenseFilesReader::next(double time, DenseFilesWanted wanted) {
+  if (!read_.valid()) {
+    if (time >= next_ && (wanted.octree || wanted.grid)) {
+      next_ = time + period_;
+      read_ = std::async(std::launch::async,
+                         [run = run_, wanted] { return save_and_read(*run, wanted); });
+    }
+    return std::nullopt;
+  }
+  if (read_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return std::nullopt;
+  Read read = read_.get();
+  if (read.files) {
+    retry_period_ = kFirstRetry;
+    next_ = std::max(next_, time + kRest * read.took.count());
+  } else {
+    next_ = std::min(next_, time + retry_period_);
+    retry_period_ *= 2;  // there may be no dense map at all
+  }
+  return std::move(read.files);
+}
+
+}  // namespace stillpoint::ros2

@@ -1,0 +1,56 @@
+// Octree and cost map of a run while it goes, made into messages beside it.
+#pragma once
+
+#include <chrono>
+#include <filesystem>
+#include <future>
+#include <memory>
+#include <optional>
+#include <stillpoint/sdk.hpp>
+#include <utility>
+
+#include "ros2_messages/messages.hpp"
+
+namespace stillpoint::ros2 {
+
+/// What a map back end has written; nothing for what it does not write or nobody wants.
+struct DenseFiles {
+  std::optional<ros2_messages::Octree> octree;
+  std::optional<ros2_messages::OccupancyGrid> grid;
+};
+
+struct DenseFilesWanted {
+  bool octree = false;
+  bool grid = false;
+};
+
+/// Of the files in `folder`. Throws Error when they cannot be read.
+DenseFiles read_dense_files(const std::filesystem::path& folder, DenseFilesWanted wanted);
+
+/// The map back end writes all its files, which takes tenths of a second, or seconds after a loop:
+/// a thread of its own waits for it. Used by one thread at a time.
+class DenseFilesReader {
+ public:
+  /// From one time to the next pass `period_seconds`, or twenty times what the last one took.
+  DenseFilesReader(std::shared_ptr<LiveRun> run, double period_seconds)
+      : run_(std::move(run)), period_(period_seconds) {}
+
+  /// To be called with every frame: begins when it is time, and gives what has been read since;
+  /// mostly nothing. Throws what saving and reading threw; the next call goes on.
+  std::optional<DenseFiles> next(double time, DenseFilesWanted wanted);
+
+ private:
+  struct Read {
+    std::optional<DenseFiles> files;  // nothing: ask again later
+    std::chrono::duration<double> took{};
+  };
+  static Read save_and_read(LiveRun& run, DenseFilesWanted wanted);
+
+  const std::shared_ptr<LiveRun> run_;
+  const double period_;        // seconds, of the frames
+  double next_ = 0;            // a time of frames
+  double retry_period_ = 0.2;  // seconds
+  std::future<Read> read_;
+};
+
+}  // namespace stillpoint::ros2
