@@ -51,6 +51,8 @@ TEST(Trajectory, EveryFaultNamesFileAndLine) {
   EXPECT_THAT(message_for("1 2 1.5m 3 0 0 0 1\n"), HasSubstr("'1.5m' is not a number"));
   EXPECT_THAT(message_for(good + "2.5 nan 2 3 0 0 0 1\n"), HasSubstr("bad.txt:2: 'nan' is not a"));
   EXPECT_THAT(message_for(good + "2.5 1 2 3 0 0 0 0\n"), HasSubstr("bad.txt:2: the quaternion"));
+  EXPECT_THAT(message_for(good + "2.5 1 2 3 0 0 1e300 1\n"),
+              HasSubstr("bad.txt:2: the quaternion"));
   EXPECT_THAT(message_for(good + "0.5 1 2 3 0 0 0 1\n"), HasSubstr("bad.txt:2: the time is earl"));
   EXPECT_THAT(message_for(good + "2.5 1e300 2 3 0 0 0 1\n"), HasSubstr("bad.txt:2: the position"));
   EXPECT_THAT(message_for(good + std::string(100'000, '7')), HasSubstr("bad.txt: a line is too"));

@@ -96,6 +96,12 @@ TEST_F(BadSetup, TextsThatBeginWithAComma) {
                  file.string() + ":1:1: error: not valid YAML: a value is missing");
 }
 
+TEST_F(BadSetup, KeysThatAreNestedTooDeeply) {
+  std::string key = "a";
+  for (int i = 0; i < 60'000; ++i) key += ".a";
+  expect_refused(run("orb_baseline", on_recording({"--set", key + "=1"})), "nested too deeply");
+}
+
 TEST_F(BadSetup, RunFolderThatCannotBeWritten) {
   const fs::path file = folder_.write("file", "");
   const Outcome outcome = call({"run", "orb_baseline", "--dataset", simulated_recording().string(),

@@ -175,6 +175,19 @@ TEST_F(Run, EarlierRunInTheFolderStaysWhenThisOneCannotBegin) {
   }
 }
 
+TEST_F(Run, FilesOfTheUserAreNotReplaced) {
+  const std::string text = "version: 1\nextends: orb_baseline\n";
+  const fs::path mine = out() / "mine";
+  fs::create_directories(mine);
+  std::ofstream(mine / "pipeline.yaml") << text;
+  const Outcome outcome =
+      run("mine", (mine / "pipeline.yaml").string(),
+          {"--dataset", simulated_recording().string(), "--set", "source.limit=2"});
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_THAT(outcome.err, HasSubstr("pipeline.yaml: is no file of an earlier run"));
+  EXPECT_EQ(text_of(mine / "pipeline.yaml"), text);
+}
+
 TEST_F(Run, NothingTrackedIsSaid) {
   const auto run_with = [&](const std::string& points) {
     return run("run", "orb_baseline",

@@ -1,5 +1,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <filesystem>
 #include <fstream>
@@ -156,6 +157,11 @@ TEST_F(RegistryTest, EmptyFile) {
 }
 TEST_F(RegistryTest, Folder) {
   fs::create_directories(folder_ / "libstillpoint_folder.so");
+  EXPECT_EQ(reason(), "cannot be read");
+}
+
+TEST_F(RegistryTest, Pipe) {
+  ASSERT_EQ(::mkfifo((folder_ / "libstillpoint_pipe.so").c_str(), 0600), 0);
   EXPECT_EQ(reason(), "cannot be read");
 }
 

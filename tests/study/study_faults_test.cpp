@@ -1,6 +1,9 @@
 // What is wrong with a study is said before anything runs, with its place.
 #include <gmock/gmock.h>
 
+#include <filesystem>
+#include <fstream>
+
 #include "ablate_fixture.hpp"
 
 namespace stillpoint::testing {
@@ -138,6 +141,16 @@ TEST_F(StudyFaults, AnEmptyNameIsNoFolder) {
   EXPECT_EQ(outcome.exit_code, 2);
   EXPECT_THAT(outcome.err, HasSubstr("'' also names a folder"));
   EXPECT_TRUE(fs::exists(out() / "recordings/mine"));
+}
+
+TEST_F(StudyFaults, ARecordingOfTheUserStays) {
+  const fs::path mine = out() / "recordings/tiny/rgb.txt";
+  fs::create_directories(mine.parent_path());
+  std::ofstream(mine) << "# mine\n";
+  const Outcome outcome = ablate(kShort);
+  EXPECT_NE(outcome.exit_code, 0);
+  EXPECT_THAT(outcome.err + outcome.out, HasSubstr("is no recording of a study"));
+  EXPECT_TRUE(fs::exists(mine));
 }
 
 TEST_F(StudyFaults, AStudyWithoutVersionOrVariantsIsRefused) {

@@ -14,7 +14,8 @@ namespace stillpoint::evaluation {
 namespace {
 
 constexpr double kMinQuaternionNorm = 1e-3;  // shorter ones are placeholders, not rotations
-constexpr double kFarthest = 1e7;            // metres; farther positions are no measurements
+constexpr double kMaxQuaternionNorm = 1e3;
+constexpr double kFarthest = 1e7;  // metres; farther positions are no measurements
 constexpr std::size_t kLongestLine = 1 << 16;
 constexpr int kMostLines = 10'000'000;  // four days at 30 Hz
 constexpr const char* kPoseFormat = "a line reads 'time tx ty tz qx qy qz qw'";
@@ -88,6 +89,8 @@ StampedPose pose_with_quaternion(const std::vector<double>& v, const Line& line)
                                               : Eigen::Quaterniond(v[7], v[4], v[5], v[6]);
   if (rotation.norm() < kMinQuaternionNorm)
     throw Error(Fault::kData, "the quaternion has length 0", line.where, kPoseFormat);
+  if (rotation.norm() > kMaxQuaternionNorm)
+    throw Error(Fault::kData, "the quaternion has not length 1", line.where, kPoseFormat);
   StampedPose pose{nanoseconds ? kNanosecond * v[0] : v[0], Pose::Identity()};
   pose.world_from_camera.linear() = rotation.normalized().toRotationMatrix();
   pose.world_from_camera.translation() = Eigen::Vector3d(v[1], v[2], v[3]);

@@ -75,6 +75,7 @@ RunFolder::~RunFolder() {
 }
 
 void RunFolder::begin(const std::string& effective_yaml) {
+  require_results_of_a_run();
   remove_earlier_results();
   note_earlier_files();
   std::ofstream yaml(path_ / "pipeline.yaml");
@@ -127,6 +128,16 @@ std::vector<std::string> RunFolder::contents() const {
     names.push_back(entry.path().filename().string() + (entry.is_directory() ? "/" : ""));
   std::sort(names.begin(), names.end());
   return names;
+}
+
+// Every run has a log. A pipeline.yaml without one is the user's, who runs it where it lies.
+void RunFolder::require_results_of_a_run() const {
+  std::error_code none;
+  if (fs::exists(path_ / "log.txt", none)) return;
+  for (const char* name : kResults)
+    if (fs::exists(path_ / name, none))
+      throw Error(Fault::kUsage, "is no file of an earlier run, and would be replaced",
+                  (path_ / name).string(), "choose another folder with -o, or move it");
 }
 
 void RunFolder::remove_earlier_results() const {

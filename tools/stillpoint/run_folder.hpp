@@ -33,7 +33,7 @@ class RunFolder {
 
   /// Once all that the run needs is there: removes results of an earlier run, but for its dense
   /// map and pictures, and writes pipeline.yaml and log.txt. Throws Error(kUsage) when that is not
-  /// possible.
+  /// possible, or files of these names are not those of a run.
   void begin(const std::string& effective_yaml);
 
   const std::filesystem::path& path() const { return path_; }
@@ -46,6 +46,7 @@ class RunFolder {
   std::vector<std::string> contents() const;
 
  private:
+  void require_results_of_a_run() const;
   void remove_earlier_results() const;
   void note_earlier_files();
 

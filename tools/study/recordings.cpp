@@ -1,5 +1,6 @@
 #include "study/recordings.hpp"
 
+#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -15,6 +16,15 @@ namespace fs = std::filesystem;
 
 constexpr const char* kDescription = "simulated_from.yaml";
 
+/// Throws Error(kUsage) for a folder that no study has made: it stays.
+void require_own(const fs::path& folder) {
+  std::error_code none;
+  if (!fs::exists(folder, none) || fs::is_empty(folder, none)) return;
+  if (!fs::exists(folder / kDescription, none))
+    throw Error(Fault::kUsage, "is no recording of a study, and would be replaced", folder.string(),
+                "move it, or choose another folder with -o");
+}
+
 }  // namespace
 
 bool is_recorded(const fs::path& folder, const std::string& description) {
@@ -25,6 +35,7 @@ bool record(const fs::path& program, const Sequence& sequence, const std::string
             const fs::path& folder, const std::stop_token& stop) {
   const fs::path part = folder.string() + ".part";
   const fs::path console = folder.string() + ".txt";
+  require_own(folder);
   remove_folder(part);
   remove_folder(folder);
   make_folder(folder.parent_path());

@@ -5,10 +5,10 @@
 #include <cmath>
 #include <cstring>
 #include <fstream>
-#include <iterator>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
+#include <system_error>
 #include <utility>
 
 #include "stillpoint/error.hpp"
@@ -19,6 +19,8 @@ namespace {
 constexpr unsigned kTreeDepth = 16;
 constexpr unsigned kLeastDepth = 7;             // of a leaf: it stands for 512³ voxels
 constexpr std::size_t kMostOccupied = 1 << 28;  // voxels
+// A node with its place in its parent's list, and what the allocator adds to both.
+constexpr std::size_t kNodeBytes = sizeof(SemanticVoxel) + sizeof(void*) + 24;
 constexpr double kMinResolution = 1e-3, kMaxResolution = 10;  // metres
 
 /// What is left of a file.
@@ -91,11 +93,29 @@ Header read_header(Bytes& bytes) {
   return header;
 }
 
+/// Makes nodes until they take too much memory: two bytes of a file can ask for eight.
+class NodeMaker {
+ public:
+  NodeMaker(SemanticOctree& tree, const Bytes& bytes, std::size_t most_memory)
+      : tree_(tree), bytes_(bytes), most_nodes_(most_memory / kNodeBytes) {}
+
+  SemanticVoxel& make(SemanticVoxel& parent, unsigned place) {
+    if (tree_.size() >= most_nodes_)
+      bytes_.fail("has more than " + std::to_string(most_nodes_) + " nodes, too many for memory");
+    return *tree_.createNodeChild(&parent, place);
+  }
+
+ private:
+  SemanticOctree& tree_;
+  const Bytes& bytes_;
+  std::size_t most_nodes_;
+};
+
 /// The nodes of an .ot file: log-odds, colour, which children there are; then those.
 class NodeReader {
  public:
-  NodeReader(SemanticOctree& tree, Bytes& bytes, bool colors)
-      : tree_(tree), bytes_(bytes), colors_(colors) {}
+  NodeReader(NodeMaker maker, Bytes& bytes, bool colors)
+      : maker_(maker), bytes_(bytes), colors_(colors) {}
 
   void read(SemanticVoxel& node, unsigned depth) {
     const auto log_odds = bytes_.take<float>();
@@ -108,11 +128,11 @@ class NodeReader {
     const auto children = bytes_.take<std::uint8_t>();
     if (children != 0 && depth == kTreeDepth) bytes_.fail("is damaged: a voxel has parts");
     for (unsigned i = 0; i < 8; ++i)
-      if (children >> i & 1U) read(*tree_.createNodeChild(&node, i), depth + 1);
+      if (children >> i & 1U) read(maker_.make(node, i), depth + 1);
   }
 
  private:
-  SemanticOctree& tree_;
+  NodeMaker maker_;
   Bytes& bytes_;
   bool colors_;
 };
@@ -120,7 +140,8 @@ class NodeReader {
 /// The nodes of a .bt file: two bits for each child.
 class BinaryNodeReader {
  public:
-  BinaryNodeReader(SemanticOctree& tree, Bytes& bytes) : tree_(tree), bytes_(bytes) {}
+  BinaryNodeReader(SemanticOctree& tree, NodeMaker maker, Bytes& bytes)
+      : tree_(tree), maker_(maker), bytes_(bytes) {}
 
   void read(SemanticVoxel& node, unsigned depth) {
     if (depth == kTreeDepth) bytes_.fail("is damaged: a voxel has parts");
@@ -129,7 +150,7 @@ class BinaryNodeReader {
     for (unsigned i = 0; i < 8; ++i) {
       const unsigned kind = kinds >> (2 * i) & 3U;
       if (kind == kUnknown) continue;
-      SemanticVoxel& child = *tree_.createNodeChild(&node, i);
+      SemanticVoxel& child = maker_.make(node, i);
       child.setLogOdds(kind == kFree ? tree_.getClampingThresMinLog()
                                      : tree_.getClampingThresMaxLog());
     }
@@ -140,6 +161,7 @@ class BinaryNodeReader {
 
  private:
   SemanticOctree& tree_;
+  NodeMaker maker_;
   Bytes& bytes_;
 };
 
@@ -183,21 +205,24 @@ void check_leaves(SavedOctree& saved, const Bytes& bytes) {
   saved.has_colors &= colored;
 }
 
-std::string contents_of(const std::filesystem::path& file) {
+// A pipe would be waited for, and a device never ends.
+std::string contents_of(const std::filesystem::path& file, std::size_t most_memory) {
+  std::error_code error;
+  const std::uintmax_t size = std::filesystem::file_size(file, error);
+  if (error) throw Error(Fault::kData, "cannot be read", file.string());
+  if (size > most_memory)
+    throw Error(Fault::kData, "is too large: " + std::to_string(size) + " bytes", file.string());
   std::ifstream stream(file, std::ios::binary);
-  std::string contents;
-  if (stream && !std::filesystem::is_directory(file))
-    contents.assign(std::istreambuf_iterator<char>(stream), {});
-  else
-    stream.setstate(std::ios::badbit);
-  if (stream.bad()) throw Error(Fault::kData, "cannot be read", file.string());
+  std::string contents(size, '\0');
+  stream.read(contents.data(), static_cast<std::streamsize>(size));
+  if (!stream) throw Error(Fault::kData, "cannot be read", file.string());
   return contents;
 }
 
 }  // namespace
 
-SavedOctree read_octree(const std::filesystem::path& file) {
-  const std::string contents = contents_of(file);
+SavedOctree read_octree(const std::filesystem::path& file, std::size_t most_memory) {
+  const std::string contents = contents_of(file, most_memory);
   Bytes bytes(contents, file.string());
   const Header header = read_header(bytes);
   SavedOctree saved{.tree = std::make_unique<SemanticOctree>(header.resolution),
@@ -205,10 +230,11 @@ SavedOctree read_octree(const std::filesystem::path& file) {
                     .has_colors = !header.binary && header.id == "ColorOcTree"};
   if (header.nodes == 0) bytes.fail("holds no voxel");
   SemanticVoxel& root = saved.tree->create_root();
+  const NodeMaker maker(*saved.tree, bytes, most_memory);
   if (header.binary)
-    BinaryNodeReader(*saved.tree, bytes).read(root, 0);
+    BinaryNodeReader(*saved.tree, maker, bytes).read(root, 0);
   else
-    NodeReader(*saved.tree, bytes, saved.has_colors).read(root, 0);
+    NodeReader(maker, bytes, saved.has_colors).read(root, 0);
   if (static_cast<double>(saved.tree->size()) != header.nodes)
     bytes.fail("is damaged: it holds " + std::to_string(saved.tree->size()) + " nodes");
   if (bytes.skip("# stillpoint classes ")) saved.classes = read_classes(*saved.tree, bytes);

@@ -4,12 +4,14 @@
 #include <gtest/gtest.h>
 #include <octomap/ColorOcTree.h>
 #include <octomap/OcTree.h>
+#include <sys/stat.h>
 
 #include <fstream>
 #include <iterator>
 
 #include "semantic_octree/test_map.hpp"
 #include "stillpoint/error.hpp"
+#include "support/error_text.hpp"
 #include "support/recording_writer.hpp"
 
 namespace stillpoint::semantic_octree {
@@ -106,6 +108,27 @@ TEST_F(OctreeReader, HugeLeavesAreRefused) {
     file.push_back(children);
   }
   EXPECT_THAT(message_for(written(file)), ::testing::HasSubstr("a leaf of"));
+}
+
+// Free space: eight nodes for two bytes.
+TEST_F(OctreeReader, MoreNodesThanMemoryAreRefused) {
+  const fs::path file = written(
+      "# Octomap OcTree binary file\nid OcTree\nsize 9\nres 0.05\ndata\n" + std::string(2, '\x55'));
+  const auto message = [&](std::size_t most_memory) {
+    return testing::error_text(Fault::kData, [&] { read_octree(file, most_memory); });
+  };
+  EXPECT_THAT(message(10'000), ::testing::HasSubstr("a leaf of"));  // read to its end
+  EXPECT_THAT(message(400), ::testing::HasSubstr("too many for memory"));
+  EXPECT_THAT(message(50), ::testing::HasSubstr("is too large"));
+}
+
+TEST_F(OctreeReader, OnlyFilesAreRead) {
+  EXPECT_THAT(testing::error_text(Fault::kData, [] { read_octree("/dev/zero"); }),
+              ::testing::HasSubstr("cannot be read"));
+  const fs::path pipe = folder() / "pipe.ot";
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  EXPECT_THAT(testing::error_text(Fault::kData, [&] { read_octree(pipe); }),
+              ::testing::HasSubstr("cannot be read"));
 }
 
 TEST_F(OctreeReader, OccupancyAlone) {

@@ -21,14 +21,14 @@ constexpr Elf64_Half kMachine = EM_AARCH64;
 std::uint64_t size_of(const std::filesystem::path& file) {
   std::error_code error;
   const std::uint64_t size = std::filesystem::file_size(file, error);
-  if (error) throw UnusableFile("cannot be read");  // a folder, or nothing
+  if (error) throw UnusableFile("cannot be read");  // a folder, a pipe, or nothing
   return size;
 }
 
 class ElfFile {
  public:
   explicit ElfFile(const std::filesystem::path& file)
-      : stream_(file, std::ios::binary), size_(size_of(file)) {
+      : size_(size_of(file)), stream_(file, std::ios::binary) {
     if (!stream_) throw UnusableFile("cannot be read");
     check_header();
     segments_ = read<Elf64_Phdr>(header_.e_phoff, header_.e_phnum);
@@ -94,8 +94,8 @@ class ElfFile {
     return {&text[offset], strnlen(&text[offset], text.size() - offset)};
   }
 
+  std::uint64_t size_;  // before the stream: a pipe would be waited for
   std::ifstream stream_;
-  std::uint64_t size_;
   Elf64_Ehdr header_{};
   std::vector<Elf64_Phdr> segments_;
 };

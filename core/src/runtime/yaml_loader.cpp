@@ -307,6 +307,10 @@ ConfigNode parse_assignment(const std::string& assignment, FaultList& faults,
     faults.add(where, "expected KEY.SUB=VALUE, as in tracker.features=2000");
     return nothing;
   }
+  if (std::ranges::count(path, '.') > kMaxDepth) {
+    faults.add({option}, kTooLarge);
+    return nothing;
+  }
   auto node = parse(assignment.substr(equals + 1), where, fs::current_path(), faults);
   if (!node) return nothing;
   for (std::size_t end = path.size(); end != std::string::npos;) {
