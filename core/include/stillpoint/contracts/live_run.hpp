@@ -31,11 +31,11 @@ class STILLPOINT_EXPORT LiveRun {
   /// What the dense map holds now, as MapBackend::occupied(). Nothing while a key frame is being
   /// mapped: ask again later; nothing either without a dense map or after the run.
   virtual std::optional<std::vector<LabelledPoint>> dense_map() = 0;
-  /// Writes the files of the dense map as it is now into `directory`, which is created when missing.
-  /// Dense mapping waits meanwhile: tenths of a second for a room, seconds after a loop. False:
-  /// nothing was written, because a key frame is being mapped or none has been yet (ask again
-  /// later), there is no dense map, or the run has ended. Throws Error when the files cannot be
-  /// written.
+  /// Writes the files of the dense map as it is now into `directory`, which is created when
+  /// missing. Dense mapping waits meanwhile: tenths of a second for a room, seconds after a loop.
+  /// False: nothing was written, because a key frame is being mapped or none has been yet (ask
+  /// again later), there is no dense map, or the run has ended. Throws Error when the files cannot
+  /// be written.
   virtual bool save_dense_map(const std::filesystem::path& directory) = 0;
 
   /// Where save_map() writes; empty: the program has named no file.
