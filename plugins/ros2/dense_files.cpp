@@ -17,9 +17,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kNice = 10;            // a tenth of tracking's share of the processor
-constexpr double kFirstRetry = 0.2;  // seconds
-constexpr double kRest = 20;         // times what saving and reading took
+constexpr int kNice = 10;     // a tenth of tracking's share of the processor
+constexpr double kRest = 20;  // times what saving and reading took
 
 class TemporaryFolder {
  public:

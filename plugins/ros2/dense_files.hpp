@@ -46,10 +46,12 @@ class DenseFilesReader {
   };
   static Read save_and_read(LiveRun& run, DenseFilesWanted wanted);
 
+  static constexpr double kFirstRetry = 0.2;  // seconds
+
   const std::shared_ptr<LiveRun> run_;
-  const double period_;        // seconds, of the frames
-  double next_ = 0;            // a time of frames
-  double retry_period_ = 0.2;  // seconds
+  const double period_;  // seconds, of the frames
+  double next_ = 0;      // a time of frames
+  double retry_period_ = kFirstRetry;
   std::future<Read> read_;
 };
 

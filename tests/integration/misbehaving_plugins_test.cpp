@@ -1,0 +1,185 @@
+// Plugins that fail, crash, end the process or never return are named, and what was computed is
+// saved.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <string>
+#include <tuple>
+#include <vector>
+
+#include "bad_setup_fixture.hpp"
+
+namespace stillpoint::testing {
+namespace {
+
+namespace fs = std::filesystem;
+using ::testing::HasSubstr;
+
+struct MisdeedWhenLoaded {
+  const char* plugin;
+  const char* reason;  // empty: an exception leaves dlopen() or ends in std::terminate()
+};
+
+/// Static constructors that do what no exception tells of.
+class LibraryThatMisbehaves : public BadSetup {
+ protected:
+  static fs::path folder_of(const std::string& plugin) { return kBadPlugins / plugin; }
+  static Surroundings with_it(const std::string& plugin) {
+    return {.environment = {{"STILLPOINT_PLUGIN_PATH", folder_of(plugin).string()}}};
+  }
+};
+
+class LibraryThatEndsTheProcess : public LibraryThatMisbehaves,
+                                  public ::testing::WithParamInterface<MisdeedWhenLoaded> {};
+
+INSTANTIATE_TEST_SUITE_P(
+    Ways, LibraryThatEndsTheProcess,
+    ::testing::Values(MisdeedWhenLoaded{"crashes_when_loaded",
+                                        "it crashed: SIGSEGV, Segmentation fault"},
+                      MisdeedWhenLoaded{"throws_when_loaded", ""},
+                      MisdeedWhenLoaded{"exits_when_loaded", "it called std::exit()"}),
+    [](const auto& test) { return std::string(test.param.plugin); });
+
+TEST_P(LibraryThatEndsTheProcess, IsNamed) {
+  const std::string plugin = GetParam().plugin;
+  for (const auto& arguments :
+       {std::vector<std::string>{"plugins", "list"}, {"check", "orb_baseline"}}) {
+    const Outcome outcome = call(arguments, with_it(plugin));
+    EXPECT_EQ(outcome.exit_code, kStageFailed) << outcome.signal;
+    EXPECT_THAT(outcome.err, HasSubstr("error: loading " + folder_of(plugin).string() +
+                                       "/libstillpoint_" + plugin + ".so: " + GetParam().reason));
+    EXPECT_THAT(outcome.err, HasSubstr("; its static constructors did that"));
+  }
+}
+
+TEST_F(LibraryThatMisbehaves, IsNamedWhenItsOptionsAreAskedFor) {
+  const std::string plugin = "crashes_when_described";
+  const Outcome outcome = run("orb_baseline", on_recording(), with_it(plugin));
+  EXPECT_EQ(outcome.exit_code, kStageFailed) << outcome.signal;
+  EXPECT_THAT(outcome.err,
+              HasSubstr("error: " + folder_of(plugin).string() + "/libstillpoint_" + plugin +
+                        ".so: the options of moving_checker 'crashes_when_described': it crashed"));
+}
+
+TEST_F(LibraryThatMisbehaves, IsNamedWhileItHangs) {
+  Program program({"plugins", "list"}, with_it("hangs_when_loaded"));
+  EXPECT_TRUE(program.wait_for("libstillpoint_hangs_when_loaded.so has not returned for "));
+  program.send(SIGINT);
+  EXPECT_EQ(program.finish().signal, SIGINT);
+}
+
+TEST_F(BadPlugins, FailingStageIsNamedAndResultsAreSaved) {
+  for (const char* mode : {"inline", "threaded"}) {
+    const Outcome outcome = run("orb_baseline",
+                                on_recording({"--set", "moving_checker.type=throws_later", "--set",
+                                              std::string("runtime.mode=") + mode}),
+                                with_plugins());
+    EXPECT_EQ(outcome.exit_code, kStageFailed);
+    const std::string message =
+        "moving check (throws_later) failed on frame 1: text inside the plugin";
+    EXPECT_THAT(outcome.err, HasSubstr("error: " + message));
+    const auto summary = json_file(out() / "summary.json");
+    EXPECT_FALSE(summary["complete"]);
+    EXPECT_EQ(summary["failure"], message);
+    EXPECT_EQ(count_poses(out() / "trajectory.txt"), 1u);
+  }
+}
+
+struct Misdeed {
+  const char* how;
+  const char* reason;
+};
+
+/// A moving checker that does at the fourth frame what no exception tells of.
+class StageThatMisbehaves : public BadPlugins,
+                            public ::testing::WithParamInterface<std::tuple<const char*, Misdeed>> {
+ protected:
+  std::string mode() const { return std::get<0>(GetParam()); }
+  Misdeed misdeed() const { return std::get<1>(GetParam()); }
+  std::vector<std::string> arguments() const {
+    return on_recording({"--set", "moving_checker.type=misbehaves", "--set",
+                         std::string("moving_checker.how=") + misdeed().how, "--set",
+                         "runtime.mode=" + mode(), "--set", "runtime.stage_timeout=0.1"});
+  }
+  std::vector<std::string> in_the_constructor() const {
+    std::vector<std::string> all = arguments();
+    all.insert(all.end(), {"--set", "moving_checker.at_once=true"});
+    return all;
+  }
+  void expect_saved(const Outcome& outcome) const {
+    const std::string message =
+        std::string("moving check (misbehaves) failed on frame 3: ") + misdeed().reason;
+    EXPECT_EQ(outcome.exit_code, kStageFailed) << outcome.signal;
+    EXPECT_THAT(outcome.err, HasSubstr("error: " + message));
+    EXPECT_THAT(outcome.out, HasSubstr("trajectory.txt"));
+    EXPECT_EQ(count_poses(out() / "trajectory.txt"), 3u);
+    const auto summary = json_file(out() / "summary.json");
+    EXPECT_FALSE(summary["complete"]);
+    EXPECT_THAT(summary["failure"].get<std::string>(), ::testing::StartsWith(message));
+  }
+};
+
+using StageThatEndsTheProcess = StageThatMisbehaves;
+INSTANTIATE_TEST_SUITE_P(
+    Ways, StageThatEndsTheProcess,
+    ::testing::Combine(
+        ::testing::Values("inline", "threaded"),
+        ::testing::Values(Misdeed{"crash", "it crashed: SIGSEGV, Segmentation fault"},
+                          Misdeed{"abort", "it crashed: SIGABRT, Aborted"},
+                          Misdeed{"overflow", "it crashed: SIGSEGV, Segmentation fault"},
+                          Misdeed{"exit", "it called std::exit()"})),
+    [](const auto& test) {
+      return std::string(std::get<0>(test.param)) + "_" + std::get<1>(test.param).how;
+    });
+
+TEST_P(StageThatEndsTheProcess, IsNamedAndResultsAreSaved) {
+  expect_saved(run("orb_baseline", arguments(), with_plugins()));
+}
+
+TEST_P(StageThatEndsTheProcess, IsNamedInItsConstructor) {
+  const Outcome outcome = run("orb_baseline", in_the_constructor(), with_plugins());
+  EXPECT_EQ(outcome.exit_code, kStageFailed) << outcome.signal;
+  EXPECT_THAT(outcome.err,
+              HasSubstr(std::string("error: moving_checker (misbehaves): ") + misdeed().reason));
+}
+
+using StageThatWritesToImages = StageThatMisbehaves;
+INSTANTIATE_TEST_SUITE_P(
+    Modes, StageThatWritesToImages,
+    ::testing::Combine(::testing::Values("inline", "threaded"),
+                       ::testing::Values(Misdeed{
+                           "write", "it wrote to an image of a frame, which all stages share"})),
+    [](const auto& test) { return std::string(std::get<0>(test.param)); });
+
+TEST_P(StageThatWritesToImages, IsNamedWhenValidationIsFull) {
+  std::vector<std::string> thorough = arguments();
+  thorough.insert(thorough.end(), {"--set", "runtime.validate=full"});
+  expect_saved(run("orb_baseline", thorough, with_plugins()));
+}
+
+using StageThatHangs = StageThatMisbehaves;
+INSTANTIATE_TEST_SUITE_P(Modes, StageThatHangs,
+                         ::testing::Combine(::testing::Values("inline", "threaded"),
+                                            ::testing::Values(Misdeed{
+                                                "hang", "it did not return and was given up"})),
+                         [](const auto& test) { return std::string(std::get<0>(test.param)); });
+
+TEST_P(StageThatHangs, IsNamedAndGivenUpByTheSecondCtrlC) {
+  Program program(command("orb_baseline", arguments()), with_plugins());
+  ASSERT_TRUE(program.wait_for("warning: moving check (misbehaves) has not returned for "));
+  program.send(SIGINT);
+  ASSERT_TRUE(program.wait_for("frame 3; Ctrl-C again gives it up"));
+  program.send(SIGINT);
+  expect_saved(program.finish());
+}
+
+TEST_P(StageThatHangs, IsNamedInItsConstructor) {
+  Program program(command("orb_baseline", in_the_constructor()), with_plugins());
+  EXPECT_TRUE(program.wait_for("the constructor of moving_checker (misbehaves) has not returned"));
+  program.send(SIGINT);
+  EXPECT_EQ(program.finish().signal, SIGINT);
+}
+
+}  // namespace
+}  // namespace stillpoint::testing
