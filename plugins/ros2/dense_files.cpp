@@ -50,19 +50,20 @@ void lower_priority() {
 
 }  // namespace
 
-DenseFiles read_dense_files(const fs::path& folder, DenseFilesWanted wanted) {
-  DenseFiles files;
+DenseFiles read_dense_files(const fs::path& folder, DenseFilesWanted wanted, double time) {
+  DenseFiles files{.time = time, .octree = {}, .grid = {}};
   if (wanted.octree) files.octree = ros2_messages::read_octree_message(folder);
   if (wanted.grid) files.grid = ros2_messages::read_cost_map(folder);
   return files;
 }
 
-DenseFilesReader::Read DenseFilesReader::save_and_read(LiveRun& run, DenseFilesWanted wanted) {
+DenseFilesReader::Read DenseFilesReader::save_and_read(LiveRun& run, DenseFilesWanted wanted,
+                                                       double time) {
   lower_priority();
   const auto begin = std::chrono::steady_clock::now();
   const TemporaryFolder folder;
   Read read;
-  if (run.save_dense_map(folder.path())) read.files = read_dense_files(folder.path(), wanted);
+  if (run.save_dense_map(folder.path())) read.files = read_dense_files(folder.path(), wanted, time);
   read.took = std::chrono::steady_clock::now() - begin;
   return read;
 }
@@ -72,7 +73,7 @@ std::optional<DenseFiles> DenseFilesReader::next(double time, DenseFilesWanted w
     if (time >= next_ && (wanted.octree || wanted.grid)) {
       next_ = time + period_;
       read_ = std::async(std::launch::async,
-                         [run = run_, wanted] { return save_and_read(*run, wanted); });
+                         [run = run_, wanted, time] { return save_and_read(*run, wanted, time); });
     }
     return std::nullopt;
   }

@@ -15,6 +15,7 @@ namespace stillpoint::ros2 {
 
 /// What a map back end has written; nothing for what it does not write or nobody wants.
 struct DenseFiles {
+  double time = 0;  // seconds: of the newest frame when writing began
   std::optional<ros2_messages::Octree> octree;
   std::optional<ros2_messages::OccupancyGrid> grid;
 };
@@ -24,8 +25,9 @@ struct DenseFilesWanted {
   bool grid = false;
 };
 
-/// Of the files in `folder`. Throws Error when they cannot be read.
-DenseFiles read_dense_files(const std::filesystem::path& folder, DenseFilesWanted wanted);
+/// Of the files in `folder`, written at `time`. Throws Error when they cannot be read.
+DenseFiles read_dense_files(const std::filesystem::path& folder, DenseFilesWanted wanted,
+                            double time);
 
 /// The map back end writes all its files, which takes tenths of a second, or seconds after a loop:
 /// a thread of its own waits for it. Used by one thread at a time.
@@ -44,7 +46,7 @@ class DenseFilesReader {
     std::optional<DenseFiles> files;  // nothing: ask again later
     std::chrono::duration<double> took{};
   };
-  static Read save_and_read(LiveRun& run, DenseFilesWanted wanted);
+  static Read save_and_read(LiveRun& run, DenseFilesWanted wanted, double time);
 
   static constexpr double kFirstRetry = 0.2;  // seconds
 

@@ -130,7 +130,7 @@ void Ros2Output::frame(const FrameReport& report) {
 
 // A map that cannot be written is no reason to end the run.
 void Ros2Output::publish_dense_files(double time) try {
-  if (auto files = dense_files_->next(time, dense_files_wanted())) publish(std::move(*files), time);
+  if (auto files = dense_files_->next(time, dense_files_wanted())) publish(std::move(*files));
 } catch (const std::exception& error) {
   if (!std::exchange(has_warned_, true))
     log_(LogLevel::kWarning,
@@ -176,7 +176,7 @@ void Ros2Output::finish(const RunSummary& summary) {
     if (topics_.dense_map.wanted())
       if (const auto points = summary.dense_map(); !points.empty())
         publish(topics_.dense_map, ros2_messages::dense_cloud(points, mounting_, time));
-    publish(read_dense_files(summary.map_directory, dense_files_wanted()), time);
+    publish(read_dense_files(summary.map_directory, dense_files_wanted(), time));
   }
   wait_for_readers();
   if (refused_ > 0)
@@ -188,13 +188,13 @@ DenseFilesWanted Ros2Output::dense_files_wanted() const {
   return {.octree = topics_.octomap.wanted(), .grid = topics_.grid.wanted()};
 }
 
-void Ros2Output::publish(DenseFiles files, double time) {
+void Ros2Output::publish(DenseFiles files) {
   if (files.octree) {
-    files.octree->header = {time, world_frame()};
+    files.octree->header = {files.time, world_frame()};
     publish(topics_.octomap, *files.octree);
   }
   if (files.grid) {
-    files.grid->header = {time, mounting_.map};
+    files.grid->header = {files.time, mounting_.map};
     files.grid->header_from_origin = mounting_.map_from_world * files.grid->header_from_origin;
     publish(topics_.grid, *files.grid);
   }

@@ -52,7 +52,7 @@ class Ros2Output final : public Output {
   void publish_landmarks(const SparseMap& map, double time);
   DenseFilesWanted dense_files_wanted() const;
   void publish_dense_files(double time);
-  void publish(DenseFiles files, double time);
+  void publish(DenseFiles files);
   void wait_for_readers() const;
   std::string world_frame() const;
 
