@@ -1,7 +1,9 @@
 #include "source_openni2/openni2_source.hpp"
 
+#include <chrono>
 #include <opencv2/core.hpp>
 #include <opencv2/imgproc.hpp>
+#include <thread>
 #include <utility>
 
 #include "live_camera/driver_library.hpp"
@@ -16,6 +18,9 @@ using openni::VideoStream;
 
 constexpr double kTicksPerSecond = 1e6;
 constexpr int kCounterBits = 64;
+// stop() of the driver DummyDevice does not wait for the thread of the stream, which wakes up once
+// more, 33 ms later, and must still find it: three times that, for a busy machine.
+constexpr std::chrono::milliseconds kLastFrameOfDriver(100);
 
 /// Throws with what OpenNI says unless `status` is that of success.
 void require(openni::Status status, const std::string& what, const std::string& device) {
@@ -150,6 +155,7 @@ OpenNi2Source::~OpenNi2Source() {
   live_camera::undo_in_driver([this] {
     camera_.color.stop();
     camera_.depth.stop();
+    std::this_thread::sleep_for(kLastFrameOfDriver);
   });
 }
 
