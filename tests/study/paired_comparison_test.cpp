@@ -19,6 +19,7 @@ class Comparison : public ::testing::Test {
     for (std::size_t i = 0; i < recordings; ++i) {
       Sequence sequence;
       sequence.name = std::to_string(i);
+      sequence.scene = "scene " + std::to_string(i / cameras_);
       study_.sequences.push_back(sequence);
     }
     study_.baseline = "plain";
@@ -33,6 +34,7 @@ class Comparison : public ::testing::Test {
     return all.at(0);
   }
   Study study_ = two_by_two(1);
+  std::size_t cameras_ = 1;  // that each recording is run with
 };
 
 TEST_F(Comparison, CountsRecordingsAndTheirRatios) {
@@ -54,6 +56,14 @@ TEST_F(Comparison, RepeatsOnOneRecordingAreOnePair) {
   study_.new_noise = true;  // every repeat has a recording of its own
   EXPECT_EQ(compared(2, better).worse, 4u);
   EXPECT_EQ(compared(2, better).better, 2u);
+}
+
+TEST_F(Comparison, OneRecordingWithTwoCamerasIsOnePair) {
+  cameras_ = 2;
+  const PairedComparison result =
+      compared(6, [](std::size_t sequence, int) { return result_with(0.05 + 0.005 * sequence); });
+  EXPECT_EQ(result.better, 3u);
+  EXPECT_DOUBLE_EQ(result.p, 2.0 / 8);
 }
 
 TEST_F(Comparison, WhoeverCoversLessCannotWin) {

@@ -28,6 +28,10 @@ std::optional<double> advantage(const CellResult& variant, const CellResult& bas
   return std::log(*baseline.values[kAte] / *variant.values[kAte]);
 }
 
+bool same_images(const Sequence& a, const Sequence& b) {
+  return a.dataset == b.dataset && a.scene == b.scene && a.frames == b.frames && a.set == b.set;
+}
+
 /// Of one recording.
 struct Pair {
   double advantage = 0.0;
@@ -49,24 +53,41 @@ class Pairs {
     std::vector<Pair> pairs;
     const int repeats = results_.study.repeats;
     const int at_once = results_.study.new_noise ? 1 : repeats;
-    for (std::size_t sequence = 0; sequence < results_.study.sequences.size(); ++sequence)
+    for (const std::vector<std::size_t>& sequences : recordings())
       for (int first = 0; first < repeats; first += at_once)
-        if (const auto pair = of_recording(sequence, first, first + at_once))
+        if (const auto pair = of_recording(sequences, first, first + at_once))
           pairs.push_back(*pair);
     return pairs;
   }
 
  private:
-  std::optional<Pair> of_recording(std::size_t sequence, int first, int end) const {
-    std::vector<double> advantages, times;
-    for (int repeat = first; repeat < end; ++repeat) {
-      const CellResult* own = results_.find({sequence, variant_, repeat});
-      const CellResult* other = results_.find({sequence, baseline_, repeat});
-      if (!own || !other) continue;
-      if (const auto value = advantage(*own, *other)) advantages.push_back(*value);
-      const auto &time = own->values[kCpuPerFrame], &other_time = other->values[kCpuPerFrame];
-      if (time && other_time && *other_time > 0.0) times.push_back(*time / *other_time);
+  /// Sequences that have the same images are one recording.
+  std::vector<std::vector<std::size_t>> recordings() const {
+    const std::vector<Sequence>& all = results_.study.sequences;
+    std::vector<std::vector<std::size_t>> groups;
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      const auto same = std::ranges::find_if(
+          groups, [&](const auto& group) { return same_images(all[group.front()], all[i]); });
+      if (same == groups.end())
+        groups.push_back({i});
+      else
+        same->push_back(i);
     }
+    return groups;
+  }
+
+  std::optional<Pair> of_recording(const std::vector<std::size_t>& sequences, int first,
+                                   int end) const {
+    std::vector<double> advantages, times;
+    for (const std::size_t sequence : sequences)
+      for (int repeat = first; repeat < end; ++repeat) {
+        const CellResult* own = results_.find({sequence, variant_, repeat});
+        const CellResult* other = results_.find({sequence, baseline_, repeat});
+        if (!own || !other) continue;
+        if (const auto value = advantage(*own, *other)) advantages.push_back(*value);
+        const auto &time = own->values[kCpuPerFrame], &other_time = other->values[kCpuPerFrame];
+        if (time && other_time && *other_time > 0.0) times.push_back(*time / *other_time);
+      }
     if (advantages.empty()) return std::nullopt;
     Pair pair{.advantage = middle(std::move(advantages)), .time_ratio = {}};
     if (const auto spread = spread_of(std::move(times))) pair.time_ratio = spread->median;
