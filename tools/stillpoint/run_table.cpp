@@ -27,6 +27,7 @@ void RunTable::finish(const RunSummary& summary) {
   landmarks_ = summary.map.landmark_count();
   complete_ = summary.complete;
   dropped_ = summary.dropped_frames;
+  dropped_reports_ = summary.dropped_reports;
   loops_ = summary.loops_closed;
   unlabelled_ = summary.unlabelled_frames;
   segmentation_failures_ = summary.segmentation_failures;
@@ -54,6 +55,9 @@ void RunTable::print_run(std::ostream& stream) const {
                      tracking_.poorly_constrained);
   if (dropped_ > 0)
     stream << format("            %d dropped to keep the sensor's pace\n", dropped_);
+  if (dropped_reports_ > 0)
+    stream << format("            %d reports not given to outputs that were too slow\n",
+                     dropped_reports_);
   if (source_.skipped > 0)
     stream << format("            %zu image%s skipped as unusable\n", source_.skipped,
                      source_.skipped == 1 ? "" : "s");

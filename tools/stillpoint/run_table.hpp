@@ -33,6 +33,7 @@ class RunTable final : public Output {
   std::size_t landmarks_ = 0;
   bool complete_ = true;
   int dropped_ = 0;
+  int dropped_reports_ = 0;
   int loops_ = 0;
   int unlabelled_ = 0;
   int segmentation_failures_ = 0;
