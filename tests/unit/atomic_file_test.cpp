@@ -3,9 +3,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/resource.h>
+#include <sys/stat.h>
 
 #include <csignal>
 #include <filesystem>
+#include <fstream>
 #include <iterator>
 #include <string>
 
@@ -87,11 +89,25 @@ TEST_F(AtomicFileTest, OnAFullDiskTheEarlierFileStaysWhole) {
       FAIL() << "a file that is not whole was put in its place";
     } catch (const Error& error) {
       EXPECT_EQ(error.fault(), Fault::kUsage);
-      EXPECT_THAT(error.what(), ::testing::HasSubstr("map.part: cannot write: "));
+      EXPECT_THAT(error.what(), ::testing::HasSubstr(".part: cannot write: "));
       EXPECT_THAT(error.what(), ::testing::HasSubstr("free space"));
     }
   }
   EXPECT_EQ(contents(folder_ / "map"), "old");
+  EXPECT_EQ(files(), 1U);
+}
+
+TEST_F(AtomicFileTest, FilesBesideItAreSomebodyElses) {
+  std::ofstream(folder_ / "map.part") << "mine";
+  write(folder_ / "map", "text");
+  EXPECT_EQ(contents(folder_ / "map.part"), "mine");
+}
+
+TEST_F(AtomicFileTest, WhatIsNoFileStays) {
+  const fs::path pipe = folder_ / "pipe";
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  EXPECT_THROW(AtomicFile{pipe}, Error);
+  EXPECT_TRUE(fs::is_fifo(pipe));
   EXPECT_EQ(files(), 1U);
 }
 

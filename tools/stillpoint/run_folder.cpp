@@ -8,8 +8,10 @@
 #include <cerrno>
 #include <cstring>
 #include <fstream>
+#include <iterator>
 #include <system_error>
 #include <utility>
+#include <vector>
 
 #include "stillpoint/error.hpp"
 
@@ -28,6 +30,12 @@ bool is_picture(const fs::path& file) {
   const std::string number = file.stem().string();
   return number.size() >= 6 && number.find_first_not_of("0123456789") == std::string::npos &&
          (file.extension() == ".jpg" || file.extension() == ".png");
+}
+
+/// "trajectory.txt.1234.part", of a run that was killed.
+bool is_unfinished_result(const fs::path& file) {
+  return file.extension() == ".part" &&
+         std::ranges::find(kResults, file.stem().stem().string()) != std::end(kResults);
 }
 
 /// Maps and pictures, by their names: nothing else in these folders is the program's.
@@ -143,6 +151,11 @@ void RunFolder::require_results_of_a_run() const {
 void RunFolder::remove_earlier_results() const {
   std::error_code error;
   bool found = false;
+  std::vector<fs::path> unfinished;
+  for (const auto& entry : fs::directory_iterator(path_, error))
+    if (is_unfinished_result(entry.path())) unfinished.push_back(entry.path());
+  for (const fs::path& file : unfinished) fs::remove(file, error);
+  error.clear();
   for (const char* name : kResults) {
     found = fs::remove(path_ / name, error) || found;
     if (error) fail(path_ / name, error.message());

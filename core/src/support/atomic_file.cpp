@@ -1,7 +1,10 @@
 #include "stillpoint/support/atomic_file.hpp"
 
+#include <unistd.h>
+
 #include <cerrno>
 #include <cstring>
+#include <string>
 #include <system_error>
 #include <utility>
 
@@ -18,8 +21,15 @@ namespace {
 }  // namespace
 
 AtomicFile::AtomicFile(std::filesystem::path path)
-    : path_(std::move(path)), temporary_(path_.string() + ".part") {
+    : path_(std::move(path)),
+      // A name that is nobody else's.
+      temporary_(path_.string() + '.' + std::to_string(::getpid()) + ".part") {
   std::error_code error;
+  const std::filesystem::file_status there = std::filesystem::status(path_, error);
+  if (std::filesystem::exists(there) && !std::filesystem::is_regular_file(there))
+    throw Error(Fault::kUsage, "cannot write: this is a folder, a device or a pipe", path_.string(),
+                "choose another name");
+  error.clear();
   if (path_.has_parent_path()) std::filesystem::create_directories(path_.parent_path(), error);
   if (error) fail(path_.parent_path(), error.value());
   stream_.open(temporary_, std::ios::binary | std::ios::trunc);
