@@ -220,7 +220,7 @@ TEST(ReportProgram, AnIncompleteStudySaysSo) {
             HasSubstr("sitting/better/0: Failed with exit code 139: ended by signal 11")));
   EXPECT_EQ(text_of(folder.path() / "runs/walking/better/0/result.json"), "{\"format\": 99}");
   const std::string csv = text_of(folder.path() / "report.csv");
-  EXPECT_THAT(csv, HasSubstr("walking,plain,0.1,0.1000,0\n"));
+  EXPECT_THAT(csv, HasSubstr("walking,plain,0.1,0.1000,0,"));
 }
 
 /// What probe.js has seen in the page.

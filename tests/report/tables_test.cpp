@@ -14,13 +14,16 @@ using study::Table;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
+const std::vector<std::string> kOrigins = {"commit 1", "commit 2"};
+
 TEST(LatexTables, AreBooktabsWithTheBestInBoldAndNothingThatLatexTakesForACommand) {
   const Table table{.title = "50 % & more_or_less",
                     .note = "a~b",
                     .header = {"run", "plain †"},
                     .rows = {{{.text = "fr3_walking"}, {.text = "1–2", .value = 1.0, .best = true}},
                              {{.text = "x"}, {.text = "< 0.01", .significant = true}}}};
-  const std::string text = latex_tables({&table, 1});
+  const std::string text = latex_tables({&table, 1}, kOrigins);
+  EXPECT_THAT(text, HasSubstr("% commit 1\n% commit 2\n"));
   EXPECT_THAT(text, HasSubstr("\\caption{50 \\% \\& more\\_or\\_less. a\\textasciitilde{}b}"));
   EXPECT_THAT(text, HasSubstr("run & plain $^\\dagger$ \\\\\n    \\midrule"));
   EXPECT_THAT(text, HasSubstr("fr3\\_walking & \\textbf{1--2} \\\\"));
@@ -33,10 +36,10 @@ TEST(CsvTables, HaveALinePerFigure) {
       .header = {"run", "ATE", "RPE"},
       .rows = {
           {{.text = "r"}, {.text = "0.1235", .value = 0.123456, .best = true}, {.text = "–"}}}};
-  EXPECT_EQ(csv_tables({&table, 1}),
-            "table,row,column,value,text,best\n"
-            "\"a, \"\"b\"\"\",r,ATE,0.123456,0.1235,1\n"
-            "\"a, \"\"b\"\"\",r,RPE,,–,0\n");
+  EXPECT_EQ(csv_tables({&table, 1}, kOrigins),
+            "table,row,column,value,text,best,origin\n"
+            "\"a, \"\"b\"\"\",r,ATE,0.123456,0.1235,1,commit 1 | commit 2\n"
+            "\"a, \"\"b\"\"\",r,RPE,,–,0,commit 1 | commit 2\n");
 }
 
 RunData run_with(const char* name, double ate, double coverage) {
@@ -70,8 +73,9 @@ TEST(LatexTables, TwoColumnsMayNameARow) {
               .header = {"sequence", "variant", "mean"},
               .rows = {{{.text = "walking"}, {.text = "plain"}, {.text = "0.1", .value = 0.1}}}};
   table.names = 2;
-  EXPECT_THAT(latex_tables({&table, 1}), HasSubstr("\\begin{tabular}{llr}"));
-  EXPECT_THAT(csv_tables({&table, 1}), HasSubstr("t,walking/plain,mean,0.1,0.1,0\n"));
+  EXPECT_THAT(latex_tables({&table, 1}, kOrigins), HasSubstr("\\begin{tabular}{llr}"));
+  EXPECT_THAT(csv_tables({&table, 1}, kOrigins),
+              HasSubstr("t,walking/plain,mean,0.1,0.1,0,commit 1 | commit 2\n"));
 }
 
 /// Of all cells but those of the last `missing`.

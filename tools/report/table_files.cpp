@@ -42,20 +42,24 @@ std::string name_of(const std::vector<TableCell>& row, std::size_t names) {
 
 }  // namespace
 
-std::string latex_tables(std::span<const Table> tables) {
+std::string latex_tables(std::span<const Table> tables, Origins origins) {
   std::string text = "% Needs \\usepackage{booktabs}.\n";
+  for (const std::string& origin : origins) text += "% " + origin + "\n";
   for (const Table& table : tables) text += latex_table(in_latex(table));
   return text;
 }
 
-std::string csv_tables(std::span<const Table> tables) {
-  std::string text = "table,row,column,value,text,best\n";
+std::string csv_tables(std::span<const Table> tables, Origins origins) {
+  std::string text = "table,row,column,value,text,best,origin\n";
+  std::string origin;
+  for (const std::string& line : origins) origin += (origin.empty() ? "" : " | ") + line;
   for (const Table& table : tables)
     for (const std::vector<TableCell>& row : table.rows)
       for (std::size_t i = table.names; i < row.size(); ++i)
         text += csv_field(table.title) + "," + csv_field(name_of(row, table.names)) + "," +
                 csv_field(table.header[i]) + "," + study::csv_number(row[i].value) + "," +
-                csv_field(row[i].text) + "," + (row[i].best ? "1" : "0") + "\n";
+                csv_field(row[i].text) + "," + (row[i].best ? "1" : "0") + "," + csv_field(origin) +
+                "\n";
   return text;
 }
 

@@ -8,11 +8,14 @@
 
 namespace stillpoint::report {
 
-/// Tables with \toprule, \midrule and \bottomrule of the package booktabs, to be included by
-/// \input. The best is bold; † stands behind what is significant.
-std::string latex_tables(std::span<const study::Table> tables);
+/// Which builds made the runs, where and when: a line each.
+using Origins = std::span<const std::string>;
 
-/// Columns: table, row, column, value, text, best. A line per cell, quoted as in RFC 4180.
-std::string csv_tables(std::span<const study::Table> tables);
+/// Tables with \toprule, \midrule and \bottomrule of the package booktabs, to be included by
+/// \input. The best is bold; † stands behind what is significant. Origins are comments at the top.
+std::string latex_tables(std::span<const study::Table> tables, Origins origins);
+
+/// Columns: table, row, column, value, text, best, origin. A line per cell, quoted as in RFC 4180.
+std::string csv_tables(std::span<const study::Table> tables, Origins origins);
 
 }  // namespace stillpoint::report
