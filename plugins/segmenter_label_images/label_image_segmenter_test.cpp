@@ -2,7 +2,9 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
+#include <filesystem>
 #include <functional>
 #include <opencv2/imgproc.hpp>
 
@@ -301,9 +303,12 @@ TEST_F(LabelImageSegmenterTest, BadImagesAreFoundOutAtTheStart) {
   EXPECT_THAT(message_of([&] { open(); }),
               AllOf(HasSubstr("class id 21, but there are 21 classes"), HasSubstr("'classes'")));
   testing::truncate_file(file, 0.0);
-  EXPECT_THAT(message_of([&] { open(); }), HasSubstr("cannot be read"));
+  EXPECT_THAT(message_of([&] { open(); }), HasSubstr("the file is empty"));
   folder_.write("labels/1.000000.png", "not an image");
-  EXPECT_THAT(message_of([&] { open(); }), HasSubstr("cannot be read"));
+  EXPECT_THAT(message_of([&] { open(); }), HasSubstr("is not an image that can be read"));
+  std::filesystem::remove(file);
+  ASSERT_EQ(::mkfifo(file.c_str(), 0600), 0);
+  EXPECT_THAT(message_of([&] { open(); }), HasSubstr("is no regular file"));
 }
 
 TEST_F(LabelImageSegmenterTest, LabelsOfAnotherSizeThanTheCameraAreFoundOutAtTheStart) {

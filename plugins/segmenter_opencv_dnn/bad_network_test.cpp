@@ -1,6 +1,7 @@
 // Faults that are known when the segmenter is made: each names the file, the reason and the remedy,
 // and OpenCV says nothing on its own.
 #include <gmock/gmock.h>
+#include <sys/stat.h>
 
 #include <functional>
 #include <limits>
@@ -46,6 +47,15 @@ TEST_F(BadNetwork, Missing) {
   options_.network.model = folder_.path() / "missing.onnx";
   EXPECT_THAT(fault(Fault::kUsage), AllOf(HasSubstr("missing.onnx"), HasSubstr("does not exist"),
                                           HasSubstr("stillpoint-get-models")));
+}
+
+TEST_F(BadNetwork, PipesAndGigabytesAreNotRead) {
+  options_.network.model = folder_.write("net.onnx", "");
+  std::filesystem::resize_file(options_.network.model, 20'000'000'000);  // sparse
+  EXPECT_THAT(fault(Fault::kData), HasSubstr("such a file has at most 2047"));
+  std::filesystem::remove(options_.network.model);
+  ASSERT_EQ(::mkfifo(options_.network.model.c_str(), 0600), 0);
+  EXPECT_THAT(fault(Fault::kData), HasSubstr("is no regular file"));
 }
 
 TEST_F(BadNetwork, TruncatedOnnx) {

@@ -7,11 +7,14 @@
 
 #include "segmenter_opencv_dnn/quiet_opencv.hpp"
 #include "stillpoint/error.hpp"
+#include "stillpoint/support/input_file.hpp"
 
 namespace stillpoint::segmenter_opencv_dnn {
 namespace {
 
 namespace fs = std::filesystem;
+
+constexpr std::uintmax_t kLargestModel = 2047 << 20;  // bytes, as protobuf has it
 
 struct Kind {
   std::string_view suffix;  // of the model
@@ -80,6 +83,8 @@ std::string reason(const cv::Exception& exception) {
 cv::dnn::Net read_network(const std::string& model, const std::string& config) {
   const Kind& kind = kind_of(model);
   check_config(kind, model, config);
+  input_file_size(model, kLargestModel);
+  if (!config.empty()) input_file_size(config, kLargestText);
   const QuietOpenCv quiet;
   try {
     cv::dnn::Net net = cv::dnn::readNet(model, config);

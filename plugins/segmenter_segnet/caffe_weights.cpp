@@ -2,12 +2,12 @@
 
 #include <bit>
 #include <cstring>
-#include <fstream>
 #include <numeric>
 #include <span>
 
 #include "segmenter_segnet/wire_reader.hpp"
 #include "stillpoint/error.hpp"
+#include "stillpoint/support/input_file.hpp"
 
 namespace stillpoint::segmenter_segnet {
 namespace {
@@ -29,17 +29,6 @@ constexpr std::uint32_t kBlobData = 5;
 constexpr std::uint32_t kBlobShape = 7;
 constexpr std::uint32_t kBlobDoubleData = 8;
 constexpr std::size_t kMaxDimensions = 32;  // of a cv::Mat
-
-std::vector<std::byte> read_file(const std::filesystem::path& file) {
-  std::ifstream stream(file, std::ios::binary | std::ios::ate);
-  if (!stream || std::filesystem::is_directory(file))
-    throw Error(Fault::kData, "cannot be read", file.string(), "check the path of 'model'");
-  std::vector<std::byte> bytes(static_cast<std::size_t>(stream.tellg()));
-  stream.seekg(0);
-  stream.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
-  if (!stream) throw Error(Fault::kData, "cannot be read to its end", file.string());
-  return bytes;
-}
 
 /// Packed or one by one.
 template <class Number>
@@ -141,9 +130,10 @@ CaffeWeights parse_network(std::span<const std::byte> message) {
 }  // namespace
 
 CaffeWeights read_caffe_weights(const std::filesystem::path& file) {
-  const std::vector<std::byte> bytes = read_file(file);
+  constexpr std::uintmax_t kLargestFile = 2047 << 20;  // as protobuf has it
+  const std::string bytes = read_input_file(file, kLargestFile);
   try {
-    return parse_network(bytes);
+    return parse_network(std::as_bytes(std::span(bytes)));
   } catch (const Error& error) {
     throw Error(Fault::kData, std::string("not a complete .caffemodel: ") + error.what(),
                 file.string(),

@@ -189,11 +189,11 @@ TEST_F(SegnetNetworkTest, MissingFilesAreNamed) {
     return {};
   };
   EXPECT_THAT(message(folder_.path() / "no.prototxt", model),
-              AllOf(HasSubstr("no.prototxt"), HasSubstr("cannot be read")));
+              AllOf(HasSubstr("no.prototxt"), HasSubstr("no such file")));
   EXPECT_THAT(message(prototxt, folder_.path() / "no.caffemodel"),
-              AllOf(HasSubstr("no.caffemodel"), HasSubstr("cannot be read")));
-  EXPECT_THAT(message(folder_.path(), model), HasSubstr("cannot be read"));
-  EXPECT_THAT(message(prototxt, folder_.path()), HasSubstr("cannot be read"));
+              AllOf(HasSubstr("no.caffemodel"), HasSubstr("no such file")));
+  EXPECT_THAT(message(folder_.path(), model), HasSubstr("is no regular file"));
+  EXPECT_THAT(message(prototxt, folder_.path()), HasSubstr("is no regular file"));
 }
 
 TEST_F(SegnetNetworkTest, SwappedFilesAreToldFromDamagedOnes) {

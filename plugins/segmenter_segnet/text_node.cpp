@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cctype>
 #include <charconv>
-#include <fstream>
 #include <iterator>
 
 #include "stillpoint/error.hpp"
+#include "stillpoint/support/input_file.hpp"
 
 namespace stillpoint::segmenter_segnet {
 namespace {
@@ -164,10 +164,7 @@ bool TextNode::boolean(std::string_view field, bool fallback) const {
 }
 
 TextNode read_text_file(const std::filesystem::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream || std::filesystem::is_directory(file))
-    throw Error(Fault::kData, "cannot be read", file.string(), "check the path of 'prototxt'");
-  const std::string text{std::istreambuf_iterator<char>(stream), {}};
+  const std::string text = read_input_file(file);
   if (text.find('\0') != std::string::npos)
     throw Error(Fault::kData, "is not a text file", file.string(),
                 "are 'prototxt' and 'model' swapped?");

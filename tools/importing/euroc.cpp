@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <fstream>
 #include <optional>
 #include <sstream>
 #include <string>
@@ -14,6 +13,7 @@
 #include "importing/listed_recording.hpp"
 #include "importing/matrix_pose.hpp"
 #include "stillpoint/error.hpp"
+#include "stillpoint/support/input_file.hpp"
 
 namespace stillpoint::importing {
 namespace {
@@ -21,8 +21,9 @@ namespace {
 using tum_recording::ListLine;
 using tum_recording::StampedImage;
 
-constexpr double kNanosecond = 1e-9;   // s
-constexpr double kMillimetres = 1000;  // depth value of one metre
+constexpr double kNanosecond = 1e-9;                     // s
+constexpr double kMillimetres = 1000;                    // depth value of one metre
+constexpr std::uintmax_t kLargestDescription = 1 << 20;  // bytes
 
 std::filesystem::path mav0_of(const std::filesystem::path& recording) {
   return std::filesystem::is_directory(recording / "mav0") ? recording / "mav0" : recording;
@@ -67,10 +68,10 @@ std::vector<StampedImage> images_in(const std::filesystem::path& folder) {
 /// sensor.yaml; OpenCV's begin with a line that is no YAML.
 YAML::Node sensor_of(const std::filesystem::path& folder) {
   const std::filesystem::path file = folder / "sensor.yaml";
-  std::ifstream stream(file);
-  if (!stream)
+  if (!std::filesystem::exists(file))
     throw Error(Fault::kData, "there is no calibration of the camera", file.string(),
                 "name one with --camera");
+  std::istringstream stream(read_input_file(file, kLargestDescription));
   std::ostringstream text;
   for (std::string line; std::getline(stream, line);)
     if (!line.starts_with("%YAML")) text << line << '\n';

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <fstream>
 #include <iterator>
 #include <limits>
 #include <sstream>
@@ -12,6 +11,7 @@
 #include "importing/icl_nuim.hpp"
 #include "importing/images.hpp"
 #include "stillpoint/error.hpp"
+#include "stillpoint/support/input_file.hpp"
 
 namespace stillpoint::importing {
 namespace {
@@ -19,15 +19,9 @@ namespace {
 constexpr const char* kScenePrefix = "scene_";
 constexpr const char* kSceneDepth = ".depth";
 
-std::string text_of_file(const std::filesystem::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream) throw Error(Fault::kData, "no such file", file.string());
-  return {std::istreambuf_iterator<char>(stream), {}};
-}
-
 /// One distance per pixel, by rows, as text.
 std::vector<double> distances_in(const std::filesystem::path& file) {
-  const std::string text = text_of_file(file);
+  const std::string text = read_input_file(file);
   std::vector<double> values;
   const char* end = text.data() + text.size();
   for (const char* at = text.data();;) {
@@ -92,7 +86,7 @@ class IclNuimRaw final : public ForeignRecording {
   /// The axes of the camera: along the view, up, and across both.
   Pose pose(std::size_t index) const {
     const std::filesystem::path file = beside(index, ".txt");
-    const std::string text = text_of_file(file);
+    const std::string text = read_input_file(file);
     const Eigen::Vector3d z = vector_in(text, "cam_dir", file).normalized();
     const Eigen::Vector3d x = vector_in(text, "cam_up", file).cross(z).normalized();
     Pose pose = Pose::Identity();

@@ -1,11 +1,12 @@
 #include "importing/matrix_pose.hpp"
 
 #include <charconv>
-#include <fstream>
 #include <limits>
+#include <sstream>
 #include <string>
 
 #include "stillpoint/error.hpp"
+#include "stillpoint/support/input_file.hpp"
 
 namespace stillpoint::importing {
 namespace {
@@ -36,8 +37,7 @@ std::optional<Pose> pose_of(const Eigen::Matrix4d& matrix) {
 }
 
 std::optional<Pose> read_matrix_pose(const std::filesystem::path& file) {
-  std::ifstream stream(file);
-  if (!stream) throw Error(Fault::kData, "cannot be opened", file.string());
+  std::istringstream stream(read_input_file(file));
   Eigen::Matrix4d matrix;
   int count = 0;
   for (std::string word; stream >> word; ++count) {

@@ -10,9 +10,9 @@
 #include "importing/images.hpp"
 #include "importing/sens_file.hpp"
 #include "stillpoint/error.hpp"
+#include "stillpoint/support/image_file.hpp"
 #include "stillpoint/support/rectifier.hpp"
 #include "stillpoint/support/size_text.hpp"
-#include "tum_recording/image_size.hpp"
 
 namespace stillpoint::importing {
 namespace {
@@ -74,7 +74,7 @@ class ScanNet final : public ForeignRecording {
     StoredImage image{.time = color_times_[index], .bytes = file_.color(index)};
     if (file_.color_kind() == SensColor::kJpeg) image.extension = ".jpg";
     if (file_.color_kind() != SensColor::kRaw) {
-      const auto stated = tum_recording::stated_size(image.bytes);
+      const auto stated = stated_image_size(image.bytes);
       if (stated != original_size())
         throw Error(Fault::kData, "is damaged or of another size", where);
       if (original_size() == size_) return image;

@@ -7,6 +7,7 @@
 
 #include "simulation/mesh.hpp"
 #include "stillpoint/error.hpp"
+#include "stillpoint/support/image_file.hpp"
 
 namespace stillpoint::people {
 namespace {
@@ -30,7 +31,7 @@ std::vector<BasePair> read_pairs(const fs::path& folder) {
 }
 
 cv::Mat read_image(const fs::path& file, int flags) {
-  cv::Mat image = cv::imread(file, flags);
+  cv::Mat image = cv::imdecode(read_image_file(file), flags);
   if (image.empty()) throw Error(Fault::kData, "the image cannot be read", file.string());
   return image;
 }

@@ -6,15 +6,17 @@
 #include <cstdint>
 #include <opencv2/core.hpp>
 #include <opencv2/imgcodecs.hpp>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "stillpoint/error.hpp"
+#include "stillpoint/support/image_file.hpp"
+#include "stillpoint/support/input_file.hpp"
 
 namespace stillpoint::ros2_messages {
 namespace {
 
+constexpr std::uintmax_t kLargestDescription = 1 << 20;       // bytes
 constexpr std::uint8_t kOccupiedPixel = 0, kFreePixel = 254;  // anything else: unknown
 
 /// From the image, whose first row has the largest y.
@@ -36,15 +38,14 @@ Pose pose_of(const std::array<double, 7>& numbers) {
 }
 
 OccupancyGrid read(const std::filesystem::path& description) {
-  const YAML::Node yaml = YAML::LoadFile(description.string());
+  const YAML::Node yaml = YAML::Load(read_input_file(description, kLargestDescription));
   OccupancyGrid grid;
   grid.resolution = yaml["resolution"].as<double>();
   const auto corner = yaml["origin"].as<std::array<double, 3>>();
   grid.header_from_origin = pose_of(yaml["world_from_map"].as<std::array<double, 7>>()) *
                             Eigen::Translation3d(corner[0], corner[1], 0);
   const auto image = description.parent_path() / yaml["image"].as<std::string>();
-  if (!std::filesystem::exists(image)) throw std::runtime_error("there is no " + image.string());
-  grid.cells = cells_of(cv::imread(image.string(), cv::IMREAD_GRAYSCALE));
+  grid.cells = cells_of(cv::imdecode(read_image_file(image), cv::IMREAD_GRAYSCALE));
   return grid;
 }
 

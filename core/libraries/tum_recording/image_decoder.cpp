@@ -5,13 +5,10 @@
 #include <opencv2/imgproc.hpp>
 
 #include "stillpoint/error.hpp"
-#include "stillpoint/support/size_text.hpp"
-#include "tum_recording/image_size.hpp"
+#include "stillpoint/support/image_file.hpp"
 
 namespace stillpoint::tum_recording {
 namespace {
-
-constexpr std::int64_t kMostPixels = 100'000'000;
 
 [[noreturn]] void fail(const std::string& where, const std::string& problem,
                        const std::string& remedy = {}) {
@@ -43,9 +40,7 @@ cv::Mat bytes_of(std::span<const std::uint8_t> file) {
 
 cv::Mat ImageDecoder::decode(std::span<const std::uint8_t> file, const std::string& where,
                              int imread_flags) {
-  if (const auto size = stated_size(file);
-      size && std::int64_t{size->width} * size->height > kMostPixels)
-    fail(where, "an image of " + size_text(*size) + " pixels is more than any camera gives");
+  require_image_size(file, where);
   cv::Mat image;
   try {
     if (PngDecoder::is_png(file)) image = png_.decode(file);

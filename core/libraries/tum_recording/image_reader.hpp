@@ -20,8 +20,6 @@ class ImageReader {
   cv::Mat depth(const std::filesystem::path& file);
 
  private:
-  void load(const std::filesystem::path& file);
-
   ImageDecoder decoder_;
   std::vector<std::uint8_t> bytes_;
 };

@@ -5,7 +5,6 @@
 #include <opencv2/core/hal/interface.h>
 #include <algorithm>
 #include <cstring>
-#include <limits>
 #include <opencv2/imgproc.hpp>
 #include <stdexcept>
 #include <string_view>
@@ -133,14 +132,6 @@ PngDecoder::~PngDecoder() = default;
 bool PngDecoder::is_png(std::span<const std::uint8_t> file) {
   return file.size() >= sizeof kSignature &&
          std::equal(std::begin(kSignature), std::end(kSignature), file.begin());
-}
-
-/// The header comes first (PNG specification, 11.2.2).
-std::optional<cv::Size> PngDecoder::stated_size(std::span<const std::uint8_t> file) {
-  if (file.size() < 24) return std::nullopt;
-  constexpr std::uint32_t kLargest = std::numeric_limits<int>::max();
-  return cv::Size(static_cast<int>(std::min(big_endian(&file[16]), kLargest)),
-                  static_cast<int>(std::min(big_endian(&file[20]), kLargest)));
 }
 
 /// Verifies all chunks and joins the compressed data.

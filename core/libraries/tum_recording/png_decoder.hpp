@@ -4,7 +4,6 @@
 #include <cstdint>
 #include <memory>
 #include <opencv2/core/mat.hpp>
-#include <optional>
 #include <span>
 #include <vector>
 
@@ -22,8 +21,6 @@ class PngDecoder {
   ~PngDecoder();
 
   static bool is_png(std::span<const std::uint8_t> file);
-  /// What the header says, unverified; nothing when the file ends before.
-  static std::optional<cv::Size> stated_size(std::span<const std::uint8_t> file);
 
   /// The image as CV_8UC1, CV_8UC3 (BGR) or CV_16UC1; empty when it is a sound file of another kind
   /// (palette, alpha, interlaced …). Throws std::runtime_error with the reason when the file is

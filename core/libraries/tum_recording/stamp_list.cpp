@@ -6,6 +6,7 @@
 #include <fstream>
 
 #include "stillpoint/error.hpp"
+#include "stillpoint/support/input_file.hpp"
 
 namespace stillpoint::tum_recording {
 namespace {
@@ -40,9 +41,9 @@ void sort_by_time(std::vector<StampedImage>& images, const std::filesystem::path
 }  // namespace
 
 std::vector<ListLine> read_list_lines(const std::filesystem::path& file) {
+  input_file_size(file, kLargestText);
   std::ifstream stream(file);
-  if (!stream || std::filesystem::is_directory(file))
-    throw Error(Fault::kData, "cannot be opened", file.string());
+  if (!stream) throw Error(Fault::kData, "cannot be opened", file.string());
   std::vector<ListLine> lines;
   std::string text;
   for (int number = 1; std::getline(stream, text); ++number) {

@@ -20,7 +20,7 @@ std::string environment(const char* name) {
 
 bool is_file(const fs::path& file) {
   std::error_code ignored;
-  return fs::is_regular_file(file, ignored);
+  return fs::exists(file, ignored) && !fs::is_directory(file, ignored);
 }
 
 }  // namespace
