@@ -32,6 +32,7 @@ struct NamedFuzzTarget {
 // A kind of input each, in the file of that name.
 std::vector<NamedFuzzTarget> bag_targets();
 std::vector<NamedFuzzTarget> configuration_targets();
+std::vector<NamedFuzzTarget> folder_targets();
 std::vector<NamedFuzzTarget> image_targets();
 std::vector<NamedFuzzTarget> live_view_targets();
 std::vector<NamedFuzzTarget> map_targets();

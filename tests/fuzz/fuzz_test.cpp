@@ -32,8 +32,8 @@ constexpr std::uint64_t kCases = 1'000;
 std::vector<NamedFuzzTarget> all_targets() {
   std::vector<NamedFuzzTarget> all;
   for (const auto& targets :
-       {bag_targets(), configuration_targets(), image_targets(), live_view_targets(), map_targets(),
-        network_targets(), recording_targets()})
+       {bag_targets(), configuration_targets(), folder_targets(), image_targets(),
+        live_view_targets(), map_targets(), network_targets(), recording_targets()})
     all.insert(all.end(), targets.begin(), targets.end());
   return all;
 }

@@ -8,14 +8,13 @@
 #include <string_view>
 
 #include "fuzz/fuzz_target.hpp"
-#include "tum_recording/image_size.hpp"
+#include "stillpoint/support/image_file.hpp"
 #include "tum_recording/png_decoder.hpp"
 
 namespace stillpoint::testing {
 namespace {
 
 using tum_recording::PngDecoder;
-using tum_recording::stated_size;
 
 void append_number(Bytes& file, std::uint32_t value) {
   for (int shift = 24; shift >= 0; shift -= 8)
@@ -78,7 +77,7 @@ Bytes png_of(const Bytes& parts) {
 }
 
 void decode(const Bytes& png) {
-  const auto size = PngDecoder::stated_size(png);
+  const auto size = stated_image_size(png);
   if (size && std::int64_t{size->width} * size->height < kMostPixels) PngDecoder().decode(png);
 }
 
@@ -104,9 +103,10 @@ FuzzTarget png_pixels() {
 }
 
 FuzzTarget image_size() {
-  return {.seeds = {encoded(".png", CV_8UC3), encoded(".jpg", CV_8UC3)},
-          .parse = [](const fs::path& file) { stated_size(bytes_of(file)); },
-          .words = {"\xff\xd8", "\xff\xc0", "\xff\xe0", "\xff\xff"}};
+  return {.seeds = {encoded(".png", CV_8UC3), encoded(".jpg", CV_8UC3), encoded(".webp", CV_8UC3),
+                    encoded(".bmp", CV_8UC3), encoded(".ppm", CV_8UC3)},
+          .parse = [](const fs::path& file) { stated_image_size(bytes_of(file)); },
+          .words = {"\xff\xd8", "\xff\xc0", "\xff\xe0", "\xff\xff", "VP8X", "VP8L", "#"}};
 }
 
 }  // namespace
