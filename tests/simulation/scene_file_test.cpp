@@ -51,6 +51,12 @@ TEST_F(SceneFileTest, ImpossibleScenesAreRefused) {
               HasSubstr("path takes pairs x, y"));
   EXPECT_THAT(simulate("version: 1\nsource: {sensor: {exposure: 3}}\n").err,
               HasSubstr("source.sensor.exposure = 3"));
+  // Beyond what a float of the ray caster can be.
+  for (const char* place :
+       {"motion: {position: [1e300, 0, 1]}", "motion: {look_at: [0, -1e300, 1]}",
+        "people: [{path: [1, 1e39]}]", "balls: [{from: [1, 2, 1e300]}]"})
+    EXPECT_THAT(simulate(std::string("version: 1\nsource: {") + place + "}\n").err,
+                HasSubstr("1000 m"));
 }
 
 TEST_F(SceneFileTest, UnknownScenesAreAnsweredWithThoseThereAre) {

@@ -29,6 +29,17 @@ using Device = std::unique_ptr<RTCDeviceTy, Releaser<rtcReleaseDevice>>;
 using Scene = std::unique_ptr<RTCSceneTy, Releaser<rtcReleaseScene>>;
 using Geometry = std::unique_ptr<RTCGeometryTy, Releaser<rtcReleaseGeometry>>;
 
+/// Embree keeps the first error of a thread until it is asked for.
+void require_no_error(RTCDevice device) {
+  const RTCError code = rtcGetDeviceError(device);
+  if (code == RTC_ERROR_NONE) return;
+  throw Error(Fault::kStage,
+              code == RTC_ERROR_OUT_OF_MEMORY
+                  ? std::string("Embree has not enough memory")
+                  : "Embree failed, with its error " + std::to_string(static_cast<int>(code)),
+              "simulation");
+}
+
 Scene mesh_scene(RTCDevice device, const Mesh& mesh, RTCSceneFlags flags) {
   const Geometry geometry(rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE));
   void* vertices =
@@ -47,6 +58,7 @@ Scene mesh_scene(RTCDevice device, const Mesh& mesh, RTCSceneFlags flags) {
                           RTC_BUILD_QUALITY_HIGH);  // built once, searched all the time
   rtcAttachGeometry(scene.get(), geometry.get());
   rtcCommitScene(scene.get());
+  require_no_error(device);
   return scene;
 }
 
@@ -83,6 +95,7 @@ class BodyScene {
       rtcCommitGeometry(instances_[i].get());
     }
     rtcCommitScene(scene_.get());
+    require_no_error(device_);
   }
 
   RTCScene get() const { return scene_.get(); }

@@ -1,6 +1,16 @@
 #include "simulation/scene_options.hpp"
 
 namespace stillpoint::simulation {
+namespace {
+
+constexpr double kFarthest = 1000;  // m, from the origin: far beyond every room
+
+/// A point, or several.
+OptionInfo point(std::string_view help) {
+  return {.min = -kFarthest, .max = kFarthest, .unit = "m", .help = help};
+}
+
+}  // namespace
 
 void RoomOptions::visit(OptionVisitor& v) {
   v.choice(
@@ -32,10 +42,9 @@ void MotionOptions::visit(OptionVisitor& v) {
             {"walk", Kind::kWalk}},
            {.help = "as in the sequences of the TUM benchmark; loop: once around the room; walk: "
                     "along the path, looking ahead"});
-  v("position", position,
-    {.unit = "m", .help = "x, y, z of the centre of the motion; of a walk z only"});
-  v("look_at", look_at, {.unit = "m", .help = "x, y, z of the point in the middle of the view"});
-  v("path", path, {.unit = "m", .help = "x, y, x, y, … on the floor, of a walk round and round"});
+  v("position", position, point("x, y, z of the centre of the motion; of a walk z only"));
+  v("look_at", look_at, point("x, y, z of the point in the middle of the view"));
+  v("path", path, point("x, y, x, y, … on the floor, of a walk round and round"));
   v("extent", extent, {.min = 0, .max = 3, .help = "scales the size of the motion"});
   v("speed", speed, {.min = 0.01, .max = 10, .help = "scales the rate of the motion"});
   v("jitter", jitter, {.min = 0, .max = 10, .help = "scales the trembling of the hand"});
@@ -59,9 +68,14 @@ void SensorOptions::visit(OptionVisitor& v) {
   v("disparity_step", disparity_step,
     {.min = 0, .max = 2, .unit = "px", .help = "quantisation; 0: none"});
   v("baseline_focal", baseline_focal,
-    {.min = 1, .unit = "px m", .help = "depth = this / disparity; Kinect: 0.075 m x 580 px"});
-  v("min_range", min_range, {.min = 0, .unit = "m", .help = "nearer surfaces are not measured"});
-  v("max_range", max_range, {.min = 0.1, .unit = "m", .help = "farther ones are not measured"});
+    {.min = 1,
+     .max = 1e6,
+     .unit = "px m",
+     .help = "depth = this / disparity; Kinect: 0.075 m x 580 px"});
+  v("min_range", min_range,
+    {.min = 0, .max = kFarthest, .unit = "m", .help = "nearer surfaces are not measured"});
+  v("max_range", max_range,
+    {.min = 0.1, .max = kFarthest, .unit = "m", .help = "farther ones are not measured"});
   v("depth_offset", depth_offset,
     {.min = -0.1, .max = 0.1, .unit = "s", .help = "time of depth after colour"});
   v("depth_offset_drift", depth_offset_drift,
@@ -75,11 +89,15 @@ void SensorOptions::visit(OptionVisitor& v) {
 void PersonOptions::visit(OptionVisitor& v) {
   v.choice("pose", pose, {{"walk", Pose::kWalk}, {"sit", Pose::kSit}},
            {.help = "walking along the path, or sitting at its first point and gesturing"});
-  v("path", path, {.unit = "m", .help = "x, y, x, y, … on the floor; walked round and round"});
+  v("path", path, point("x, y, x, y, … on the floor; walked round and round"));
   v("speed", speed, {.min = 0.05, .max = 3, .unit = "m/s", .help = "mean speed of walking"});
-  v("start", start, {.min = 0, .unit = "m", .help = "way along the path at the first frame"});
+  v("start", start,
+    {.min = 0, .max = 1e6, .unit = "m", .help = "way along the path at the first frame"});
   v("heading", heading,
-    {.unit = "degrees", .help = "where a sitting person faces: 0 is +x, 90 is +y"});
+    {.min = -360,
+     .max = 360,
+     .unit = "degrees",
+     .help = "where a sitting person faces: 0 is +x, 90 is +y"});
   v("height", height, {.min = 0.8, .max = 2.3, .unit = "m", .help = "standing"});
   v("shirt", shirt, {.help = "plaid, striped or plain"});
   v("carries_box", carries_box, {.help = "a cardboard box in both arms"});
@@ -91,8 +109,8 @@ void PersonOptions::visit(OptionVisitor& v) {
 }
 
 void BallOptions::visit(OptionVisitor& v) {
-  v("from", from, {.unit = "m", .help = "x, y, z of one hand"});
-  v("to", to, {.unit = "m", .help = "x, y, z of the other hand"});
+  v("from", from, point("x, y, z of one hand"));
+  v("to", to, point("x, y, z of the other hand"));
   v("flight", flight, {.min = 0.1, .max = 5, .unit = "s", .help = "time of one throw"});
   v("pause", pause, {.min = 0, .max = 60, .unit = "s", .help = "between throws"});
   v("radius", radius, {.min = 0.01, .max = 0.5, .unit = "m"});
@@ -102,7 +120,8 @@ void BallOptions::visit(OptionVisitor& v) {
 void SceneOptions::visit(OptionVisitor& v) {
   v("frames", frames, {.min = 1, .max = 100000, .unit = "frames", .help = "length"});
   v("rate", rate, {.min = 1, .max = 240, .unit = "Hz", .help = "frames per second"});
-  v("start_time", start_time, {.min = 0, .unit = "s", .help = "time stamp of the first frame"});
+  v("start_time", start_time,
+    {.min = 0, .max = 1e10, .unit = "s", .help = "time stamp of the first frame"});
   v("seed", seed, {.min = 0, .help = "of the noise and of the hand's trembling"});
   v("room", room, {.help = "the room and what stands in it"});
   v("motion", motion, {.help = "of the camera"});
