@@ -12,7 +12,7 @@ namespace stillpoint::map_checks {
 namespace {
 
 constexpr int kLanes = cv::v_float32::nlanes;
-constexpr float kMinDepth = 0.1F;  // m before a view
+constexpr float kMinDepth = 0.1F;  // m before a view: no camera measures nearer, and 1 / z is safe
 // Nearest and farthest neighbour this many tolerances apart: a depth discontinuity.
 constexpr float kTolerancesAtEdge = 5.0F;
 constexpr float kSigmas = 5.0F;        // of the depth, by which both margin and tolerance are wider

@@ -20,7 +20,7 @@ constexpr double kTrustRate = 0.3;        // of the way to 0 or 1 per frame
 constexpr double kMinTrustWeight = 0.05;  // so that a wrong static scene can be corrected
 constexpr double kInheritRadius = 80.0;   // px, within which points of a surface share trust
 constexpr double kInheritDepth = 0.03;    // 1/m, likewise
-constexpr double kDefaultDepth = 2.0;     // metres, of points without depth
+constexpr double kDefaultDepth = 2.0;     // metres, of points without depth: the middle of a room
 // The prediction is uncertain far from the inliers that determine the camera's motion.
 constexpr double kMaxUncertainty = 1.5;  // of epsilon; beyond, a point is not classified
 constexpr double kSigmas = 3.0;          // of the prediction, added to the threshold
