@@ -96,8 +96,17 @@ class MapReader {
                                                  std::to_string(map_layout::kVersion));
     const std::int64_t bytes = number("PRAGMA page_count") * number("PRAGMA page_size");
     require(bytes == static_cast<std::int64_t>(bytes_), "it is not whole");
+    require(tables() == map_layout::kTables, "its tables are not those of a map");
     SqliteStatement check = database_.prepare("PRAGMA integrity_check(1)");
     require(check.step() && check.text(0) == "ok", "its pages are damaged");
+  }
+
+  /// Compared as text: computed columns and checks would be SQL of the file.
+  std::string tables() {
+    std::string text = "\n";
+    SqliteStatement query = database_.prepare("SELECT sql FROM sqlite_schema ORDER BY rowid");
+    while (query.step()) text += query.text(0) + ";\n";
+    return text;
   }
 
   void read_cameras() {
