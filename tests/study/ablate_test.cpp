@@ -123,6 +123,16 @@ TEST_F(Ablate, AFolderHoldsOneStudy) {
   EXPECT_THAT(damaged.err, HasSubstr("study.json: does not say whose folder this is; remove it"));
 }
 
+TEST_F(Ablate, OnlyItsOwnHalfRecordingsAreRemoved) {
+  folder_.write("out/recordings/tiny.4242.part/rgb.txt", "of a study that was killed");
+  folder_.write("out/recordings/tiny.part/rgb.txt", "mine");
+  folder_.write("out/recordings/tiny.txt", "mine");
+  ASSERT_EQ(ablate(kShort).exit_code, 0);
+  EXPECT_FALSE(fs::exists(out() / "recordings/tiny.4242.part"));
+  EXPECT_EQ(text_of(out() / "recordings/tiny.part/rgb.txt"), "mine");
+  EXPECT_EQ(text_of(out() / "recordings/tiny.txt"), "mine");
+}
+
 TEST_F(Ablate, HalfWrittenResultsAreMadeAgain) {
   ASSERT_EQ(ablate(kShort).exit_code, 0);
   truncate_file(out() / "runs/tiny/few/0/result.json", 0.5);

@@ -169,6 +169,13 @@ TEST_F(CellRunner, RunsOnlyWhatIsMissing) {
   EXPECT_THAT(run(cells), ElementsAre(1));
 }
 
+TEST_F(CellRunner, AFolderOfTheUserStays) {
+  const std::vector<PlannedCell> cells = {cell(0, "")};
+  folder_.write("runs/0/notes.txt", "mine");
+  EXPECT_THROW(run(cells), Error);
+  EXPECT_TRUE(fs::exists(cells[0].run / "notes.txt"));
+}
+
 TEST_F(CellRunner, AKilledRunLeavesNoResult) {
   const std::vector<PlannedCell> cells = {cell(0, "")};
   run(cells);

@@ -28,14 +28,26 @@ double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
+constexpr const char* kConsole = "console.txt";
+
+/// Throws Error(kUsage) for a folder that no study has made: it stays.
+void require_own(const std::filesystem::path& run) {
+  std::error_code none;
+  if (!std::filesystem::exists(run, none) || std::filesystem::is_empty(run, none)) return;
+  if (std::filesystem::exists(run / kConsole, none) || read_result(run)) return;
+  throw Error(Fault::kUsage, "is no run of a study, and would be replaced", run.string(),
+              "move it, or choose another folder with -o");
+}
+
 }  // namespace
 
 std::optional<CellResult> run_cell(const PlannedCell& cell, const Program& program,
                                    const std::stop_token& stop) {
+  require_own(cell.run);
   remove_folder(cell.run);
   make_folder(cell.run);
   const Clock::time_point start = Clock::now();
-  const std::filesystem::path console = cell.run / "console.txt";
+  const std::filesystem::path console = cell.run / kConsole;
   const ProcessEnd end = run_process(cell.command, console, stop, cell.time_limit);
   CellResult result{.fingerprint = cell.fingerprint,
                     .program = program.fingerprint,

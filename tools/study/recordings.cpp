@@ -1,5 +1,9 @@
 #include "study/recordings.hpp"
 
+#include <unistd.h>
+
+#include <algorithm>
+#include <cctype>
 #include <system_error>
 #include <utility>
 #include <vector>
@@ -25,6 +29,28 @@ void require_own(const fs::path& folder) {
                 "move it, or choose another folder with -o");
 }
 
+/// "x.1234.part": written beside `folder`, under a name that is no other sequence's.
+fs::path unfinished(const fs::path& folder) {
+  return folder.string() + '.' + std::to_string(::getpid()) + ".part";
+}
+
+/// Those of studies that were killed.
+void remove_unfinished(const fs::path& folder) {
+  const std::string begin = folder.filename().string() + '.';
+  std::vector<fs::path> found;
+  std::error_code none;
+  for (const auto& entry : fs::directory_iterator(folder.parent_path(), none)) {
+    const std::string name = entry.path().filename().string();
+    if (!name.starts_with(begin) || !name.ends_with(".part")) continue;
+    const std::string number = name.substr(begin.size(), name.size() - begin.size() - 5);
+    const bool is_number = !number.empty() && std::ranges::all_of(number, [](unsigned char c) {
+      return std::isdigit(c);
+    });
+    if (is_number && !fs::exists(entry.path() / kDescription, none)) found.push_back(entry.path());
+  }
+  for (const fs::path& path : found) remove_folder(path);
+}
+
 }  // namespace
 
 bool is_recorded(const fs::path& folder, const std::string& description) {
@@ -33,10 +59,10 @@ bool is_recorded(const fs::path& folder, const std::string& description) {
 
 bool record(const fs::path& program, const Sequence& sequence, const std::string& description,
             const fs::path& folder, const std::stop_token& stop) {
-  const fs::path part = folder.string() + ".part";
-  const fs::path console = folder.string() + ".txt";
+  const fs::path part = unfinished(folder);
+  const fs::path console = part.string() + ".txt";
   require_own(folder);
-  remove_folder(part);
+  remove_unfinished(folder);
   remove_folder(folder);
   make_folder(folder.parent_path());
   std::vector<std::string> command = {program, "simulate", sequence.scene, "-o", part};

@@ -1,11 +1,10 @@
 #include "study/text_file.hpp"
 
-#include <cerrno>
-#include <cstring>
 #include <fstream>
 #include <iterator>
 
 #include "stillpoint/error.hpp"
+#include "stillpoint/support/atomic_file.hpp"
 
 namespace stillpoint::study {
 namespace {
@@ -25,14 +24,9 @@ std::string read_text(const fs::path& file) {
 }
 
 void write_text(const fs::path& file, const std::string& text) {
-  make_folder(file.parent_path());
-  const fs::path part = file.string() + ".part";
-  std::ofstream stream(part, std::ios::binary | std::ios::trunc);
-  if (!(stream << text << std::flush)) fail("cannot write", std::strerror(errno), part);
-  stream.close();
-  std::error_code error;
-  fs::rename(part, file, error);
-  if (error) fail("cannot write", error.message(), file);
+  AtomicFile written(file);
+  written.stream() << text;
+  written.commit();
 }
 
 void make_folder(const fs::path& folder) {
