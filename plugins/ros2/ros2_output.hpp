@@ -36,6 +36,7 @@ class Ros2Output final : public Output {
   Ros2Output(const Options& options, const StageContext& context);
 
   void begin(const std::shared_ptr<LiveRun>& run) override;
+  bool may_miss_frames() const override { return true; }
   void frame(const FrameReport& report) override;
   void finish(const RunSummary& summary) override;
 

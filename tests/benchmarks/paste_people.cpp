@@ -11,7 +11,7 @@
 #include <set>
 
 #include "people/maker.hpp"
-#include "stillpoint/runtime/freed_memory.hpp"
+#include "stillpoint/engine/freed_memory.hpp"
 #include "support/people_list.hpp"
 
 namespace {

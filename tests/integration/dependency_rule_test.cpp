@@ -129,6 +129,16 @@ TEST(DependencyRule, ToolsDoNotKnowPlugins) {
   expect_none_begins(kRoot / "tools", prefixes_of(kRoot / "plugins"));
 }
 
+// A program of one's own can do what these do.
+TEST(DependencyRule, RunAndRecordAreClientsOfTheEngine) {
+  for (const char* name : {"run", "record", "main", "interrupt", "run_folder", "run_table",
+                           "map_saver", "progress", "console", "pipeline_options"})
+    for (const char* suffix : {".cpp", ".hpp"})
+      if (const fs::path file = kRoot / "tools/stillpoint" / (std::string(name) + suffix);
+          fs::exists(file))
+        expect_none_begins(file, {"stillpoint/runtime"});
+}
+
 TEST(DependencyRule, LibrariesOfTheToolsDoNotKnowTheRuntime) {
   for (const std::string& tool : folders_in(kRoot / "tools"))
     if (tool != "stillpoint" && tool != "plugin_check")  // which makes the runtime's checks

@@ -86,6 +86,19 @@ TEST_F(BadPlugins, FailingStageIsNamedAndResultsAreSaved) {
   }
 }
 
+TEST_F(BadPlugins, FailedRunsDoNotKeepPicturesOfEarlierOnes) {
+  const std::string pictures = "outputs=[{type: images, every: 1}]";
+  ASSERT_EQ(run("orb_baseline", on_recording({"--set", pictures})).exit_code, 0);
+  ASSERT_TRUE(fs::exists(out() / "images/000004.jpg"));
+  const Outcome outcome =
+      run("orb_baseline",
+          on_recording({"--set", pictures, "--set", "moving_checker.type=throws_later"}),
+          with_plugins());
+  EXPECT_EQ(outcome.exit_code, kStageFailed);
+  EXPECT_TRUE(fs::exists(out() / "images/000000.jpg"));
+  EXPECT_FALSE(fs::exists(out() / "images/000004.jpg"));
+}
+
 struct Misdeed {
   const char* how;
   const char* reason;
@@ -102,9 +115,11 @@ class StageThatMisbehaves : public BadPlugins,
                          std::string("moving_checker.how=") + misdeed().how, "--set",
                          "runtime.mode=" + mode(), "--set", "runtime.stage_timeout=0.1"});
   }
-  std::vector<std::string> in_the_constructor() const {
+  std::vector<std::string> in_the_constructor() const { return and_set("at_once"); }
+  std::vector<std::string> in_the_destructor() const { return and_set("at_the_end"); }
+  std::vector<std::string> and_set(const std::string& option) const {
     std::vector<std::string> all = arguments();
-    all.insert(all.end(), {"--set", "moving_checker.at_once=true"});
+    all.insert(all.end(), {"--set", "moving_checker." + option + "=true"});
     return all;
   }
   void expect_saved(const Outcome& outcome) const {
@@ -144,6 +159,16 @@ TEST_P(StageThatEndsTheProcess, IsNamedInItsConstructor) {
               HasSubstr(std::string("error: moving_checker (misbehaves): ") + misdeed().reason));
 }
 
+TEST_P(StageThatEndsTheProcess, IsNamedInItsDestructor) {
+  const Outcome outcome = run("orb_baseline", in_the_destructor(), with_plugins());
+  EXPECT_EQ(outcome.exit_code, kStageFailed) << outcome.signal;
+  EXPECT_THAT(
+      outcome.err,
+      HasSubstr(std::string("the destructor of moving_checker (misbehaves): ") + misdeed().reason));
+  EXPECT_TRUE(json_file(out() / "summary.json")["complete"]);
+  EXPECT_GT(count_poses(out() / "trajectory.txt"), 3u);
+}
+
 using StageThatWritesToImages = StageThatMisbehaves;
 INSTANTIATE_TEST_SUITE_P(
     Modes, StageThatWritesToImages,
@@ -172,6 +197,16 @@ TEST_P(StageThatHangs, IsNamedAndGivenUpByTheSecondCtrlC) {
   ASSERT_TRUE(program.wait_for("frame 3; Ctrl-C again gives it up"));
   program.send(SIGINT);
   expect_saved(program.finish());
+}
+
+TEST_P(StageThatHangs, IsNamedInItsDestructor) {
+  Program program(command("orb_baseline", in_the_destructor()), with_plugins());
+  EXPECT_TRUE(program.wait_for("the destructor of moving_checker (misbehaves) has not returned"));
+  program.send(SIGINT);
+  EXPECT_TRUE(program.wait_for("Ctrl-C again gives it up"));
+  program.send(SIGINT);
+  EXPECT_EQ(program.finish().signal, SIGINT);
+  EXPECT_TRUE(json_file(out() / "summary.json")["complete"]);
 }
 
 TEST_P(StageThatHangs, IsNamedInItsConstructor) {

@@ -132,6 +132,11 @@ TEST_F(RegistryTest, WrongTag) {
   use("wrong_tag");
   EXPECT_THAT(reason(), HasSubstr("built with gcc7-eigen3.3-align32, this program with gcc"));
 }
+TEST_F(RegistryTest, OtherLayout) {
+  use("other_layout");
+  EXPECT_THAT(reason(), AllOf(HasSubstr("-cxx11abi1-glibcxxdebug-eigen"), HasSubstr("-align16.0-"),
+                              HasSubstr(", this program with gcc")));
+}
 TEST_F(RegistryTest, UndefinedSymbol) {
   use("undefined_symbol");
   const std::string text = reason();

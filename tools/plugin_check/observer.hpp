@@ -13,8 +13,8 @@
 #include <vector>
 
 #include "plugin_check/finding.hpp"
+#include "stillpoint/engine/stage_error.hpp"
 #include "stillpoint/pose_math.hpp"
-#include "stillpoint/runtime/stage_error.hpp"
 
 namespace stillpoint::plugin_check {
 

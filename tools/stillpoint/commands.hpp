@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "stillpoint/engine/pipeline_config.hpp"
-#include "stillpoint/runtime/stage_guard.hpp"
+#include "stillpoint/engine/stage_guard.hpp"
 
 namespace stillpoint {
 

@@ -10,8 +10,8 @@
 #include <cstdint>
 #include <utility>
 
+#include "stillpoint/engine/stage_guard.hpp"
 #include "stillpoint/error.hpp"
-#include "stillpoint/runtime/stage_guard.hpp"
 
 namespace stillpoint {
 namespace {

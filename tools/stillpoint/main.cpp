@@ -10,9 +10,9 @@
 
 #include "commands.hpp"
 #include "commit.hpp"
+#include "stillpoint/engine/freed_memory.hpp"
+#include "stillpoint/engine/stage_guard.hpp"
 #include "stillpoint/error.hpp"
-#include "stillpoint/runtime/freed_memory.hpp"
-#include "stillpoint/runtime/stage_guard.hpp"
 #include "stillpoint/support/did_you_mean.hpp"
 
 namespace {
@@ -133,5 +133,6 @@ int main(int argc, char** argv) {
   const int exit_code = run_and_say_why_not(argc, argv);
   if (!stillpoint::StageGuard::has_ended_a_call()) return exit_code;
   std::cout << std::flush;
-  std::_Exit(exit_code);  // nothing more of that plugin is to be run
+  // Nothing more of that plugin is to be run. Where it crashed in a destructor, all is saved.
+  std::_Exit(exit_code != 0 ? exit_code : static_cast<int>(Fault::kStage));
 }

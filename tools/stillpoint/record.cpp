@@ -18,8 +18,8 @@
 #include "recorders.hpp"
 #include "stillpoint/engine/engine.hpp"
 #include "stillpoint/engine/make_stages.hpp"
-#include "stillpoint/runtime/stage_error.hpp"
-#include "stillpoint/runtime/stage_guard.hpp"
+#include "stillpoint/engine/stage_error.hpp"
+#include "stillpoint/engine/stage_guard.hpp"
 
 namespace stillpoint {
 namespace {

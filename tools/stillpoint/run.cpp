@@ -19,8 +19,8 @@
 #include "run_table.hpp"
 #include "stillpoint/engine/engine.hpp"
 #include "stillpoint/engine/make_stages.hpp"
-#include "stillpoint/runtime/stage_error.hpp"
-#include "stillpoint/runtime/stage_guard.hpp"
+#include "stillpoint/engine/stage_error.hpp"
+#include "stillpoint/engine/stage_guard.hpp"
 #include "study/origin.hpp"
 
 namespace stillpoint {
@@ -61,7 +61,8 @@ bool run_and_print(Stages stages, const PipelineConfig& config, const RunFolder&
   const fs::path ground_truth = in_source(stages, &Source::ground_truth);
   const auto table = std::make_shared<RunTable>();
   stages.outputs.push_back({{table, "table"}});
-  const auto print = [&] {
+  const auto end = [&] {
+    folder.remove_earlier_files();
     if (quiet) return;
     table->print(std::cout);
     print_files(folder, ground_truth);
@@ -71,7 +72,7 @@ bool run_and_print(Stages stages, const PipelineConfig& config, const RunFolder&
   try {
     engine.run(std::move(stop));
   } catch (const Error& error) {
-    print();
+    end();
     folder.log(LogLevel::kInfo, std::string("failed: ") + error.what());
     if (StageGuard::has_ended_a_call()) {  // nothing more of its plugin is to be run
       std::cerr << "error: " << error.what() << std::endl;
@@ -79,8 +80,7 @@ bool run_and_print(Stages stages, const PipelineConfig& config, const RunFolder&
     }
     throw;
   }
-  folder.remove_earlier_files();
-  print();
+  end();
   if (table->no_frames() && table->complete())
     folder.log(LogLevel::kWarning, "the source gave no frame: the trajectory is empty");
   if (table->nothing_tracked())

@@ -32,9 +32,10 @@ bool is_picture(const fs::path& file) {
          (file.extension() == ".jpg" || file.extension() == ".png");
 }
 
-/// "trajectory.txt.1234.part", of a run that was killed.
+/// "trajectory.txt.1234.part", of a run that was killed; this run's outputs have begun theirs.
 bool is_unfinished_result(const fs::path& file) {
   return file.extension() == ".part" &&
+         file.stem().extension() != '.' + std::to_string(::getpid()) &&
          std::ranges::find(kResults, file.stem().stem().string()) != std::end(kResults);
 }
 

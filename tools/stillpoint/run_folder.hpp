@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "console.hpp"
+#include "stillpoint/engine/folder_lock.hpp"
 #include "stillpoint/plugin.hpp"
-#include "stillpoint/runtime/folder_lock.hpp"
 
 namespace spdlog {
 class logger;

@@ -42,14 +42,15 @@ inline constexpr std::uint32_t kPluginApi = 10;
 #endif
 
 /// What must match so that program and plugin can exchange C++ objects: compiler, language,
-/// standard library and its debug mode, Eigen with its alignment (-mavx changes it) and storage
-/// order, OpenCV.
+/// standard library and its debug mode, Eigen with its alignment (of memory and of members; -mavx
+/// changes both) and storage order, OpenCV.
 inline constexpr const char* kAbiTag = "gcc" STILLPOINT_TEXT(__GNUC__)             //
     "-c++" STILLPOINT_TEXT(__cplusplus)                                            //
     "-cxx11abi" STILLPOINT_TEXT(_GLIBCXX_USE_CXX11_ABI) STILLPOINT_STD_DEBUG_      //
     "-eigen" STILLPOINT_TEXT(EIGEN_WORLD_VERSION) "."                              //
     STILLPOINT_TEXT(EIGEN_MAJOR_VERSION) "." STILLPOINT_TEXT(EIGEN_MINOR_VERSION)  //
-    "-align" STILLPOINT_TEXT(EIGEN_MAX_ALIGN_BYTES) STILLPOINT_EIGEN_ORDER_        //
+    "-align" STILLPOINT_TEXT(EIGEN_MAX_ALIGN_BYTES) "."                            //
+    STILLPOINT_TEXT(EIGEN_MAX_STATIC_ALIGN_BYTES) STILLPOINT_EIGEN_ORDER_          //
     "-opencv" STILLPOINT_TEXT(CV_VERSION_MAJOR) "." STILLPOINT_TEXT(CV_VERSION_MINOR);
 
 enum class LogLevel { kDebug, kInfo, kWarning, kError };
@@ -149,14 +150,17 @@ void* create(OptionVisitor& visitor, const StageContext& context) {
     object = new Implementation(options, context);
   else if constexpr (std::is_constructible_v<Implementation, Options>)
     object = new Implementation(options);
-  else
+  else if constexpr (std::is_constructible_v<Implementation, const StageContext&>)
+    object = new Implementation(context);
+  else if constexpr (std::is_default_constructible_v<Implementation>)
     object = new Implementation();
   return object;
 }
 
 }  // namespace detail
 
-/// An entry for a class with a constructor from (Options, const StageContext&), (Options) or ().
+/// An entry for a class with a constructor from (Options, const StageContext&) or (Options), or, if
+/// it has no options, from (const StageContext&) or ().
 template <class Interface, class Implementation>
 constexpr PluginEntry provide(const char* type, const char* summary) {
   static_assert(std::is_base_of_v<Interface, Implementation>,
@@ -171,6 +175,10 @@ constexpr PluginEntry provide(const char* type, const char* summary) {
                     std::is_constructible_v<Implementation, Options>,
                 "a class with Options needs a constructor that takes them, (Options) or (Options, "
                 "const StageContext&): what users write in the pipeline file would be lost");
+  static_assert(std::is_abstract_v<Implementation> || !std::is_same_v<Options, detail::NoOptions> ||
+                    std::is_constructible_v<Implementation, const StageContext&> ||
+                    std::is_default_constructible_v<Implementation>,
+                "a class without Options needs a constructor from (const StageContext&) or ()");
   return {Interface::kKind,
           Interface::kApi,
           type,

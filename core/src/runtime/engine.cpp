@@ -3,9 +3,9 @@
 #include <iostream>
 #include <utility>
 
+#include "stillpoint/engine/folder_lock.hpp"
 #include "stillpoint/engine/make_stages.hpp"
 #include "stillpoint/engine/registry.hpp"
-#include "stillpoint/runtime/folder_lock.hpp"
 #include "stillpoint/runtime/pipeline.hpp"
 #include "stillpoint/support/trajectory.hpp"
 

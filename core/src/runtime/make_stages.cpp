@@ -4,7 +4,7 @@
 #include <string>
 #include <utility>
 
-#include "stillpoint/runtime/stage_error.hpp"
+#include "stillpoint/engine/stage_error.hpp"
 #include "stillpoint/runtime/stage_requirement.hpp"
 
 namespace stillpoint {

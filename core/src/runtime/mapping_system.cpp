@@ -3,7 +3,7 @@
 #include <exception>
 #include <utility>
 
-#include "stillpoint/runtime/stage_guard.hpp"
+#include "stillpoint/engine/stage_guard.hpp"
 #include "stillpoint/runtime/stage_results.hpp"
 #include "stillpoint/runtime/thorough_checks.hpp"
 

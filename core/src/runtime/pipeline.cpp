@@ -1,10 +1,12 @@
 #include "stillpoint/runtime/pipeline.hpp"
 
+#include <algorithm>
 #include <numeric>
 #include <opencv2/imgproc.hpp>
 #include <string>
 #include <utility>
 
+#include "stillpoint/engine/stage_error.hpp"
 #include "stillpoint/runtime/read_only_images.hpp"
 #include "stillpoint/runtime/stage_results.hpp"
 #include "stillpoint/runtime/thorough_checks.hpp"
@@ -41,6 +43,12 @@ TrackResult track(Tracker& tracker, PreparedFramePtr prepared, const StaticWeigh
   check_tracking(result, *frame, map, hints);
   if (thorough) check_thoroughly(result, *frame);
   return result;
+}
+
+bool is_waited_for(const OutputSetup& setup) {
+  if (setup.when_full != WhenFull::kAuto) return setup.when_full == WhenFull::kWait;
+  return !in_stage("output (" + setup.stage.type + ")", {},
+                   [&] { return setup.stage.object->may_miss_frames(); });
 }
 
 void check_pushed(const Frame& frame, const Frame* previous, bool thorough) {
@@ -114,14 +122,14 @@ Pipeline::~Pipeline() {
 
 // Those that tracking waits for share a thread: one that holds up tracking holds up all.
 void Pipeline::add_outputs(std::vector<OutputSetup> setups) {
+  const auto first_to_drop = std::stable_partition(setups.begin(), setups.end(), is_waited_for);
   std::vector<Stage<Output>> waited_for;
-  for (OutputSetup& setup : setups)
-    if (setup.when_full == WhenFull::kWait) waited_for.push_back(std::move(setup.stage));
+  for (auto setup = setups.begin(); setup != first_to_drop; ++setup)
+    waited_for.push_back(std::move(setup->stage));
   outputs_.emplace_back(std::move(waited_for), WhenFull::kWait, options_.mode, stop_, times_);
-  for (OutputSetup& setup : setups)
-    if (setup.when_full == WhenFull::kDrop)
-      outputs_.emplace_back(std::vector{std::move(setup.stage)}, WhenFull::kDrop, options_.mode,
-                            stop_, times_);
+  for (auto setup = first_to_drop; setup != setups.end(); ++setup)
+    outputs_.emplace_back(std::vector{std::move(setup->stage)}, WhenFull::kDrop, options_.mode,
+                          stop_, times_);
 }
 
 FrameReportPtr Pipeline::push(Frame frame) {

@@ -6,8 +6,8 @@
 #include "stillpoint/contracts/segmenter.hpp"
 #include "stillpoint/contracts/source.hpp"
 #include "stillpoint/engine/config_lookup.hpp"
+#include "stillpoint/engine/stage_guard.hpp"
 #include "stillpoint/runtime/pipeline_tree.hpp"
-#include "stillpoint/runtime/stage_guard.hpp"
 #include "stillpoint/runtime/yaml_option_reader.hpp"
 #include "stillpoint/support/did_you_mean.hpp"
 
@@ -250,8 +250,11 @@ void SegmentationOptions::visit_in_segmenter(OptionVisitor& v) {
 
 void OutputOptions::visit(OptionVisitor& v) {
   v.choice(
-      "when_full", when_full, {{"wait", WhenFull::kWait}, {"drop", WhenFull::kDrop}},
-      {.help = "threaded, when the output is too slow: tracking waits, or frames are left out"});
+      "when_full", when_full,
+      {{"auto", WhenFull::kAuto}, {"wait", WhenFull::kWait}, {"drop", WhenFull::kDrop}},
+      {.help =
+           "threaded, when the output is too slow: tracking waits, or frames are left out; auto: "
+           "drop for viewers, wait for files"});
 }
 
 StageSpec::StageSpec(std::string section, const PluginType& type,

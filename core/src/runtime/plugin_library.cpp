@@ -8,9 +8,9 @@
 #include <string_view>
 #include <system_error>
 
+#include "stillpoint/engine/stage_guard.hpp"
 #include "stillpoint/error.hpp"
 #include "stillpoint/runtime/plugin_stamp.hpp"
-#include "stillpoint/runtime/stage_guard.hpp"
 
 namespace stillpoint {
 namespace {

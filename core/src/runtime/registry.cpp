@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <span>
 
+#include "stillpoint/engine/stage_guard.hpp"
 #include "stillpoint/error.hpp"
 #include "stillpoint/runtime/option_describer.hpp"
 #include "stillpoint/runtime/plugin_library.hpp"
 #include "stillpoint/runtime/plugin_stamp.hpp"
-#include "stillpoint/runtime/stage_guard.hpp"
 #include "stillpoint/support/did_you_mean.hpp"
 
 namespace stillpoint {
@@ -36,6 +36,17 @@ void describe(const PluginEntry& entry, const fs::path& library, OptionVisitor& 
     if (!StageGuard::has_ended_a_call()) throw;
     throw Error(Fault::kStage, error.what(), library.string() + ": " + name,
                 "fix the plugin, or remove it from the folder");
+  }
+}
+
+/// Nothing can leave a destructor: what ended it is said, and main() gives the exit code.
+void destroy_guarded(const std::string& name, void (*destroy)(void*), void* object,
+                     const std::function<void(LogLevel, std::string_view)>& log) {
+  try {
+    auto call = [&] { destroy(object); };
+    call_guarded("the destructor of " + name, std::nullopt, call);
+  } catch (const std::exception& error) {
+    log(LogLevel::kWarning, "the destructor of " + name + ": " + error.what());
   }
 }
 
@@ -150,7 +161,9 @@ std::shared_ptr<void> create_object(const PluginType& type, std::string_view kin
   try {
     auto create = [&] { return type.entry->create(options, context); };
     void* object = call_guarded("the constructor of " + name, std::nullopt, create);
-    return {object, [destroy, library = type.handle](void* p) { destroy(p); }};
+    return {object, [=, log = context.log, library = type.handle](void* p) {
+              destroy_guarded(name, destroy, p, log);
+            }};
   } catch (const Error& error) {
     throw Error(error.fault(), error.what(), name);
   } catch (const std::exception& error) {

@@ -4,7 +4,7 @@
 #include <array>
 #include <utility>
 
-#include "stillpoint/runtime/stage_guard.hpp"
+#include "stillpoint/engine/stage_guard.hpp"
 #include "stillpoint/runtime/stage_results.hpp"
 #include "stillpoint/support/objects.hpp"
 

@@ -1,4 +1,4 @@
-#include "stillpoint/runtime/stage_error.hpp"
+#include "stillpoint/engine/stage_error.hpp"
 
 namespace stillpoint {
 namespace {

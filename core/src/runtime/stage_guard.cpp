@@ -1,4 +1,4 @@
-#include "stillpoint/runtime/stage_guard.hpp"
+#include "stillpoint/engine/stage_guard.hpp"
 
 #include <pthread.h>
 #include <setjmp.h>

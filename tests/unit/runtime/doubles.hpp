@@ -277,6 +277,7 @@ class FakeBackend final : public MapBackend {
 class FakeOutput final : public Output {
  public:
   explicit FakeOutput(Journal& journal) : journal_(journal) {}
+  bool may_miss_frames() const override { return is_viewer; }
   void frame(const FrameReport& report) override {
     for (const StageTime& time : report.times) times.push_back(time);
     journal_.write("output", report.frame->index);
@@ -296,6 +297,7 @@ class FakeOutput final : public Output {
     journal_.write("finish", 0);
   }
 
+  bool is_viewer = false;
   std::vector<StageTime> times;
   SparseMap map;
   std::vector<TrackedPose> poses;

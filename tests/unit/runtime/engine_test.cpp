@@ -74,7 +74,13 @@ TEST(Engine, ThreadedTheMovingCheckRunsBesideTheExtractionOfFeatures) {
   EXPECT_EQ(f.journal.entries("track"), (Strings{"track 0", "track 1", "track 2"}));
 }
 
-TEST(Engine, AViewerThatHangsDelaysNothing) {
+class SlowOutput : public ::testing::TestWithParam<WhenFull> {};
+INSTANTIATE_TEST_SUITE_P(Engine, SlowOutput, ::testing::Values(WhenFull::kAuto, WhenFull::kDrop),
+                         [](const auto& test) {
+                           return test.param == WhenFull::kAuto ? "Viewer" : "MayDrop";
+                         });
+
+TEST_P(SlowOutput, DelaysNothing) {
   EngineFixture f(60);
   Journal of_viewer;
   of_viewer.hook = [&](const std::string& entry) {
@@ -82,7 +88,8 @@ TEST(Engine, AViewerThatHangsDelaysNothing) {
   };
   Stages stages = f.stages();
   const auto viewer = std::make_shared<testing::FakeOutput>(of_viewer);
-  stages.outputs.push_back({{viewer, "viewer"}, WhenFull::kDrop});
+  viewer->is_viewer = GetParam() == WhenFull::kAuto;
+  stages.outputs.push_back({{viewer, "viewer"}, GetParam()});
   Engine(std::move(stages), runtime(Mode::kThreaded), {}).run();
   EXPECT_EQ(f.journal.entries("output").size(), 60u);
   EXPECT_GT(viewer->dropped_reports, 0);

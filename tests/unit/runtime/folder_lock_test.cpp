@@ -1,4 +1,4 @@
-#include "stillpoint/runtime/folder_lock.hpp"
+#include "stillpoint/engine/folder_lock.hpp"
 
 #include <gtest/gtest.h>
 

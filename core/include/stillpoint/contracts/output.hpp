@@ -65,7 +65,7 @@ struct RunSummary {
   const std::vector<StageTime>& times;  ///< what ended since the last report
   int dropped_frames = 0;               ///< by `pace: sensor`
   int loops_closed = 0;
-  int dropped_reports = 0;    ///< by outputs that were too slow, with `when_full: drop`
+  int dropped_reports = 0;    ///< by outputs that were too slow and may miss frames
   double wall_seconds = 0.0;  ///< without pauses
   double cpu_seconds = 0.0;   ///< of the whole process during the run
   double recorded_seconds = 0.0;
@@ -93,8 +93,11 @@ class STILLPOINT_EXPORT Output {
   /// Before the first frame of a run that its source drives; a program that gives the frames itself
   /// steers itself. On thread 1. What has come may be kept.
   virtual void begin(const std::shared_ptr<LiveRun>&) {}
-  /// In order of the frames. Threaded, tracking is up to eight frames ahead and then waits; with
-  /// `when_full: drop`, frames are left out instead.
+  /// For viewers: frames may be left out when this output is too slow, instead of tracking waiting
+  /// for it. `when_full` in the pipeline file has the last word.
+  virtual bool may_miss_frames() const { return false; }
+  /// In order of the frames. Threaded, tracking is up to eight frames ahead and then waits, or
+  /// frames are left out.
   virtual void frame(const FrameReport&) {}
   /// Always called, also after a failure or Ctrl-C: what was computed is saved. After the last
   /// frame(), on thread 1; references are valid during the call only.

@@ -66,7 +66,7 @@ struct STILLPOINT_EXPORT SegmentationOptions {
 
 /// What stands in an element of `outputs:`, beside the options of the plugin.
 struct STILLPOINT_EXPORT OutputOptions {
-  WhenFull when_full = WhenFull::kWait;
+  WhenFull when_full = WhenFull::kAuto;
 
   void visit(OptionVisitor& visitor);
 };

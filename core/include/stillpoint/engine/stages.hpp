@@ -19,11 +19,15 @@ struct Stage {
 };
 
 /// What becomes of a report when an output is too slow to take it.
-enum class WhenFull { kWait /* tracking waits */, kDrop /* the oldest report is dropped */ };
+enum class WhenFull {
+  kAuto,  ///< as Output::may_miss_frames() says
+  kWait,  ///< tracking waits
+  kDrop   ///< the oldest report is dropped
+};
 
 struct OutputSetup {
   Stage<Output> stage;
-  WhenFull when_full = WhenFull::kWait;
+  WhenFull when_full = WhenFull::kAuto;
 };
 
 /// Made from a pipeline file by make_stages(), or by hand.

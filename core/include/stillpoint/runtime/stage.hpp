@@ -8,9 +8,9 @@
 #include <string>
 #include <utility>
 
+#include "stillpoint/engine/stage_error.hpp"
 #include "stillpoint/engine/stages.hpp"
 #include "stillpoint/runtime/null_stages.hpp"
-#include "stillpoint/runtime/stage_error.hpp"
 #include "stillpoint/runtime/time_log.hpp"
 
 namespace stillpoint {

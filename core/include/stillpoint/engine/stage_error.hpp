@@ -6,8 +6,8 @@
 #include <optional>
 #include <string>
 
+#include "stillpoint/engine/stage_guard.hpp"
 #include "stillpoint/error.hpp"
-#include "stillpoint/runtime/stage_guard.hpp"
 
 namespace stillpoint {
 
