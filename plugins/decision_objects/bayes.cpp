@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kUnlikelyLogOdds = -2;  // of moving, below which the weight is surely full
 // Not 0: without any trust in labels, a person in front of the camera would be mapped at once.
-constexpr double kMinLabelTrust = 0.05;
+constexpr double kMinLabelWeight = 0.05;
 
 std::vector<PointCount> count_points(const Segmentation& segmentation, const MovingPoints& moving) {
   std::vector<PointCount> counts(segmentation.objects.size());
@@ -163,7 +163,7 @@ double Bayes::trust_in(const Segmentation& segmentation) const {
   const double share = pixels / static_cast<double>(segmentation.labels.total());
   const double trust =
       (options_.doubted_share - share) / (options_.doubted_share - options_.trusted_share);
-  return std::clamp(trust, kMinLabelTrust, 1.0);
+  return std::clamp(trust, kMinLabelWeight, 1.0);
 }
 
 const ClassPolicy& Bayes::policy_of(const SegmentedObject& object) const {

@@ -26,9 +26,12 @@ void sample_depth(const cv::Mat& depth, cv::Mat& cells) {
 }  // namespace
 
 void MotionFieldOptions::visit(OptionVisitor& v) {
-  v("moving", moving, {.min = 0, .max = 10, .unit = "log-odds", .help = "of a moving point"});
-  v("still", still, {.min = 0, .max = 10, .unit = "log-odds", .help = "of a static point"});
-  v("memory", memory, {.min = 0, .max = 1, .help = "share of evidence kept to the next frame"});
+  v("moving_evidence", moving_evidence,
+    {.min = 0, .max = 10, .unit = "log-odds", .help = "of a moving point"});
+  v("static_evidence", static_evidence,
+    {.min = 0, .max = 10, .unit = "log-odds", .help = "of a static point"});
+  v("kept_evidence", kept_evidence,
+    {.min = 0, .max = 1, .help = "share of evidence kept to the next frame"});
   v("reach", reach, {.min = 0.01, .max = 2, .unit = "m", .help = "of a point's evidence"});
   v("depth_gate", depth_gate,
     {.min = 0.001, .max = 1, .help = "of a point's depth; more is another surface"});
@@ -39,10 +42,12 @@ void MotionField::update(const Frame& frame, const MovingPoints& moving) {
   evidence_ = cv::Mat::zeros(depth_.size(), CV_32F);
   weight_ = cv::Mat::zeros(depth_.size(), CV_32F);
   for (const PointMotion& point : moving.points) {
-    const float measured =
-        !moving.reliable ? 0.0F
-                         : static_cast<float>(point.moving ? options_.moving : -options_.still);
-    const float evidence = static_cast<float>(options_.memory) * before(point.previous) + measured;
+    const float measured = !moving.reliable
+                               ? 0.0F
+                               : static_cast<float>(point.moving ? options_.moving_evidence
+                                                                 : -options_.static_evidence);
+    const float evidence =
+        static_cast<float>(options_.kept_evidence) * before(point.previous) + measured;
     spread(frame, point.current, std::clamp(evidence, -kMaxEvidence, kMaxEvidence));
   }
   log_odds_.create(depth_.size(), CV_32F);

@@ -12,10 +12,10 @@
 namespace stillpoint::decision_objects {
 
 struct MotionFieldOptions {
-  double moving = 1.5;   ///< log-odds that a moving point adds
-  double still = 0.7;    ///< log-odds that a static point subtracts
-  double memory = 0.85;  ///< share of a point's evidence kept from frame to frame
-  double reach = 0.2;    ///< m
+  double moving_evidence = 1.5;  ///< log-odds that a moving point adds
+  double static_evidence = 0.7;  ///< log-odds that a static point subtracts
+  double kept_evidence = 0.85;   ///< share of a point's evidence kept from frame to frame
+  double reach = 0.2;            ///< m
   double depth_gate = 0.08;
 
   void visit(OptionVisitor& visitor);

@@ -12,10 +12,11 @@ void ObjectMotionOptions::visit(OptionVisitor& v) {
     {.min = 0, .max = 1000, .unit = "log-odds", .help = "per share of moving points"});
   v("share", share,
     {.min = 0, .max = 1, .help = "of moving points on an object that is neutral evidence"});
-  v("rise", rise, {.min = 0, .max = 100, .unit = "log-odds", .help = "per frame at most"});
-  v("fall", fall,
+  v("max_increase", max_increase,
+    {.min = 0, .max = 100, .unit = "log-odds", .help = "per frame at most"});
+  v("max_decrease", max_decrease,
     {.min = 0, .max = 100, .unit = "log-odds", .help = "per frame at most; slow: people pause"});
-  v("pull", pull,
+  v("prior_decay", prior_decay,
     {.min = 0, .max = 1, .help = "decay towards the prior per frame, seen or missed"});
   v("range", range,
     {.min = 0, .max = 20, .unit = "log-odds", .help = "greatest deviation from the prior"});
@@ -72,15 +73,15 @@ const ObjectBelief* ObjectBeliefs::known(const SegmentedObject& object) const {
 }
 
 void ObjectBeliefs::forget(ObjectBelief& belief, int updates) const {
-  const double kept = std::pow(1 - options_.pull, updates);
+  const double kept = std::pow(1 - options_.prior_decay, updates);
   belief.log_odds = belief.prior + kept * (belief.log_odds - belief.prior);
 }
 
 void ObjectBeliefs::learn(ObjectBelief& belief, const PointCount& count) const {
   if (count.points >= options_.min_points) {
     const double share = static_cast<double>(count.moving) / count.points;
-    belief.log_odds +=
-        std::clamp(options_.gain * (share - options_.share), -options_.fall, options_.rise);
+    belief.log_odds += std::clamp(options_.gain * (share - options_.share), -options_.max_decrease,
+                                  options_.max_increase);
   }
   belief.log_odds =
       std::clamp(belief.log_odds, belief.prior - options_.range, belief.prior + options_.range);

@@ -13,9 +13,9 @@ namespace stillpoint::decision_objects {
 struct ObjectMotionOptions {
   double gain = 15.0;         ///< log-odds per share of moving points above or below `share`
   double share = 0.1;         ///< of moving points on an object, neutral evidence
-  double rise = 1.5;          ///< log-odds per frame, most
-  double fall = 0.3;          ///< log-odds per frame, most: people who pause go on walking
-  double pull = 0.02;         ///< decay towards the prior, per frame, seen or missed
+  double max_increase = 1.5;  ///< log-odds per frame, most
+  double max_decrease = 0.3;  ///< log-odds per frame, most: people who pause go on walking
+  double prior_decay = 0.02;  ///< decay towards the prior, per frame, seen or missed
   double range = 3.5;         ///< log-odds, greatest deviation from the prior
   int min_points = 4;         ///< on an object, for evidence
   double moves_above = 0.7;   ///< probability

@@ -158,7 +158,7 @@ class Judge {
   }
 
   void count_same(std::size_t x, const cv::v_float32& same, const cv::v_int32& trust) {
-    for (int kind = kUntrusted; kind <= kMapped; ++kind) {
+    for (int kind = kNotStatic; kind <= kMapped; ++kind) {
       float* count = &verdicts_.same[static_cast<std::size_t>(kind)][x];
       const cv::v_float32 counts =
           cv::v_reinterpret_as_f32(trust == cv::vx_setall_s32(kind)) & same;
@@ -172,7 +172,7 @@ class Judge {
     return static_cast<float>(options_.came_in * verdicts_.came_in[x] -
                               options_.same_mapped * verdicts_.same[kMapped][x] -
                               options_.same_tracked * verdicts_.same[kTracked][x] -
-                              untrusted * verdicts_.same[kUntrusted][x]);
+                              untrusted * verdicts_.same[kNotStatic][x]);
   }
 
   const cv::Mat& depth_;

@@ -102,7 +102,7 @@ class Aligner {
         const float u = view->camera.fx * p.x() / p.z() + view->camera.cx;
         const float v = view->camera.fy * p.y() / p.z() + view->camera.cy;
         const cv::Point cell(cvRound(u), cvRound(v));
-        if (!inside.contains(cell) || view->trust.at<int>(cell) == kUntrusted) continue;
+        if (!inside.contains(cell) || view->trust.at<int>(cell) == kNotStatic) continue;
         const cv::Vec3f& n = view->normals.at<cv::Vec3f>(cell);
         if (n == cv::Vec3f()) continue;
         const Eigen::Vector3f normal(n[0], n[1], n[2]);

@@ -20,7 +20,7 @@ cv::Mat used_cells(const cv::Mat& weight, cv::Size size) {
 
 cv::Mat trust_in(const StaticWeights& weights, cv::Size size) {
   const cv::Mat tracked = used_cells(weights.track, size);
-  cv::Mat trust(size, CV_32S, cv::Scalar(kUntrusted));
+  cv::Mat trust(size, CV_32S, cv::Scalar(kNotStatic));
   trust.setTo(kTracked, tracked);
   trust.setTo(kMapped, tracked & used_cells(weights.map, size));
   return trust;

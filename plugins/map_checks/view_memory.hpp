@@ -9,7 +9,7 @@ namespace stillpoint::map_checks {
 
 /// How far a surface was trusted when it was seen.
 enum Trust : int {
-  kUntrusted = 0,  ///< dynamic, as far as was known
+  kNotStatic = 0,  ///< dynamic, as far as was known
   kTracked = 1,    ///< static, but of a class that is not mapped
   kMapped = 2
 };

@@ -34,8 +34,8 @@ class BundleProblem {
     for (const LandmarkId id : landmarks_) add_landmark(id);
   }
 
-  bool solve(int max_iterations, const std::stop_token& hurry) {
-    return solver_.solve(max_iterations, hurry);
+  bool solve(int max_iterations, const std::stop_token& end_early) {
+    return solver_.solve(max_iterations, end_early);
   }
 
   std::vector<MovedKeyFrame> keyframes() const {
@@ -111,11 +111,12 @@ std::vector<LandmarkId> seen_by(const SparseMap& map, const std::vector<KeyFrame
 }  // namespace
 
 std::vector<LandmarkId> adjust_locally(MapEdit& edit, KeyFrameId centre,
-                                       const BundleOptions& options, const std::stop_token& hurry) {
+                                       const BundleOptions& options,
+                                       const std::stop_token& end_early) {
   const std::vector<KeyFrameId> local = most_covisible(edit.map(), centre, options.max_keyframes);
   std::vector<LandmarkId> points = seen_by(edit.map(), local);
   BundleProblem problem(edit.map(), local, points);
-  if (!problem.solve(options.max_iterations, hurry)) return {};
+  if (!problem.solve(options.max_iterations, end_early)) return {};
   for (const MovedKeyFrame& moved : problem.keyframes())
     edit.keyframe(moved.keyframe).world_from_camera = moved.world_from_camera;
   for (const auto& [id, position] : problem.landmarks())
@@ -125,12 +126,12 @@ std::vector<LandmarkId> adjust_locally(MapEdit& edit, KeyFrameId centre,
 }
 
 std::optional<MapCorrection> adjust_all(const SparseMap& map, int max_iterations,
-                                        const std::stop_token& hurry) {
+                                        const std::stop_token& end_early) {
   std::vector<KeyFrameId> keyframes;
   for (KeyFrameId id = 0; id < map.keyframe_id_end(); ++id)
     if (map.keyframe(id)) keyframes.push_back(id);
   BundleProblem problem(map, keyframes, seen_by(map, keyframes));
-  if (!problem.solve(max_iterations, hurry)) return std::nullopt;
+  if (!problem.solve(max_iterations, end_early)) return std::nullopt;
   return MapCorrection{.keyframe_id_end = static_cast<KeyFrameId>(map.keyframe_id_end()),
                        .moved = problem.keyframes(),
                        .landmarks = problem.landmarks()};

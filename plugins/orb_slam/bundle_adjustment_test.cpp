@@ -32,9 +32,9 @@ class BundleAdjustmentTest : public testing::Test {
     start_ = std::move(edit).finish();
   }
   SparseMap adjust(KeyFrameId centre, const BundleOptions& options,
-                   std::stop_token hurry = {}) const {
+                   std::stop_token end_early = {}) const {
     MapEdit edit(start_);
-    adjust_locally(edit, centre, options, hurry);
+    adjust_locally(edit, centre, options, end_early);
     EXPECT_EQ(edit.map().check(), std::nullopt);
     return std::move(edit).finish();
   }
@@ -173,11 +173,11 @@ TEST_F(BundleAdjustmentTest, SoftWeightsDoNotPull) {
   EXPECT_LT(worst_pose(adjust(kViews - 1, kAll)), 0.004);
 }
 
-TEST_F(BundleAdjustmentTest, HurryEndsEarlyWithAConsistentMap) {
+TEST_F(BundleAdjustmentTest, EarlyEndWithAConsistentMap) {
   disturb();
-  std::stop_source hurry;
-  hurry.request_stop();
-  const SparseMap map = adjust(kViews - 1, kAll, hurry.get_token());
+  std::stop_source end_early;
+  end_early.request_stop();
+  const SparseMap map = adjust(kViews - 1, kAll, end_early.get_token());
   EXPECT_EQ(map.keyframe_count(), start_.keyframe_count());
   EXPECT_GT(map.landmark_count(), 0u);
   for (KeyFrameId id = 0; id < kViews; ++id)

@@ -246,7 +246,7 @@ void BundleSolver::apply(const Step& step) {
   }
 }
 
-bool BundleSolver::solve(int max_iterations, const std::stop_token& hurry) {
+bool BundleSolver::solve(int max_iterations, const std::stop_token& end_early) {
   if (observations_.empty()) return false;
   first_observation_.push_back(observations_.size());
   find_blocks();
@@ -255,7 +255,7 @@ bool BundleSolver::solve(int max_iterations, const std::stop_token& hurry) {
   double damping = kFirstDamping, growth = 2, current = cost();
   bool moved = true;
   Step step;
-  for (int i = 0; i < max_iterations && current > 0 && !hurry.stop_requested(); ++i) {
+  for (int i = 0; i < max_iterations && current > 0 && !end_early.stop_requested(); ++i) {
     if (moved) linearise();
     moved = false;
     const bool solved = solve_damped(damping, step);

@@ -32,8 +32,9 @@ class BundleSolver {
   void observe(int camera, const BundleMeasurement& measurement);
 
   /// Ends after `max_iterations`, when the cost has converged, or after the iteration in
-  /// which `hurry` is requested: none, when it was before. False when there is nothing to solve.
-  bool solve(int max_iterations, const std::stop_token& hurry);
+  /// which `end_early` is requested: none, when it was before. False when there is nothing to
+  /// solve.
+  bool solve(int max_iterations, const std::stop_token& end_early);
 
   Pose camera_from_world(int camera) const;
   const Eigen::Vector3d& point(std::size_t index) const { return points_[index]; }

@@ -169,10 +169,10 @@ TEST_F(BundleSolverTest, WithoutObservationsThereIsNothingToSolve) {
 
 TEST_F(BundleSolverTest, StopsAtOnceWhenAskedTo) {
   disturb();
-  std::stop_source hurry;
-  hurry.request_stop();
+  std::stop_source end_early;
+  end_early.request_stop();
   BundleSolver ours = solver();
-  ASSERT_TRUE(ours.solve(10, hurry.get_token()));
+  ASSERT_TRUE(ours.solve(10, end_early.get_token()));
   EXPECT_EQ(ours.point(0), points_[0]);
 }
 

@@ -62,14 +62,14 @@ SparseMap OrbLocalMapper::insert(SparseMap map, KeyFrame keyframe) {
   return std::move(edit).finish();
 }
 
-SparseMap OrbLocalMapper::refine(SparseMap map, KeyFrameId id, std::stop_token hurry) {
+SparseMap OrbLocalMapper::refine(SparseMap map, KeyFrameId id, std::stop_token end_early) {
   MapEdit edit(std::move(map));
   cull_landmarks(edit, id, recent_);
   remember(triangulate(edit, id, options_.neighbours));
-  if (!hurry.stop_requested()) fuse_with_neighbours(edit, id, options_.neighbours);
+  if (!end_early.stop_requested()) fuse_with_neighbours(edit, id, options_.neighbours);
   edit.update_covisibility(id);
-  if (!hurry.stop_requested() && edit.map().keyframe_count() > 2) {
-    for (const LandmarkId landmark : adjust_locally(edit, id, bundle_, hurry))
+  if (!end_early.stop_requested() && edit.map().keyframe_count() > 2) {
+    for (const LandmarkId landmark : adjust_locally(edit, id, bundle_, end_early))
       refresh_landmark(edit, landmark);
     cull_keyframes(edit, id, options_.redundant_share);
   }

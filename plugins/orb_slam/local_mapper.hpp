@@ -24,7 +24,7 @@ class OrbLocalMapper final : public LocalMapper {
   OrbLocalMapper(Options options, const StageContext& context);
 
   SparseMap insert(SparseMap map, KeyFrame keyframe) override;
-  SparseMap refine(SparseMap map, KeyFrameId keyframe, std::stop_token hurry) override;
+  SparseMap refine(SparseMap map, KeyFrameId keyframe, std::stop_token end_early) override;
 
  private:
   void remember(const std::vector<LandmarkId>& created);

@@ -34,12 +34,12 @@ class LocalMapperTest : public testing::Test {
     const Observation& o = map_.landmark(id)->observations.front();
     return views_[o.keyframe].point[o.feature];
   }
-  void step(const Noise& noise = {}, std::stop_token hurry = {}) {
+  void step(const Noise& noise = {}, std::stop_token end_early = {}) {
     KeyFrame keyframe = next_keyframe(noise);
     const KeyFrameId id = keyframe.id;
     map_ = mapper_.insert(std::move(map_), std::move(keyframe));
     ASSERT_EQ(map_.check(), std::nullopt) << "insert " << id;
-    map_ = mapper_.refine(std::move(map_), id, hurry);
+    map_ = mapper_.refine(std::move(map_), id, end_early);
     ASSERT_EQ(map_.check(), std::nullopt) << "refine " << id;
   }
   double worst_pose() const {
@@ -122,10 +122,10 @@ TEST_F(LocalMapperTest, EvidenceIsAddedToLandmarksOnce) {
   EXPECT_TRUE(map_.keyframe(1)->evidence.empty());
 }
 
-TEST_F(LocalMapperTest, HurryLeavesAConsistentMap) {
-  std::stop_source hurry;
-  hurry.request_stop();
-  for (int i = 0; i < kSteps; ++i) step({}, hurry.get_token());
+TEST_F(LocalMapperTest, EarlyEndLeavesAConsistentMap) {
+  std::stop_source end_early;
+  end_early.request_stop();
+  for (int i = 0; i < kSteps; ++i) step({}, end_early.get_token());
   EXPECT_EQ(map_.keyframe_count(), static_cast<std::size_t>(kSteps));
   EXPECT_LT(worst_pose(), 0.03);
 }

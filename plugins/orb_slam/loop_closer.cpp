@@ -68,9 +68,10 @@ std::optional<MapCorrection> OrbLoopCloser::correct(const SparseMap& map, const 
                        .fused = loop.same};
 }
 
-std::optional<MapCorrection> OrbLoopCloser::adjust(const SparseMap& map, std::stop_token hurry) {
+std::optional<MapCorrection> OrbLoopCloser::adjust(const SparseMap& map,
+                                                   std::stop_token end_early) {
   if (options_.adjust_iterations == 0) return std::nullopt;
-  return adjust_all(map, options_.adjust_iterations, hurry);
+  return adjust_all(map, options_.adjust_iterations, end_early);
 }
 
 }  // namespace stillpoint::orb_slam

@@ -28,7 +28,7 @@ class OrbLoopCloser final : public LoopCloser {
 
   std::optional<MapCorrection> close(const SparseMap& map, KeyFrameId latest,
                                      std::stop_token stop) override;
-  std::optional<MapCorrection> adjust(const SparseMap& map, std::stop_token hurry) override;
+  std::optional<MapCorrection> adjust(const SparseMap& map, std::stop_token end_early) override;
 
  private:
   std::optional<MapCorrection> correct(const SparseMap& map, const LoopMatch& loop,

@@ -20,15 +20,15 @@ Recorder::Recorder(std::filesystem::path file, std::string_view page)
                 "record", "give another name");
 }
 
-void Recorder::take(Journal& journal) {
+void Recorder::take(EventLog& events) {
   const bool image = seen_.frames >= next_image_;
-  write(journal.news(seen_, {.image = image, .map = true, .cloud = true, .voxels = true}));
+  write(events.news(seen_, {.image = image, .map = true, .cloud = true, .voxels = true}));
   if (image && seen_.image) next_image_ = seen_.frames + kImageStep - 1;
 }
 
-void Recorder::finish(Journal& journal) {
+void Recorder::finish(EventLog& events) {
   const Request all{.image = true, .map = true, .cloud = true, .voxels = true};
-  for (std::string rest; !(rest = journal.news(seen_, all)).empty();) write(rest);
+  for (std::string rest; !(rest = events.news(seen_, all)).empty();) write(rest);
 }
 
 void Recorder::write(std::string_view message) {

@@ -7,7 +7,7 @@
 #include <stillpoint/sdk.hpp>
 #include <string_view>
 
-#include "output_web/journal.hpp"
+#include "output_web/event_log.hpp"
 
 namespace stillpoint::output_web {
 
@@ -20,9 +20,9 @@ class Recorder {
 
   /// What is new, with every third image. On the server's thread. Throws Error when there is no
   /// room for it.
-  void take(Journal& journal);
-  /// The rest, once the journal is finished.
-  void finish(Journal& journal);
+  void take(EventLog& events);
+  /// The rest, once the log is finished.
+  void finish(EventLog& events);
 
  private:
   void write(std::string_view message);

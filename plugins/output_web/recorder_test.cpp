@@ -34,23 +34,23 @@ std::string within_page(const std::string& message) {
 }
 
 TEST_F(Recording, IsThePageAndWhatAViewerGets) {
-  Journal journal({.name = "walk", .classes = testing::TestRecording::classes(), .truth = {}});
+  EventLog events({.name = "walk", .classes = testing::TestRecording::classes(), .truth = {}});
   Recorder recorder(folder / "live.html", "<page>");
   std::string expected = "<page>\n";
   Seen seen;
   const auto take = [&](bool image) {
-    recorder.take(journal);
+    recorder.take(events);
     expected += within_page(
-        journal.news(seen, {.image = image, .map = true, .cloud = true, .voxels = true}));
+        events.news(seen, {.image = image, .map = true, .cloud = true, .voxels = true}));
   };
-  journal.set_steering("{}");
+  events.set_steering("{}");
   take(true);  // there is no image yet
   for (std::size_t i = 0; i < 4; ++i) {
-    journal.add(report_of(i));
+    events.add(report_of(i));
     take(i % 3 == 0);
   }
-  recorder.take(journal);  // nothing is new
-  recorder.finish(journal);
+  recorder.take(events);  // nothing is new
+  recorder.finish(events);
   EXPECT_EQ(text().substr(0, expected.size()), expected);
 }
 

@@ -6,8 +6,8 @@
 
 namespace stillpoint::output_web {
 
-Server::Server(ServerSetup setup, Journal& journal)
-    : loop_(std::make_unique<ServerLoop>(std::move(setup), journal)) {}
+Server::Server(ServerSetup setup, EventLog& events)
+    : loop_(std::make_unique<ServerLoop>(std::move(setup), events)) {}
 
 Server::~Server() = default;
 

@@ -10,7 +10,7 @@
 #include <string_view>
 
 #include "output_web/access.hpp"
-#include "output_web/journal.hpp"
+#include "output_web/event_log.hpp"
 
 namespace stillpoint::output_web {
 
@@ -30,7 +30,7 @@ struct ServerSetup {
 class Server {
  public:
   /// Throws Error(kUsage) when the address, the port or the file cannot be used.
-  Server(ServerSetup setup, Journal& journal);
+  Server(ServerSetup setup, EventLog& events);
   /// Sends what is new and says good-bye, for half a second at most.
   ~Server();
   Server(const Server&) = delete;
@@ -39,7 +39,7 @@ class Server {
   std::uint16_t port() const;
   /// The run that viewers may steer. From any thread, like notify(); neither waits.
   void begin(std::shared_ptr<LiveRun> run);
-  /// The journal has something new.
+  /// The events has something new.
   void notify();
 
  private:

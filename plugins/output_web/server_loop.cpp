@@ -51,9 +51,9 @@ tcp::acceptor listening(asio::io_context& context, const ServerSetup& setup) {
 
 }  // namespace
 
-ServerLoop::ServerLoop(ServerSetup setup, Journal& journal)
+ServerLoop::ServerLoop(ServerSetup setup, EventLog& events)
     : setup_(std::move(setup)),
-      journal_(journal),
+      events_(events),
       steering_(setup_.control, setup_.log),
       acceptor_(listening(context_, setup_)) {
   if (!setup_.record.empty()) recorder_.emplace(setup_.record, setup_.page);
@@ -94,7 +94,7 @@ bool ServerLoop::obey(Viewer& viewer, Command command) {
 
 void ServerLoop::read_dense_map() {
   try {
-    if (VoxelsPtr voxels = dense_map_.read()) journal_.set_voxels(std::move(voxels));
+    if (VoxelsPtr voxels = dense_map_.read()) events_.set_voxels(std::move(voxels));
   } catch (const std::exception& error) {  // of its plugin, whose run ends with it
     warn(error.what());
     dense_map_.begin(nullptr);
@@ -139,16 +139,16 @@ void ServerLoop::offer_to_all() {
 
 // Posted: a viewer that is about to go must not be offered anything.
 void ServerLoop::tell_steering() {
-  journal_.set_steering(steering_.state());
+  events_.set_steering(steering_.state());
   notify();
 }
 
 // A recording that fails costs nobody else anything.
-void ServerLoop::record(void (Recorder::*what)(Journal&)) {
+void ServerLoop::record(void (Recorder::*what)(EventLog&)) {
   if (!recorder_) return;
   try {
     read_dense_map();
-    ((*recorder_).*what)(journal_);
+    ((*recorder_).*what)(events_);
   } catch (const std::exception& error) {
     warn(error.what());
     recorder_.reset();

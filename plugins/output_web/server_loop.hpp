@@ -28,7 +28,7 @@ inline constexpr auto kRequestTime = std::chrono::seconds(10);  // that a reques
 /// thread of the loop.
 class ServerLoop {
  public:
-  ServerLoop(ServerSetup setup, Journal& journal);
+  ServerLoop(ServerSetup setup, EventLog& events);
   ~ServerLoop();
   ServerLoop(const ServerLoop&) = delete;
   ServerLoop& operator=(const ServerLoop&) = delete;
@@ -38,7 +38,7 @@ class ServerLoop {
   void notify();
 
   const ServerSetup& setup() const { return setup_; }
-  Journal& journal() { return journal_; }
+  EventLog& events() { return events_; }
   bool is_full() const { return viewers_.size() >= static_cast<std::size_t>(setup_.viewers); }
   bool says_goodbye() const { return says_goodbye_; }
   void enter(Connection& connection) { connections_.insert(&connection); }
@@ -56,11 +56,11 @@ class ServerLoop {
   void accept();
   void offer_to_all();
   void tell_steering();
-  void record(void (Recorder::*what)(Journal&));
+  void record(void (Recorder::*what)(EventLog&));
   void say_goodbye();
 
   const ServerSetup setup_;
-  Journal& journal_;
+  EventLog& events_;
   Steering steering_;
   DenseMapReader dense_map_;
   std::optional<Recorder> recorder_;

@@ -100,13 +100,13 @@ TEST_F(Steered, TellsWhyAMapWasNotSavedAndGoesOn) {
 }
 
 TEST_F(Steered, BearsAFloodOfCommands) {
-  TestViewer hostile(port(*output)), viewer(port(*output));
+  TestViewer unknown(port(*output)), viewer(port(*output));
   for (int round = 0; round < 500; ++round) {
-    tell(hostile, Command::kPause);
-    tell(hostile, Command::kStep);
-    tell(hostile, Command::kGoOn);
+    tell(unknown, Command::kPause);
+    tell(unknown, Command::kStep);
+    tell(unknown, Command::kGoOn);
   }
-  EXPECT_FALSE(state(hostile)["paused"]);
+  EXPECT_FALSE(state(unknown)["paused"]);
   EXPECT_EQ(run->calls().size(), 1500u);
   EXPECT_TRUE(state_after(viewer, Command::kPause)["paused"]);
 }

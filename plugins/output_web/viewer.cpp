@@ -70,7 +70,7 @@ void Viewer::take_request() {
 void Viewer::send(const Request& request) {
   if (writing_ || closed_) return;
   try {
-    message_ = loop_.journal().news(seen_, request);
+    message_ = loop_.events().news(seen_, request);
   } catch (const std::exception& error) {
     loop_.warn(std::string("a viewer was dropped: ") + error.what());
     return close(websocket::close_code::internal_error);

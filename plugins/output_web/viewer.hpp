@@ -8,7 +8,7 @@
 #include <optional>
 #include <string>
 
-#include "output_web/journal.hpp"
+#include "output_web/event_log.hpp"
 #include "output_web/server_loop.hpp"
 
 namespace stillpoint::output_web {

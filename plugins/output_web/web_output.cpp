@@ -50,10 +50,10 @@ WebOutput::WebOutput(const Options& options, const StageContext& context)
     : WebOutput(options, context, token_of(options)) {}
 
 WebOutput::WebOutput(const Options& options, const StageContext& context, const std::string& token)
-    : journal_({.name = name_of(context.recording),
-                .classes = context.classes,
-                .truth = Truth::beside(context.recording)}),
-      server_(setup_of(options, context, token), journal_),
+    : events_({.name = name_of(context.recording),
+               .classes = context.classes,
+               .truth = Truth::beside(context.recording)}),
+      server_(setup_of(options, context, token), events_),
       url_(url_of(options.address, server_.port(), token)) {
   context.log(LogLevel::kInfo, "live view at " + url_);
 }
@@ -61,12 +61,12 @@ WebOutput::WebOutput(const Options& options, const StageContext& context, const 
 void WebOutput::begin(const std::shared_ptr<LiveRun>& run) { server_.begin(run); }
 
 void WebOutput::frame(const FrameReport& report) {
-  journal_.add(report);
+  events_.add(report);
   server_.notify();
 }
 
 void WebOutput::finish(const RunSummary& summary) {
-  journal_.finish(summary);
+  events_.finish(summary);
   server_.notify();
 }
 

@@ -4,7 +4,7 @@
 #include <stillpoint/sdk.hpp>
 #include <string>
 
-#include "output_web/journal.hpp"
+#include "output_web/event_log.hpp"
 #include "output_web/server.hpp"
 
 namespace stillpoint::output_web {
@@ -49,8 +49,8 @@ class WebOutput final : public Output {
  private:
   WebOutput(const Options& options, const StageContext& context, const std::string& token);
 
-  Journal journal_;
-  Server server_;  // last: it uses the journal
+  EventLog events_;
+  Server server_;  // last: it uses the event log
   std::string url_;
 };
 

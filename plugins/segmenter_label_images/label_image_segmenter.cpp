@@ -19,10 +19,10 @@ std::filesystem::path label_folder(const std::string& path, const StageContext& 
 
 /// Looked up only where it is used: a class list may lack the default.
 int false_label(const LabelImageSegmenter::Options& options, const ClassNames& classes) {
-  using Kind = HostileOptions::Kind;
-  const bool wanted = options.errors.false_objects > 0 || !options.hostile.mistaken.empty() ||
-                      options.hostile.hostile == Kind::kEverything ||
-                      options.hostile.hostile == Kind::kBlobs;
+  using Kind = AdversarialOptions::Kind;
+  const bool wanted = options.errors.false_objects > 0 || !options.adversarial.mistaken.empty() ||
+                      options.adversarial.adversarial == Kind::kEverything ||
+                      options.adversarial.adversarial == Kind::kBlobs;
   return wanted ? class_id(classes, options.errors.false_class) : 0;
 }
 
@@ -47,7 +47,7 @@ void LabelImageSegmenter::Options::visit(OptionVisitor& v) {
   v("min_object_pixels", min_object_pixels,
     {.min = 1, .unit = "px", .help = "smaller objects become background"});
   errors.visit(v);
-  hostile.visit(v);
+  adversarial.visit(v);
 }
 
 LabelImageSegmenter::LabelImageSegmenter(Options options, const StageContext& context)
@@ -55,7 +55,7 @@ LabelImageSegmenter::LabelImageSegmenter(Options options, const StageContext& co
       classes_(classes_of(options_.classes)),
       files_(label_folder(options_.path, context)),
       errors_(options_.errors, false_label(options_, classes_), context.seed),
-      hostile_(options_.hostile, classes_, false_label(options_, classes_), context.seed),
+      adversarial_(options_.adversarial, classes_, false_label(options_, classes_), context.seed),
       log_(context.log) {
   // A wrong folder is reported before the run begins.
   const std::filesystem::path& first = files_.entries().front().file;
@@ -71,7 +71,7 @@ Segmentation LabelImageSegmenter::segment(const Frame& frame) {
   if (!entry) return result;
   cv::Mat labels = read_labels(entry->file, classes_.size());
   check_size(labels, frame.gray.size(), entry->file);
-  if (hostile_.any()) labels = hostile_.apply(labels, errors_.period_of(frame.index));
+  if (adversarial_.any()) labels = adversarial_.apply(labels, errors_.period_of(frame.index));
   result.labels =
       errors_.any() ? errors_.apply(labels, frame.index, options_.min_object_pixels) : labels;
   find_objects(result, options_.min_object_pixels);
@@ -86,7 +86,8 @@ const LabelFiles::Entry* LabelImageSegmenter::entry_for(const Frame& frame) {
     return nullptr;
   }
   ++found_;
-  return options_.hostile.late > 0 ? &files_.nearest(frame.time - options_.hostile.late) : &own;
+  return options_.adversarial.late > 0 ? &files_.nearest(frame.time - options_.adversarial.late)
+                                       : &own;
 }
 
 void LabelImageSegmenter::report_missing(const Frame& frame, const LabelFiles::Entry& nearest) {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "segmenter_label_images/hostile_labels.hpp"
+#include "segmenter_label_images/adversarial_labels.hpp"
 #include "segmenter_label_images/label_files.hpp"
 #include "segmenter_label_images/network_errors.hpp"
 #include "stillpoint/sdk.hpp"
@@ -22,7 +22,7 @@ class LabelImageSegmenter final : public Segmenter {
     double max_difference = 0.001;  ///< seconds between an image's stamp and the frame's
     int min_object_pixels = 100;    ///< smaller objects become background
     NetworkErrorOptions errors;
-    HostileOptions hostile;
+    AdversarialOptions adversarial;
 
     void visit(OptionVisitor& visitor);
   };
@@ -40,7 +40,7 @@ class LabelImageSegmenter final : public Segmenter {
   ClassNames classes_;
   LabelFiles files_;
   NetworkErrors errors_;
-  HostileLabels hostile_;
+  AdversarialLabels adversarial_;
   std::function<void(LogLevel, std::string_view)> log_;
   std::size_t found_ = 0;    // frames with labels so far
   std::size_t missing_ = 0;  // and without

@@ -210,14 +210,14 @@ TEST_F(LabelImageSegmenterTest, ErrorsDependOnSeedAndFrameOnly) {
 }
 
 TEST_F(LabelImageSegmenterTest, EverythingOrNobodyIsAPerson) {
-  using Kind = HostileOptions::Kind;
+  using Kind = AdversarialOptions::Kind;
   write(1.0, room_labels());
-  options_.hostile.hostile = Kind::kEverything;
+  options_.adversarial.adversarial = Kind::kEverything;
   const Segmentation everything = open().segment(frame_at(1.0));
   EXPECT_EQ(count(everything.labels, kPerson), kSize.area());
   ASSERT_EQ(everything.objects.size(), 1U);
   EXPECT_EQ(everything.objects[0].pixels, kSize.area());
-  options_.hostile.hostile = Kind::kNobody;
+  options_.adversarial.adversarial = Kind::kNobody;
   const Segmentation nobody = open().segment(frame_at(1.0));
   EXPECT_TRUE(nobody.known());
   EXPECT_EQ(cv::countNonZero(nobody.labels), 0);
@@ -225,7 +225,7 @@ TEST_F(LabelImageSegmenterTest, EverythingOrNobodyIsAPerson) {
 
 TEST_F(LabelImageSegmenterTest, BlobsAreAnywhereAndLastAsLongAsAsked) {
   write(1.0, room_labels());
-  options_.hostile.hostile = HostileOptions::Kind::kBlobs;
+  options_.adversarial.adversarial = AdversarialOptions::Kind::kBlobs;
   options_.errors.error_frames = 3;
   LabelImageSegmenter segmenter = open();
   cv::Mat before;
@@ -243,11 +243,11 @@ TEST_F(LabelImageSegmenterTest, BlobsAreAnywhereAndLastAsLongAsAsked) {
 
 TEST_F(LabelImageSegmenterTest, StaticThingsAreTakenForPeople) {
   write(1.0, room_labels());
-  options_.hostile.mistaken = {"chair"};
+  options_.adversarial.mistaken = {"chair"};
   const Segmentation labels = open().segment(frame_at(1.0));
   EXPECT_EQ(count(labels.labels, kPerson), kPersonBox.area() + kChairBox.area());
   EXPECT_EQ(count(labels.labels, kChair), 0);
-  options_.hostile.mistaken = {"chiar"};
+  options_.adversarial.mistaken = {"chiar"};
   EXPECT_THAT(message_of([&] { open(); }, Fault::kUsage), HasSubstr("did you mean 'chair'?"));
 }
 
@@ -257,7 +257,7 @@ TEST_F(LabelImageSegmenterTest, LabelsAreLate) {
     labels(cv::Rect(20 * i, 10, 20, 20)).setTo(kPerson);
     write(1.0 + i, labels);
   }
-  options_.hostile.late = 2;
+  options_.adversarial.late = 2;
   LabelImageSegmenter segmenter = open();
   EXPECT_EQ(segmenter.segment(frame_at(5.0, 4)).objects[0].box.x, 40);
   EXPECT_EQ(segmenter.segment(frame_at(3.0, 2)).objects[0].box.x, 0);

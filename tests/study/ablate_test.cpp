@@ -123,6 +123,16 @@ TEST_F(Ablate, AFolderHoldsOneStudy) {
   EXPECT_THAT(damaged.err, HasSubstr("study.json: does not say whose folder this is; remove it"));
 }
 
+TEST_F(Ablate, TheFirstRepeatKeepsPicturesOfItsWorstFrames) {
+  ASSERT_EQ(ablate(kShort + "pictures: 1\nrepeats: 2\n").exit_code, 0);
+  EXPECT_TRUE(fs::exists(out() / "runs/tiny/few/0/images/000000.jpg"));
+  EXPECT_FALSE(fs::exists(out() / "runs/tiny/few/1/images"));
+  const Outcome report = call({"report", out().string()});
+  EXPECT_EQ(report.exit_code, 0) << report.err;
+  EXPECT_THAT(text_of(out() / "report.html"), HasSubstr("000000.jpg"));
+  EXPECT_EQ(ablate(kShort + "repeats: 2\n").err, "4 of 4 runs are there already\n");
+}
+
 TEST_F(Ablate, OnlyItsOwnHalfRecordingsAreRemoved) {
   folder_.write("out/recordings/tiny.4242.part/rgb.txt", "of a study that was killed");
   folder_.write("out/recordings/tiny.part/rgb.txt", "mine");

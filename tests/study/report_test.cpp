@@ -230,9 +230,9 @@ TEST_F(PublishedReport, AsLatex) {
                   "    Sequence & plain & better & \\textit{Other\\_SLAM} \\\\\n"
                   "    \\midrule\n"
                   "    walking & 0.6000 {\\scriptsize (0.5000--0.7000)} & 0.0600 {\\scriptsize "
-                  "[90.0\\,\\%]} & \\textit{0.2500} \\\\\n"
+                  "[90.0\\,\\%, 1 of 2]} & \\textit{0.2500} \\\\\n"
                   "    walking\\_empty & \\textbf{0.0150} {\\scriptsize (0.0100--0.0200)} & 0.0200 "
-                  "& -- \\\\\n"
+                  "{\\scriptsize [1 of 2]} & -- \\\\\n"
                   "    \\bottomrule\n"));
   EXPECT_THAT(tables, ::testing::HasSubstr("Not finished: 1 of 8 runs are missing."));
   EXPECT_THAT(tables, ::testing::HasSubstr("Other\\_SLAM: Them \\& al., 2020."));

@@ -108,8 +108,8 @@ class LocalMapperDrive final : public FrameDrive<LocalMapper> {
     require_consistent("insert", map);
     map_ = std::move(map);
     // Every second time another key frame waits already.
-    const std::stop_token hurry = i % 2 == 0 ? std::stop_token() : requested_stop();
-    map = call("refine", i, [&] { return stage_.refine(map_, id, hurry); });
+    const std::stop_token end_early = i % 2 == 0 ? std::stop_token() : requested_stop();
+    map = call("refine", i, [&] { return stage_.refine(map_, id, end_early); });
     check("refine", i, [&] { check_refined(map, map_); });
     require_consistent("refine", map);
     map_ = std::move(map);

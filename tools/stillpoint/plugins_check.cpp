@@ -126,7 +126,7 @@ void check(CheckOptions options) {
 
 void add_plugins_check(CLI::App& plugins) {
   CLI::App* command = plugins.add_subcommand(
-      "check", "Check that the stages of a library keep their contracts, also in hostile cases");
+      "check", "Check that the stages of a library keep their contracts, also in adverse cases");
   auto options = std::make_shared<CheckOptions>();
   command->add_option("library", options->request.library, "build/libstillpoint_NAME.so")
       ->type_name("FILE")

@@ -116,8 +116,8 @@ class StudyChecker {
 
   void check_sequence(std::size_t i) {
     const Sequence& sequence = study_.sequences[i];
-    check_name_in(names_of(study_.sequences), sequence.twin, place("sequences", i, "twin"),
-                  "sequence");
+    check_name_in(names_of(study_.sequences), sequence.without_motion,
+                  place("sequences", i, "without_motion"), "sequence");
     std::error_code error;
     if (!sequence.dataset.empty() &&
         !fs::is_regular_file(fs::path(sequence.dataset) / "groundtruth.txt", error))

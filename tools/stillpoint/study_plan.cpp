@@ -26,6 +26,14 @@ std::vector<fs::path> folders_of_models(const Registry& registry) {
   return folders;
 }
 
+/// Not part of what the run is: without them, its results are the same.
+std::vector<std::string> pictures_of(const Study& study, const Cell& cell) {
+  if (study.pictures == 0 || cell.repeat > 0) return {};
+  return {"--with", "images.worst=" + std::to_string(study.pictures),
+          "--with", "images.panels=true",
+          "--with", "images.every=1000000"};
+}
+
 std::vector<std::string> command_of(const PipelineRequest& request, const fs::path& run, int seed) {
   std::vector<std::string> command = {
       this_program(), "run", request.pipeline, "--dataset", request.dataset, "-o", run};
@@ -54,8 +62,10 @@ class Planner {
     last_recording_ = recording;
     const int seed = study_.seed + cell.repeat;
     const fs::path run = run_folder(output_, study_, cell);
+    std::vector<std::string> command = command_of(request, run, seed);
+    for (std::string& word : pictures_of(study_, cell)) command.push_back(std::move(word));
     return {.cell = cell,
-            .command = command_of(request, run, seed),
+            .command = std::move(command),
             .run = run,
             .recording = recording,
             .fingerprint = cell_fingerprint(pipeline_, fingerprint_of(recording), seed),

@@ -84,11 +84,16 @@ class LatexReport {
     return text;
   }
 
-  /// A part of a sequence: its error says less than that of the whole.
-  std::string coverage_note(std::size_t sequence, std::size_t variant) const {
+  /// A part of a sequence, or of the runs: its error says less than that of the whole.
+  std::string partial_note(std::size_t sequence, std::size_t variant) const {
     const auto coverage = results_.spread(sequence, variant, kCoverage);
     const std::string percent = coverage ? fixed(coverage->median, 1) : "100.0";
-    return percent == "100.0" ? "" : " {\\scriptsize [" + percent + "\\,\\%]}";
+    std::string note = percent == "100.0" ? "" : percent + "\\,\\%";
+    const auto error = results_.spread(sequence, variant, kAte);
+    if (error && error->count < static_cast<std::size_t>(study_.repeats))
+      note += (note.empty() ? "" : ", ") + std::to_string(error->count) + " of " +
+              std::to_string(study_.repeats);
+    return note.empty() ? "" : " {\\scriptsize [" + note + "]}";
   }
 
   void add_systems(const std::vector<const Published*>& systems, LatexTable& table) const {
@@ -103,7 +108,8 @@ class LatexReport {
     LatexTable table{.label = label("ate"),
                      .caption = "Absolute trajectory error, RMSE (m)." +
                                 runs_note("Median (smallest--largest)") +
-                                " In brackets: coverage, where it is below 100\\,\\%. Bold: the "
+                                " In brackets: coverage, where it is below 100\\,\\%, and how many "
+                                "runs tracked at all, where not all did. Bold: the "
                                 "smallest of its row, among those that cover the same." +
                                 published_note(systems) + missing_note(),
                      .columns = "l",
@@ -116,7 +122,7 @@ class LatexReport {
       for (std::size_t variant = 0; variant < study_.variants.size(); ++variant)
         row.push_back(latex_spread(results_.spread(sequence, variant, kAte), metrics()[kAte].digits,
                                    best[variant]) +
-                      coverage_note(sequence, variant));
+                      partial_note(sequence, variant));
       for (const Published* system : systems)
         row.push_back(latex_published(*system, original_of(study_.sequences[sequence]), kAte));
       table.rows.push_back(std::move(row));

@@ -26,7 +26,7 @@ void Sequence::visit(OptionVisitor& v) {
   v("set", set, {.help = "changes of the scene, as in [source.seed=2]"});
   v("camera", camera,
     {.help = "a file, or a name from configs/cameras; empty: the recording's own"});
-  v("twin", twin,
+  v("without_motion", without_motion,
     {.help = "sequence that is the same without anything that moves; left out: NAME_empty"});
   v("original", original,
     {.help =
@@ -59,6 +59,11 @@ void Study::visit(OptionVisitor& v) {
     {.min = 0,
      .unit = "s",
      .help = "a run that takes longer is ended and has failed; 0: no limit"});
+  v("pictures", pictures,
+    {.min = 0,
+     .max = 10,
+     .help = "of the worst frames of each variant on each sequence, as in the paper's Fig. 5; the "
+             "first repeat draws them, which takes time"});
   v.choice(
       "mode", mode,
       {{"pipeline", Mode::kPipeline}, {"inline", Mode::kInline}, {"threaded", Mode::kThreaded}},

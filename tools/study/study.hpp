@@ -18,7 +18,7 @@ struct Sequence {
   int frames = 0;                ///< of the scene; 0: as many as it says
   std::vector<std::string> set;  ///< `key.sub=value` for the scene
   std::string camera;            ///< a file, or a name from configs/cameras; empty: the recording's
-  std::string twin;              ///< the sequence without anything that moves; empty: NAME_empty
+  std::string without_motion;    ///< the sequence without anything that moves; empty: NAME_empty
   std::string original;          ///< see original_of
 
   void visit(OptionVisitor& visitor);
@@ -44,6 +44,7 @@ struct Study {
   int seed = 1;             ///< repeat k runs with seed + k
   bool new_noise = false;   ///< scenes are simulated for each repeat
   double time_limit = 0.0;  ///< seconds, of a run; 0: none
+  int pictures = 0;         ///< that the first repeat of each variant keeps of its worst frames
   Mode mode = Mode::kPipeline;
   std::vector<std::string> set;  ///< for all variants
   std::string baseline;          ///< name of a variant; empty: none

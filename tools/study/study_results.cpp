@@ -97,9 +97,10 @@ std::optional<double> dynamic_penalty(const StudyResults& results, std::size_t s
                                       std::size_t variant) {
   const std::vector<Sequence>& sequences = results.study.sequences;
   const Sequence& own = sequences[sequence];
-  const auto twin = index_of(sequences, own.twin.empty() ? own.name + "_empty" : own.twin);
-  if (!twin) return std::nullopt;
-  return ratio(results.spread(sequence, variant, kAte), results.spread(*twin, variant, kAte));
+  const auto empty =
+      index_of(sequences, own.without_motion.empty() ? own.name + "_empty" : own.without_motion);
+  if (!empty) return std::nullopt;
+  return ratio(results.spread(sequence, variant, kAte), results.spread(*empty, variant, kAte));
 }
 
 std::optional<Spread> improvement_percent(const StudyResults& results, std::size_t sequence,

@@ -43,8 +43,8 @@ struct StudyResults {
   std::size_t missing() const;
 };
 
-/// ATE on a sequence ÷ ATE on its twin without anything that moves in the same study, with the same
-/// variant; medians of the repeats. Nothing without such a twin.
+/// ATE on a sequence ÷ ATE on the sequence without anything that moves, in the same study, with the
+/// same variant; medians of the repeats. Nothing without such a sequence.
 std::optional<double> dynamic_penalty(const StudyResults& results, std::size_t sequence,
                                       std::size_t variant);
 

@@ -125,11 +125,11 @@ std::function<PersonPose(double time)> person_motion(const PersonOptions& option
   }
   const auto path = std::make_shared<const WalkingPath>(options.path);
   return [=](double time) {
-    constexpr double kHaste = 0.5;                 // share by which the speed varies
+    constexpr double kSpeedVariation = 0.5;        // share by which the speed varies
     constexpr double kFrequency = 2 * M_PI / 7.0;  // of that variation, rad/s
     const double way =
         options.start +
-        options.speed * (time - kHaste / kFrequency *
+        options.speed * (time - kSpeedVariation / kFrequency *
                                     (std::cos(kFrequency * time + rhythm) - std::cos(rhythm)));
     const double stride = 0.74 * options.height;  // metres, two steps
     const double phase = 2 * M_PI * way / stride;

@@ -33,8 +33,8 @@ SparseMap insert(LocalMapper& mapper, const SparseMap& before, KeyFrame keyframe
 }
 
 SparseMap refine(LocalMapper& mapper, const SparseMap& before, KeyFrameId keyframe,
-                 std::stop_token hurry, bool thorough) {
-  SparseMap map = mapper.refine(before, keyframe, std::move(hurry));
+                 std::stop_token end_early, bool thorough) {
+  SparseMap map = mapper.refine(before, keyframe, std::move(end_early));
   check_refined(map, before);
   if (thorough) check_thoroughly(map);
   return map;
@@ -48,8 +48,8 @@ std::optional<MapCorrection> closure(LoopCloser& closer, const SparseMap& map, K
 }
 
 std::optional<MapCorrection> adjustment(LoopCloser& closer, const SparseMap& map,
-                                        std::stop_token hurry) {
-  auto correction = closer.adjust(map, std::move(hurry));
+                                        std::stop_token end_early) {
+  auto correction = closer.adjust(map, std::move(end_early));
   if (correction) check_correction(*correction, map);
   return correction;
 }
@@ -88,17 +88,17 @@ MappingSystem::MappingSystem(Stage<LocalMapper> local_mapper, Stage<LoopCloser> 
       dense_mapping_(
           map_backend_.present() ? options.mode : Mode::kInline, kDenseWaiting, stop,
           [this](const DenseItem& item) { map_densely(item); }, ThreadPriority::kBackground),
-      hurry_on_stop_(stop.token(), [this] {
+      ends_on_stop_(stop.token(), [this] {
         if (!threaded_) return;
-        mapping_hurry_.request();
-        adjustment_hurry_.request();
+        mapping_end_.request();
+        adjustment_end_.request();
       }) {}
 
 void MappingSystem::push(NewKeyFrame keyframe) {
   const bool first = snapshot()->empty();
   ++next_keyframe_;
   local_mapping_.push(std::move(keyframe));
-  if (waiting()) mapping_hurry_.request();
+  if (waiting()) mapping_end_.request();
   if (first) map_.wait_published(stop_.token());
 }
 
@@ -166,16 +166,16 @@ void MappingSystem::map(NewKeyFrame item) {
   const MapStore::Snapshot before = map_.snapshot();
   map_.publish(local_mapper_.call("map_insert", frame, insert, *before, std::move(item.keyframe),
                                   thorough_));
-  map_.publish(local_mapper_.call(
-      "map_refine", frame, refine, *map_.snapshot(), id,
-      mapping_hurry_.begin(threaded_ && (waiting() || stop_.requested())), thorough_));
+  map_.publish(local_mapper_.call("map_refine", frame, refine, *map_.snapshot(), id,
+                                  mapping_end_.begin(threaded_ && (waiting() || stop_.requested())),
+                                  thorough_));
   const MapStore::Snapshot after = map_.snapshot();
   send_moved(*before, *after);
   if (map_backend_.present() && id < after->keyframe_id_end()) {
     item.images.world_from_camera = after->world_from_keyframe(id);
     dense_mapping_.push(std::make_shared<const DenseKeyFrame>(std::move(item.images)));
   }
-  if (loop_closing_.size() >= kQueriesWaiting / 2) adjustment_hurry_.request();
+  if (loop_closing_.size() >= kQueriesWaiting / 2) adjustment_end_.request();
   // Last: inline, its correction is applied within.
   loop_closing_.push(std::make_shared<const LoopQuery>(LoopQuery{after, id, frame}));
 }
@@ -205,7 +205,7 @@ void MappingSystem::close_loop(const LoopQuery& query) {
 void MappingSystem::adjust(const AdjustRequest& request) {
   correction_pending_ = false;
   auto correction = loop_closer_.call("loop_adjust", request.frame, adjustment, *map_.snapshot(),
-                                      adjustment_hurry_.begin(threaded_ && stop_.requested()));
+                                      adjustment_end_.begin(threaded_ && stop_.requested()));
   if (correction) local_mapping_.push_past_limit(Correction{std::move(*correction), request.frame});
 }
 

@@ -16,8 +16,9 @@ double overlap(const cv::Rect& a, const cv::Rect& b) {
 }  // namespace
 
 void FilterOptions::visit(stillpoint::OptionVisitor& v) {
-  v("rise", rise, {.min = 0.001, .unit = "s", .help = "time constant of votes for moving"});
-  v("fall", fall,
+  v("time_to_moving", time_to_moving,
+    {.min = 0.001, .unit = "s", .help = "time constant of votes for moving"});
+  v("time_to_static", time_to_static,
     {.min = 0.001,
      .unit = "s",
      .help = "of votes for standing still; longer: people who pause go on"});
@@ -35,7 +36,8 @@ const ObjectState& MotionFilter::update(const stillpoint::SegmentedObject& objec
     state = &states_.emplace_back(
         ObjectState{.time = time, .vote = prior, .moves = prior > options_.moves_above});
   const double goal = vote.value_or(prior);
-  const double time_constant = goal > state->vote ? options_.rise : options_.fall;
+  const double time_constant =
+      goal > state->vote ? options_.time_to_moving : options_.time_to_static;
   state->vote += (1 - std::exp((state->time - time) / time_constant)) * (goal - state->vote);
   state->moves = state->vote > (state->moves ? options_.static_below : options_.moves_above);
   state->id = object.id;

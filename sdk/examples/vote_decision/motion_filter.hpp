@@ -9,10 +9,10 @@
 using Vote = std::optional<double>;
 
 struct FilterOptions {
-  double rise = 0.1;          ///< s, time constant
-  double fall = 0.6;          ///< s, likewise; people who pause go on walking
-  double moves_above = 0.6;   ///< of the filtered vote
-  double static_below = 0.3;  ///< likewise; in between, it is as it was
+  double time_to_moving = 0.1;  ///< s, time constant
+  double time_to_static = 0.6;  ///< s, likewise; people who pause go on walking
+  double moves_above = 0.6;     ///< of the filtered vote
+  double static_below = 0.3;    ///< likewise; in between, it is as it was
 
   void visit(stillpoint::OptionVisitor& v);
 };

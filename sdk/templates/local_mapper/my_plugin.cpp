@@ -61,7 +61,7 @@ void MyPlugin::add_landmarks(stillpoint::MapEdit& edit, stillpoint::KeyFrameId i
 }
 
 stillpoint::SparseMap MyPlugin::refine(stillpoint::SparseMap map, stillpoint::KeyFrameId id,
-                                       std::stop_token hurry) {
+                                       std::stop_token end_early) {
   stillpoint::MapEdit edit(std::move(map));
   std::vector<stillpoint::LandmarkId> still_recent;
   for (const stillpoint::LandmarkId candidate : recent_) {
@@ -70,7 +70,7 @@ stillpoint::SparseMap MyPlugin::refine(stillpoint::SparseMap map, stillpoint::Ke
     const bool young = landmark->created_by + static_cast<unsigned>(options_.probation) > id;
     const bool bad = landmark->found < options_.min_found_share * landmark->visible;
     // Another key frame waits: what is not looked at now is looked at next time.
-    if (bad && !hurry.stop_requested())
+    if (bad && !end_early.stop_requested())
       edit.remove_landmark(candidate);
     else if (young || bad)
       still_recent.push_back(candidate);

@@ -30,7 +30,7 @@ class MyPlugin final : public stillpoint::LocalMapper {
 
   stillpoint::SparseMap insert(stillpoint::SparseMap map, stillpoint::KeyFrame keyframe) override;
   stillpoint::SparseMap refine(stillpoint::SparseMap map, stillpoint::KeyFrameId keyframe,
-                               std::stop_token hurry) override;
+                               std::stop_token end_early) override;
 
  private:
   void add_landmarks(stillpoint::MapEdit& edit, stillpoint::KeyFrameId id);

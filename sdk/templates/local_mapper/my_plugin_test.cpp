@@ -51,9 +51,9 @@ TEST(MyPlugin, RemovesLandmarksThatAreNotFoundAgain) {
   second.evidence = {{.landmark = 0, .visible = 9}, {.landmark = 1, .visible = 9, .found = 9}};
   map = mapper.insert(std::move(map), second);
 
-  std::stop_source hurry;
-  hurry.request_stop();
-  map = mapper.refine(std::move(map), 1, hurry.get_token());
+  std::stop_source end_early;
+  end_early.request_stop();
+  map = mapper.refine(std::move(map), 1, end_early.get_token());
   EXPECT_EQ(map.landmark_count(), before);
   map = mapper.refine(std::move(map), 1, {});
   EXPECT_EQ(map.landmark(0), nullptr);

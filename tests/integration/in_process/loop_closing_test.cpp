@@ -30,9 +30,9 @@ class CheckedLoopCloser final : public LoopCloser {
     loops_ += correction.has_value();
     return correction;
   }
-  std::optional<MapCorrection> adjust(const SparseMap& map, std::stop_token hurry) override {
+  std::optional<MapCorrection> adjust(const SparseMap& map, std::stop_token end_early) override {
     check(map);
-    auto correction = closer_->adjust(map, std::move(hurry));
+    auto correction = closer_->adjust(map, std::move(end_early));
     adjustments_ += correction.has_value();
     return correction;
   }

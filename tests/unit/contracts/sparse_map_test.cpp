@@ -78,15 +78,15 @@ TEST(SparseMap, RemovedKeyFrameFollowsItsParent) {
 
 TEST(SparseMap, FusionKeepsEveryObservationOnce) {
   MapEdit edit(make_map());
-  const LandmarkId twin = edit.add_landmark({});
-  edit.add_observation(twin, {2, 25});
-  edit.fuse_landmarks(0, twin);  // landmark 0 was not seen by key frame 2
+  const LandmarkId duplicate = edit.add_landmark({});
+  edit.add_observation(duplicate, {2, 25});
+  edit.fuse_landmarks(0, duplicate);  // landmark 0 was not seen by key frame 2
   EXPECT_EQ(edit.map().landmark(0)->observations.size(), 3u);
   edit.fuse_landmarks(0, 15);  // both were seen by all three
   EXPECT_EQ(edit.map().landmark(0)->observations.size(), 3u);
   const SparseMap map = std::move(edit).finish();
   EXPECT_EQ(map.check(), std::nullopt);
-  EXPECT_EQ(map.current_id(twin), 0u);
+  EXPECT_EQ(map.current_id(duplicate), 0u);
   EXPECT_EQ(map.current_id(15), 0u);
   EXPECT_EQ(map.current_id(kNoId), kNoId);
 }
@@ -100,7 +100,7 @@ TEST(SparseMap, LastObservationTakesTheLandmarkAlong) {
   EXPECT_EQ(edit.map().check(), std::nullopt);
 }
 
-// Errors, where plugins written in haste would read out of bounds.
+// Errors, where plugins written carelessly would read out of bounds.
 TEST(MapEdit, NamesWhatIsNotThere) {
   const auto message = [](const std::function<void(MapEdit&)>& change) -> std::string {
     MapEdit edit(make_map());

@@ -18,7 +18,7 @@
 namespace stillpoint::testing {
 
 /// What was called, in order; of all threads. Calls can be made to fail.
-class Journal {
+class CallLog {
  public:
   void write(const std::string& call, std::uint32_t frame) {
     std::string entry = call;
@@ -73,56 +73,56 @@ inline Frame make_frame(std::uint32_t index) {
 
 class FakeSource final : public Source {
  public:
-  FakeSource(Journal& journal, std::uint32_t frames) : journal_(journal), frames_(frames) {}
+  FakeSource(CallLog& calls, std::uint32_t frames) : calls_(calls), frames_(frames) {}
   std::optional<Frame> next() override {
     if (next_ == frames_) return std::nullopt;
-    journal_.write("source", next_);
+    calls_.write("source", next_);
     return make_frame(next_++);
   }
   std::optional<std::size_t> size() const override { return frames_; }
   SourceReport report() const override { return {.skipped = 2, .warnings = {"two were bad"}}; }
 
  private:
-  Journal& journal_;
+  CallLog& calls_;
   std::uint32_t frames_;
   std::uint32_t next_ = 0;
 };
 
 class FakeSegmenter final : public Segmenter {
  public:
-  explicit FakeSegmenter(Journal& journal) : journal_(journal) {}
+  explicit FakeSegmenter(CallLog& calls) : calls_(calls) {}
   ClassNames classes() const override { return named_classes("voc21"); }
   Segmentation segment(const Frame& frame) override {
-    journal_.write("segment", frame.index);
+    calls_.write("segment", frame.index);
     return {.labels = cv::Mat::zeros(1, 1, CV_8UC1), .frame = frame.index};
   }
 
  private:
-  Journal& journal_;
+  CallLog& calls_;
 };
 
 class FakePropagator final : public Propagator {
  public:
-  explicit FakePropagator(Journal& journal) : journal_(journal) {}
+  explicit FakePropagator(CallLog& calls) : calls_(calls) {}
   Segmentation propagate(const Segmentation& segmentation, const Frame& from,
                          const Frame& to) override {
     if (segmentation.frame != from.index) throw std::logic_error("labels of another frame");
-    journal_.write(std::string("propagate ").append(std::to_string(from.index)), to.index);
+    calls_.write(std::string("propagate ").append(std::to_string(from.index)), to.index);
     Segmentation moved = segmentation;
     moved.frame = to.index;
     return moved;
   }
 
  private:
-  Journal& journal_;
+  CallLog& calls_;
 };
 
 class FakeChecker final : public MovingChecker {
  public:
-  explicit FakeChecker(Journal& journal) : journal_(journal) {}
+  explicit FakeChecker(CallLog& calls) : calls_(calls) {}
   MovingPoints check(const Frame& previous, const Frame& current,
                      const TrackingHistory& known) override {
-    journal_.write(std::string("check ").append(std::to_string(previous.index)), current.index);
+    calls_.write(std::string("check ").append(std::to_string(previous.index)), current.index);
     history = known;
     return {.reliable = true};
   }
@@ -132,53 +132,53 @@ class FakeChecker final : public MovingChecker {
   TrackingHistory history;  // of the last call
 
  private:
-  Journal& journal_;
+  CallLog& calls_;
 };
 
 /// Says how many guesses it was given: as log-odds of a single cell.
 class FakeMapChecker final : public MapChecker {
  public:
-  explicit FakeMapChecker(Journal& journal) : journal_(journal) {}
+  explicit FakeMapChecker(CallLog& calls) : calls_(calls) {}
   MapEvidence check(const Frame& frame, std::span<const Pose> guesses, const SparseMap&) override {
-    journal_.write("compare", frame.index);
+    calls_.write("compare", frame.index);
     for (const Pose& guess : guesses) last_guesses.push_back(guess.translation().x());
     return {cv::Mat(1, 1, CV_32FC1, cv::Scalar(static_cast<double>(guesses.size())))};
   }
   void remember(const TrackedFrame& frame) override {
-    journal_.write("remember", frame.frame->index);
+    calls_.write("remember", frame.frame->index);
   }
   std::vector<double> last_guesses;  // metres along x, of all calls
 
  private:
-  Journal& journal_;
+  CallLog& calls_;
 };
 
 class FakeDecision final : public Decision {
  public:
-  explicit FakeDecision(Journal& journal) : journal_(journal) {}
+  explicit FakeDecision(CallLog& calls) : calls_(calls) {}
   StaticWeights decide(const Frame& frame, const Segmentation& segmentation, const MovingPoints&,
                        const MapEvidence&) override {
-    journal_.write("decide", frame.index);
+    calls_.write("decide", frame.index);
     return {.object_moves = std::vector<bool>(segmentation.objects.size(), true)};
   }
 
  private:
-  Journal& journal_;
+  CallLog& calls_;
 };
 
 /// Moves one metre along x per frame; every `spacing`-th frame is a key frame.
 class FakeTracker final : public Tracker {
  public:
-  explicit FakeTracker(Journal& journal, std::uint32_t spacing = 2)
-      : journal_(journal), spacing_(spacing) {}
+  explicit FakeTracker(CallLog& calls, std::uint32_t spacing = 2)
+      : calls_(calls), spacing_(spacing) {}
   PreparedFramePtr prepare(FramePtr frame) override {
-    journal_.write("prepare", frame->index);
+    calls_.write("prepare", frame->index);
     return std::make_unique<PreparedFrame>(std::move(frame));
   }
   TrackResult track(PreparedFramePtr prepared, const StaticWeights&, const SparseMap& map,
                     TrackHints hints) override {
     const FramePtr& frame = prepared->frame;
-    journal_.write("track", frame->index);
+    calls_.write("track", frame->index);
     if (hints.next_keyframe > 0 && map.empty())
       throw std::logic_error("the first key frame is not there");
     TrackResult result{.state = TrackState::kTracking};
@@ -198,39 +198,38 @@ class FakeTracker final : public Tracker {
   }
 
  private:
-  Journal& journal_;
+  CallLog& calls_;
   std::uint32_t spacing_;
   KeyFrame reference_;
 };
 
 class FakeMapper final : public LocalMapper {
  public:
-  explicit FakeMapper(Journal& journal)
-      : journal_(journal), insertion_(make_null_stage<LocalMapper>()) {}
+  explicit FakeMapper(CallLog& calls) : calls_(calls), insertion_(make_null_stage<LocalMapper>()) {}
   SparseMap insert(SparseMap map, KeyFrame keyframe) override {
-    journal_.write("insert", keyframe.frame);
+    calls_.write("insert", keyframe.frame);
     return insertion_->insert(std::move(map), std::move(keyframe));
   }
-  SparseMap refine(SparseMap map, KeyFrameId id, std::stop_token hurry) override {
-    journal_.write("refine", map.keyframe(id)->frame);
-    if (while_refining) while_refining(id, hurry);
+  SparseMap refine(SparseMap map, KeyFrameId id, std::stop_token end_early) override {
+    calls_.write("refine", map.keyframe(id)->frame);
+    if (while_refining) while_refining(id, end_early);
     return map;
   }
 
   std::function<void(KeyFrameId, std::stop_token)> while_refining;
 
  private:
-  Journal& journal_;
+  CallLog& calls_;
   std::shared_ptr<LocalMapper> insertion_;
 };
 
 /// Closes a loop at every key frame: everything moves one metre along y.
 class FakeCloser final : public LoopCloser {
  public:
-  explicit FakeCloser(Journal& journal) : journal_(journal) {}
+  explicit FakeCloser(CallLog& calls) : calls_(calls) {}
   std::optional<MapCorrection> close(const SparseMap& map, KeyFrameId latest,
                                      std::stop_token) override {
-    journal_.write("close", map.keyframe(latest)->frame);
+    calls_.write("close", map.keyframe(latest)->frame);
     MapCorrection correction{.keyframe_id_end = static_cast<KeyFrameId>(map.keyframe_id_end())};
     for (KeyFrameId id = 0; id < map.keyframe_id_end(); ++id)
       correction.moved.push_back(
@@ -238,20 +237,20 @@ class FakeCloser final : public LoopCloser {
     return correction;
   }
   std::optional<MapCorrection> adjust(const SparseMap& map, std::stop_token) override {
-    journal_.write("adjust", map.keyframe(0)->frame);
+    calls_.write("adjust", map.keyframe(0)->frame);
     return std::nullopt;
   }
 
  private:
-  Journal& journal_;
+  CallLog& calls_;
 };
 
 /// Knows where each key frame is.
 class FakeBackend final : public MapBackend {
  public:
-  explicit FakeBackend(Journal& journal) : journal_(journal) {}
+  explicit FakeBackend(CallLog& calls) : calls_(calls) {}
   void integrate(const DenseKeyFrame& keyframe) override {
-    journal_.write("integrate", keyframe.frame->index);
+    calls_.write("integrate", keyframe.frame->index);
     if (while_integrating) while_integrating();
     if (!keyframe.segmentation || !keyframe.weights) throw std::logic_error("incomplete");
     poses[keyframe.id] = keyframe.world_from_camera;
@@ -260,7 +259,7 @@ class FakeBackend final : public MapBackend {
     for (const MovedKeyFrame& m : moved)
       if (poses.contains(m.keyframe)) poses[m.keyframe] = m.world_from_camera;
   }
-  void save(const std::filesystem::path&) override { journal_.write("save", 0); }
+  void save(const std::filesystem::path&) override { calls_.write("save", 0); }
   std::vector<LabelledPoint> occupied() const override {
     if (fails_once.exchange(false)) throw std::logic_error("a broken cell");
     return std::vector<LabelledPoint>(poses.size());
@@ -271,16 +270,16 @@ class FakeBackend final : public MapBackend {
   std::function<void()> while_integrating;
 
  private:
-  Journal& journal_;
+  CallLog& calls_;
 };
 
 class FakeOutput final : public Output {
  public:
-  explicit FakeOutput(Journal& journal) : journal_(journal) {}
+  explicit FakeOutput(CallLog& calls) : calls_(calls) {}
   bool may_miss_frames() const override { return is_viewer; }
   void frame(const FrameReport& report) override {
     for (const StageTime& time : report.times) times.push_back(time);
-    journal_.write("output", report.frame->index);
+    calls_.write("output", report.frame->index);
   }
   void finish(const RunSummary& summary) override {
     for (const StageTime& time : summary.times) times.push_back(time);
@@ -294,7 +293,7 @@ class FakeOutput final : public Output {
     map_directory = summary.map_directory;
     dense_points = summary.dense_map().size();
     ++finished;
-    journal_.write("finish", 0);
+    calls_.write("finish", 0);
   }
 
   bool is_viewer = false;
@@ -311,7 +310,7 @@ class FakeOutput final : public Output {
   int finished = 0;
 
  private:
-  Journal& journal_;
+  CallLog& calls_;
 };
 
 }  // namespace stillpoint::testing

@@ -56,7 +56,7 @@ INSTANTIATE_TEST_SUITE_P(
 TEST_P(EngineFailure, IsNamedAndWhatWasComputedIsSaved) {
   const auto& [mode, failure] = GetParam();
   EngineFixture f(200);
-  f.journal.failing = failure.entry;
+  f.calls.failing = failure.entry;
   Engine engine(f.stages(), runtime(mode), {});
   try {
     engine.run();
@@ -124,7 +124,7 @@ TEST_P(FaultOfAStage, FramesWithoutDepthAreTheSourcesFault) {
 /// Right for three frames, then without a pose.
 class TrackerThatDiverges final : public Tracker {
  public:
-  explicit TrackerThatDiverges(testing::Journal& journal) : tracker_(journal) {}
+  explicit TrackerThatDiverges(testing::CallLog& calls) : tracker_(calls) {}
   PreparedFramePtr prepare(FramePtr frame) override { return tracker_.prepare(std::move(frame)); }
   TrackResult track(PreparedFramePtr prepared, const StaticWeights& weights, const SparseMap& map,
                     TrackHints hints) override {
@@ -160,7 +160,7 @@ TEST_P(FaultOfAStage, WrongResultsEndTheRunWithTheStageThatGaveThem) {
   };
   EngineFixture diverging;
   Stages stages = diverging.stages();
-  stages.tracker = {std::make_shared<TrackerThatDiverges>(diverging.journal), "mine"};
+  stages.tracker = {std::make_shared<TrackerThatDiverges>(diverging.calls), "mine"};
   EXPECT_EQ(
       message(diverging, std::move(stages)),
       "tracking (mine) failed on frame 3: the pose is no rigid motion; it must be finite, with "

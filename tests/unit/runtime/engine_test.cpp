@@ -10,8 +10,8 @@
 namespace stillpoint {
 namespace {
 
+using testing::CallLog;
 using testing::EngineFixture;
-using testing::Journal;
 using testing::runtime;
 using Strings = std::vector<std::string>;
 
@@ -24,13 +24,12 @@ INSTANTIATE_TEST_SUITE_P(Modes, EngineInBothModes,
 TEST(Engine, InlineCallsTheBoxesInTheOrderOfThePaper) {
   EngineFixture f(2);
   Engine(f.stages(), runtime(Mode::kInline), {}).run();
-  EXPECT_EQ(f.journal.entries(),
-            (Strings{"source 0",      "segment 0", "prepare 0", "propagate 0 0",
-                     "decide 0",      "track 0",   "insert 0",  "refine 0",
-                     "integrate 0",   "close 0",   "adjust 0",  "output 0",  //
-                     "source 1",      "segment 1", "prepare 1", "check 0 1",
-                     "propagate 1 1", "decide 1",  "track 1",   "output 1",  //
-                     "save 0",        "finish 0"}));
+  EXPECT_EQ(f.calls.entries(), (Strings{"source 0",      "segment 0", "prepare 0", "propagate 0 0",
+                                        "decide 0",      "track 0",   "insert 0",  "refine 0",
+                                        "integrate 0",   "close 0",   "adjust 0",  "output 0",  //
+                                        "source 1",      "segment 1", "prepare 1", "check 0 1",
+                                        "propagate 1 1", "decide 1",  "track 1",   "output 1",  //
+                                        "save 0",        "finish 0"}));
 }
 
 TEST_P(EngineInBothModes, EveryFrameGoesThroughEveryBox) {
@@ -38,12 +37,12 @@ TEST_P(EngineInBothModes, EveryFrameGoesThroughEveryBox) {
   Engine(f.stages(), runtime(GetParam()), {}).run();
   for (const char* call :
        {"source", "segment", "prepare", "propagate", "decide", "track", "output"})
-    EXPECT_EQ(f.journal.entries(call).size(), 40u) << call;
-  EXPECT_EQ(f.journal.entries("check").size(), 39u);
+    EXPECT_EQ(f.calls.entries(call).size(), 40u) << call;
+  EXPECT_EQ(f.calls.entries("check").size(), 39u);
   for (const char* call : {"insert", "refine", "integrate"})
-    EXPECT_EQ(f.journal.entries(call).size(), 20u) << call;
+    EXPECT_EQ(f.calls.entries(call).size(), 20u) << call;
   // Threaded, no loop is looked for until the map shows the last one.
-  const std::size_t closed = f.journal.entries("close").size();
+  const std::size_t closed = f.calls.entries("close").size();
   EXPECT_TRUE(GetParam() == Mode::kInline ? closed == 20 : closed >= 1 && closed <= 20) << closed;
   EXPECT_EQ(f.output->finished, 1);
   EXPECT_TRUE(f.output->complete);
@@ -66,12 +65,12 @@ TEST_P(EngineInBothModes, WithoutADenseMapOutputsSeeNone) {
 
 TEST(Engine, ThreadedTheMovingCheckRunsBesideTheExtractionOfFeatures) {
   EngineFixture f(3);
-  f.journal.hook = [&](const std::string& entry) {
-    if (entry == "prepare 1") f.journal.wait_for("propagate 1 1");
-    if (entry == "check 1 2") f.journal.wait_for("prepare 2");
+  f.calls.hook = [&](const std::string& entry) {
+    if (entry == "prepare 1") f.calls.wait_for("propagate 1 1");
+    if (entry == "check 1 2") f.calls.wait_for("prepare 2");
   };
   Engine(f.stages(), runtime(Mode::kThreaded), {}).run();
-  EXPECT_EQ(f.journal.entries("track"), (Strings{"track 0", "track 1", "track 2"}));
+  EXPECT_EQ(f.calls.entries("track"), (Strings{"track 0", "track 1", "track 2"}));
 }
 
 class SlowOutput : public ::testing::TestWithParam<WhenFull> {};
@@ -82,16 +81,16 @@ INSTANTIATE_TEST_SUITE_P(Engine, SlowOutput, ::testing::Values(WhenFull::kAuto, 
 
 TEST_P(SlowOutput, DelaysNothing) {
   EngineFixture f(60);
-  Journal of_viewer;
+  CallLog of_viewer;
   of_viewer.hook = [&](const std::string& entry) {
-    if (entry == "output 0") f.journal.wait_for("output 59");
+    if (entry == "output 0") f.calls.wait_for("output 59");
   };
   Stages stages = f.stages();
   const auto viewer = std::make_shared<testing::FakeOutput>(of_viewer);
   viewer->is_viewer = GetParam() == WhenFull::kAuto;
   stages.outputs.push_back({{viewer, "viewer"}, GetParam()});
   Engine(std::move(stages), runtime(Mode::kThreaded), {}).run();
-  EXPECT_EQ(f.journal.entries("output").size(), 60u);
+  EXPECT_EQ(f.calls.entries("output").size(), 60u);
   EXPECT_GT(viewer->dropped_reports, 0);
   EXPECT_EQ(of_viewer.entries("output").size() + static_cast<std::size_t>(viewer->dropped_reports),
             60u);
@@ -116,12 +115,12 @@ TEST_P(EngineInBothModes, CorrectionsReachTheMapsAlsoAtTheEnd) {
 /// Removes the key frame before the one that it refines around.
 class RemovingMapper final : public LocalMapper {
  public:
-  explicit RemovingMapper(Journal& journal) : mapper_(journal) {}
+  explicit RemovingMapper(CallLog& calls) : mapper_(calls) {}
   SparseMap insert(SparseMap map, KeyFrame keyframe) override {
     return mapper_.insert(std::move(map), std::move(keyframe));
   }
-  SparseMap refine(SparseMap map, KeyFrameId id, std::stop_token hurry) override {
-    MapEdit edit(mapper_.refine(std::move(map), id, std::move(hurry)));
+  SparseMap refine(SparseMap map, KeyFrameId id, std::stop_token end_early) override {
+    MapEdit edit(mapper_.refine(std::move(map), id, std::move(end_early)));
     if (id >= 2) edit.remove_keyframe(id - 1);
     return edit.map();
   }
@@ -133,27 +132,27 @@ class RemovingMapper final : public LocalMapper {
 /// Looks for loops late, and finds none.
 class LateCloser final : public LoopCloser {
  public:
-  explicit LateCloser(Journal& journal) : journal_(journal) {}
+  explicit LateCloser(CallLog& calls) : calls_(calls) {}
   std::optional<MapCorrection> close(const SparseMap& map, KeyFrameId latest,
                                      std::stop_token) override {
-    journal_.wait_for("refine 10");
+    calls_.wait_for("refine 10");
     EXPECT_TRUE(map.keyframe(latest)) << latest;
     EXPECT_EQ(map.keyframe_id_end(), latest + 1) << "the map as it was";
-    journal_.write("close", latest);
+    calls_.write("close", latest);
     return std::nullopt;
   }
 
  private:
-  Journal& journal_;
+  CallLog& calls_;
 };
 
 TEST(Engine, ALoopIsLookedForInTheMapAsItWasWhenTheKeyFrameCame) {
   EngineFixture f(12);
   Stages stages = f.stages();
-  stages.local_mapper = {std::make_shared<RemovingMapper>(f.journal), "orb"};
-  stages.loop_closer = {std::make_shared<LateCloser>(f.journal), "bits"};
+  stages.local_mapper = {std::make_shared<RemovingMapper>(f.calls), "orb"};
+  stages.loop_closer = {std::make_shared<LateCloser>(f.calls), "bits"};
   Engine(std::move(stages), runtime(Mode::kThreaded), {}).run();
-  EXPECT_EQ(f.journal.entries("close").size(), 6u);
+  EXPECT_EQ(f.calls.entries("close").size(), 6u);
 }
 
 TEST_P(EngineInBothModes, AllTimesAreReportedOnceAndNameTheirFrame) {
@@ -202,7 +201,7 @@ TEST_P(EngineInBothModes, AStopFromAnotherThreadEndsTheRun) {
   EngineFixture f(1'000'000'000);
   std::stop_source stop;
   std::jthread stopper([&] {
-    f.journal.wait_for("output 5");
+    f.calls.wait_for("output 5");
     stop.request_stop();
   });
   Engine(f.stages(), runtime(GetParam()), {}).run(stop.get_token());
@@ -223,14 +222,14 @@ TEST_P(EngineInBothModes, AStopBeforeTheRunProcessesNothing) {
 
 TEST(Engine, ARefinementIsHurriedWhenAnotherKeyFrameWaits) {
   EngineFixture f(5);
-  f.mapper->while_refining = [&](KeyFrameId id, std::stop_token hurry) {
+  f.mapper->while_refining = [&](KeyFrameId id, std::stop_token end_early) {
     if (id > 0) return;
-    f.journal.wait_for("track 2");  // a key frame, pushed while this one is being refined
+    f.calls.wait_for("track 2");  // a key frame, pushed while this one is being refined
     std::mutex mutex;
     std::condition_variable_any changed;
     std::unique_lock lock(mutex);
-    changed.wait(lock, hurry, [] { return false; });
-    EXPECT_TRUE(hurry.stop_requested());
+    changed.wait(lock, end_early, [] { return false; });
+    EXPECT_TRUE(end_early.stop_requested());
   };
   Engine(f.stages(), runtime(Mode::kThreaded), {}).run();
   EXPECT_EQ(f.output->map.keyframe_count(), 3u);
@@ -239,9 +238,9 @@ TEST(Engine, ARefinementIsHurriedWhenAnotherKeyFrameWaits) {
 TEST(Engine, AStopHurriesTheRefinementUnderWay) {
   EngineFixture f(1);
   std::stop_source stop;
-  f.mapper->while_refining = [&](KeyFrameId, std::stop_token hurry) {
+  f.mapper->while_refining = [&](KeyFrameId, std::stop_token end_early) {
     stop.request_stop();
-    EXPECT_TRUE(hurry.stop_requested());
+    EXPECT_TRUE(end_early.stop_requested());
   };
   Engine(f.stages(), runtime(Mode::kThreaded), {}).run(stop.get_token());
   EXPECT_EQ(f.output->map.keyframe_count(), 1u);
@@ -249,8 +248,8 @@ TEST(Engine, AStopHurriesTheRefinementUnderWay) {
 
 TEST(Engine, InlineNeverHurries) {
   EngineFixture f(9);
-  f.mapper->while_refining = [](KeyFrameId, std::stop_token hurry) {
-    EXPECT_FALSE(hurry.stop_requested());
+  f.mapper->while_refining = [](KeyFrameId, std::stop_token end_early) {
+    EXPECT_FALSE(end_early.stop_requested());
   };
   Engine(f.stages(), runtime(Mode::kInline), {}).run();
 }

@@ -58,19 +58,19 @@ INSTANTIATE_TEST_SUITE_P(Modes, LiveRunTest, ::testing::Values(Mode::kInline, Mo
 TEST_P(LiveRunTest, PausedItTracksOneFrameForEachStep) {
   steering->pauses = true;
   std::thread viewer([&] {
-    fixture.journal.wait_for("source 0");  // after begin()
+    fixture.calls.wait_for("source 0");  // after begin()
     for (std::uint32_t frame = 0; frame < 2; ++frame) {
-      fixture.journal.write("step", frame);
+      fixture.calls.write("step", frame);
       steering->run->step();
-      fixture.journal.wait_for("output " + std::to_string(frame));
+      fixture.calls.wait_for("output " + std::to_string(frame));
     }
-    fixture.journal.write("go on", 2);
+    fixture.calls.write("go on", 2);
     steering->pause.reset();
   });
   engine().run();
   viewer.join();
   Strings steps;
-  for (const std::string& entry : fixture.journal.entries())
+  for (const std::string& entry : fixture.calls.entries())
     if (entry.starts_with("track ") || entry.starts_with("step ") || entry.starts_with("go on "))
       steps.push_back(entry);
   EXPECT_EQ(steps,
@@ -85,15 +85,15 @@ TEST_P(LiveRunTest, GoesOnWhenTheLastPauseIsGone) {
     another.reset();
   };
   std::thread viewer([&] {
-    fixture.journal.wait_for("source 0");
-    fixture.journal.write("go on", 0);
+    fixture.calls.wait_for("source 0");
+    fixture.calls.write("go on", 0);
     steering->pause.reset();
   });
   engine().run();
   viewer.join();
-  const Strings entries = fixture.journal.entries();
+  const Strings entries = fixture.calls.entries();
   EXPECT_LT(std::ranges::find(entries, "go on 0"), std::ranges::find(entries, "track 0"));
-  EXPECT_EQ(fixture.journal.entries("track").size(), 4u);
+  EXPECT_EQ(fixture.calls.entries("track").size(), 4u);
 }
 
 TEST_P(LiveRunTest, AStepWithoutAPauseIsNoneLater) {
@@ -106,19 +106,19 @@ TEST_P(LiveRunTest, AStepWithoutAPauseIsNoneLater) {
   };
   std::stop_source stop;
   std::thread viewer([&] {
-    fixture.journal.wait_for("source 0");
+    fixture.calls.wait_for("source 0");
     stop.request_stop();
   });
   engine().run(stop.get_token());
   viewer.join();
-  EXPECT_THAT(fixture.journal.entries("track"), ::testing::IsEmpty());
+  EXPECT_THAT(fixture.calls.entries("track"), ::testing::IsEmpty());
 }
 
 TEST_P(LiveRunTest, StopsAsAfterCtrlCAndAlsoWhenPaused) {
   steering->pauses = true;
   steering->on_begin = [this] { steering->run->stop(); };
   engine().run();
-  EXPECT_THAT(fixture.journal.entries("track"), ::testing::IsEmpty());
+  EXPECT_THAT(fixture.calls.entries("track"), ::testing::IsEmpty());
   EXPECT_FALSE(fixture.output->complete);
   EXPECT_EQ(fixture.output->failure, "");
   EXPECT_EQ(fixture.output->finished, 1);
@@ -150,7 +150,7 @@ TEST_P(LiveRunTest, ADenseMapThatCannotBeReadEndsTheRun) {
   }
   EXPECT_TRUE(told);
   EXPECT_EQ(fixture.output->finished, 1);
-  EXPECT_THAT(fixture.journal.entries("save"), ::testing::SizeIs(1));
+  EXPECT_THAT(fixture.calls.entries("save"), ::testing::SizeIs(1));
 }
 
 TEST_P(LiveRunTest, SavesTheDenseMapAtTheLatestWhenNoKeyFrameIsBeingMapped) {
@@ -162,7 +162,7 @@ TEST_P(LiveRunTest, SavesTheDenseMapAtTheLatestWhenNoKeyFrameIsBeingMapped) {
   engine().run();
   EXPECT_TRUE(saved);
   EXPECT_TRUE(fs::is_directory(dense));
-  EXPECT_THAT(fixture.journal.entries("save"), ::testing::SizeIs(2));  // and at the end
+  EXPECT_THAT(fixture.calls.entries("save"), ::testing::SizeIs(2));  // and at the end
 }
 
 TEST_P(LiveRunTest, SavesNoDenseMapBeforeThereIsOneOrWhileAKeyFrameIsBeingMapped) {

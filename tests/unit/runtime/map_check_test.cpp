@@ -7,15 +7,15 @@
 namespace stillpoint {
 namespace {
 
-using testing::Journal;
+using testing::CallLog;
 using Strings = std::vector<std::string>;
 
 struct MapCheckFixture {
-  Journal journal;
+  CallLog calls;
   TimeLog times;
   SparseMap map;
   std::shared_ptr<testing::FakeMapChecker> checker =
-      std::make_shared<testing::FakeMapChecker>(journal);
+      std::make_shared<testing::FakeMapChecker>(calls);
   MapCheck check{{checker, "depth"}, RuntimeOptions(), times};
 
   MapEvidence at(std::uint32_t index) {
@@ -38,8 +38,8 @@ TEST(MapCheck, ComparesWhereTheCameraMayBe) {
     EXPECT_EQ(f.at(i).log_odds.empty(), i == 0) << "nothing was tracked before";
     f.tracked();
   }
-  EXPECT_EQ(f.journal.entries("compare"), (Strings{"compare 1", "compare 2"}));
-  EXPECT_EQ(f.journal.entries("remember"), (Strings{"remember 0", "remember 1"}));
+  EXPECT_EQ(f.calls.entries("compare"), (Strings{"compare 1", "compare 2"}));
+  EXPECT_EQ(f.calls.entries("remember"), (Strings{"remember 0", "remember 1"}));
   // With the velocity of before, and without motion.
   ASSERT_EQ(f.checker->last_guesses.size(), 4u);
   const std::vector<double> expected = {0.0, 0.0, 2.0, 1.0};
@@ -54,12 +54,12 @@ TEST(MapCheck, ALostCameraIsComparedWithNothing) {
   f.at(1);
   f.check.tracked(std::nullopt, f.map);
   EXPECT_TRUE(f.at(2).log_odds.empty());
-  EXPECT_EQ(f.journal.entries("remember"), (Strings{"remember 0"}));
+  EXPECT_EQ(f.calls.entries("remember"), (Strings{"remember 0"}));
 }
 
 TEST(MapCheck, AFailureIsNamed) {
   MapCheckFixture f;
-  f.journal.failing = "compare 1";
+  f.calls.failing = "compare 1";
   f.at(0);
   f.tracked();
   try {

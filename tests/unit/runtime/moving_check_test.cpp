@@ -7,7 +7,7 @@
 namespace stillpoint {
 namespace {
 
-using testing::Journal;
+using testing::CallLog;
 using Strings = std::vector<std::string>;
 
 MovingPoints check(MovingCheck& stage, std::uint32_t index) {
@@ -15,12 +15,11 @@ MovingPoints check(MovingCheck& stage, std::uint32_t index) {
 }
 
 TEST(MovingCheck, ComparesEachFrameWithTheOneBefore) {
-  Journal journal;
+  CallLog calls;
   TimeLog times;
-  MovingCheck stage({std::make_shared<testing::FakeChecker>(journal), "lk"}, RuntimeOptions(),
-                    times);
+  MovingCheck stage({std::make_shared<testing::FakeChecker>(calls), "lk"}, RuntimeOptions(), times);
   for (std::uint32_t i = 0; i < 3; ++i) EXPECT_EQ(check(stage, i).reliable, i > 0);
-  EXPECT_EQ(journal.entries("check"), (Strings{"check 0 1", "check 1 2"}));
+  EXPECT_EQ(calls.entries("check"), (Strings{"check 0 1", "check 1 2"}));
   EXPECT_EQ(times.take().size(), 2u);
 }
 
@@ -36,9 +35,9 @@ DenseKeyFrame make_keyframe(KeyFrameId id) {
 }
 
 TEST(MovingCheck, ShowsWhatWasTrackedAtThePosesOfTheMap) {
-  Journal journal;
+  CallLog calls;
   TimeLog times;
-  const auto checker = std::make_shared<testing::FakeChecker>(journal);
+  const auto checker = std::make_shared<testing::FakeChecker>(calls);
   checker->wanted = 2;
   MovingCheck stage({checker, "lk"}, RuntimeOptions(), times);
   check(stage, 0);
@@ -71,11 +70,10 @@ TEST(MovingCheck, ShowsWhatWasTrackedAtThePosesOfTheMap) {
 }
 
 TEST(MovingCheck, AFailureIsNamed) {
-  Journal journal;
+  CallLog calls;
   TimeLog times;
-  journal.failing = "check 0 1";
-  MovingCheck stage({std::make_shared<testing::FakeChecker>(journal), "lk"}, RuntimeOptions(),
-                    times);
+  calls.failing = "check 0 1";
+  MovingCheck stage({std::make_shared<testing::FakeChecker>(calls), "lk"}, RuntimeOptions(), times);
   check(stage, 0);
   try {
     check(stage, 1);

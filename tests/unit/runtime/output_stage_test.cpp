@@ -9,16 +9,16 @@
 namespace stillpoint {
 namespace {
 
-using testing::Journal;
+using testing::CallLog;
 using Strings = std::vector<std::string>;
 
 constexpr std::uint32_t kMany = 100;  // more than wait in the queue
 
 struct OutputFixture {
-  Journal journal;
+  CallLog calls;
   StopSignal stop;
   TimeLog times;
-  std::shared_ptr<testing::FakeOutput> output = std::make_shared<testing::FakeOutput>(journal);
+  std::shared_ptr<testing::FakeOutput> output = std::make_shared<testing::FakeOutput>(calls);
 
   std::unique_ptr<OutputStage> make(Mode mode, WhenFull when_full = WhenFull::kWait) {
     return std::make_unique<OutputStage>(std::vector<Stage<Output>>{{output, "viewer"}}, when_full,
@@ -28,7 +28,7 @@ struct OutputFixture {
     return std::make_shared<const FrameReport>(
         FrameReport{.frame = std::make_shared<const Frame>(testing::make_frame(index))});
   }
-  std::size_t written() { return journal.entries("output").size(); }
+  std::size_t written() { return calls.entries("output").size(); }
 };
 
 class OutputStageInBothModes : public ::testing::TestWithParam<Mode> {};
@@ -46,7 +46,7 @@ TEST_P(OutputStageInBothModes, GetsEveryFrameInOrderAndIsMeasured) {
     expected.push_back("output " + std::to_string(i));
   }
   stage->end();
-  EXPECT_EQ(f.journal.entries("output"), expected);
+  EXPECT_EQ(f.calls.entries("output"), expected);
   EXPECT_EQ(stage->dropped(), 0);
   const std::vector<StageTime> times = f.times.take();
   ASSERT_EQ(times.size(), kMany);
@@ -56,7 +56,7 @@ TEST_P(OutputStageInBothModes, GetsEveryFrameInOrderAndIsMeasured) {
 
 TEST_P(OutputStageInBothModes, AFailureIsNamedAndEndsTheRun) {
   OutputFixture f;
-  f.journal.failing = "output 1";
+  f.calls.failing = "output 1";
   const auto stage = f.make(GetParam());
   const auto write_all = [&] {
     for (std::uint32_t i = 0; i < kMany; ++i) stage->frame(f.report(i));
@@ -75,7 +75,7 @@ TEST_P(OutputStageInBothModes, AFailureIsNamedAndEndsTheRun) {
 // The output blocks on its first frame until it is released.
 struct BlockedOutput : OutputFixture {
   BlockedOutput() {
-    journal.hook = [this](const std::string& entry) {
+    calls.hook = [this](const std::string& entry) {
       if (entry == "output 0") release.wait();
     };
   }
@@ -86,13 +86,13 @@ TEST(OutputStage, ASlowOneMissesFramesWhereItMay) {
   BlockedOutput f;
   const auto stage = f.make(Mode::kThreaded, WhenFull::kDrop);
   stage->frame(f.report(0));
-  f.journal.wait_for("output 0");
+  f.calls.wait_for("output 0");
   for (std::uint32_t i = 1; i < kMany; ++i) stage->frame(f.report(i));  // would wait for ever
   f.release.count_down();
   stage->end();
   EXPECT_GT(stage->dropped(), 0);
   EXPECT_EQ(f.written() + static_cast<std::size_t>(stage->dropped()), kMany);
-  EXPECT_TRUE(f.journal.contains("output 99")) << "the newest are kept";
+  EXPECT_TRUE(f.calls.contains("output 99")) << "the newest are kept";
 }
 
 TEST(OutputStage, ASlowOneIsWaitedForWhereItMayNotMissFrames) {
@@ -101,7 +101,7 @@ TEST(OutputStage, ASlowOneIsWaitedForWhereItMayNotMissFrames) {
   std::jthread tracking([&] {
     for (std::uint32_t i = 0; i < kMany; ++i) stage->frame(f.report(i));
   });
-  f.journal.wait_for("output 0");
+  f.calls.wait_for("output 0");
   f.release.count_down();
   tracking.join();
   stage->end();
@@ -114,7 +114,7 @@ TEST(OutputStage, AStopEndsTheWaitForABlockedOneAndWhatWaitsIsWritten) {
   std::jthread tracking([&] {
     for (std::uint32_t i = 0; i < kMany; ++i) stage->frame(f.report(i));
   });
-  f.journal.wait_for("output 0");
+  f.calls.wait_for("output 0");
   f.stop.request();
   tracking.join();
   f.release.count_down();

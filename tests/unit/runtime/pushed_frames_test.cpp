@@ -45,9 +45,9 @@ TEST(PushedFramesInline, GoThroughTheBoxesAsThoseOfASource) {
   for (std::uint32_t i = 0; i < 4; ++i) engine.process(make_frame(i));
   engine.finish();
   Strings expected;
-  for (const std::string& entry : from_source.journal.entries())
+  for (const std::string& entry : from_source.calls.entries())
     if (!entry.starts_with("source")) expected.push_back(entry);
-  EXPECT_EQ(pushed.journal.entries(), expected);
+  EXPECT_EQ(pushed.calls.entries(), expected);
 }
 
 TEST_P(PushedFrames, ComeBackAsReportsWithTheirPose) {
@@ -112,7 +112,7 @@ TEST_P(PushedFrames, ThatCannotBeUsedCountForNothing) {
 }
 
 TEST_P(PushedFrames, AFailureIsToldAndWhatWasComputedIsSaved) {
-  f_.journal.failing = "decide 3";
+  f_.calls.failing = "decide 3";
   const char* expected = "decision (vote) failed on frame 3: out of ideas";
   {
     Engine engine = this->engine();
@@ -127,7 +127,7 @@ TEST_P(PushedFrames, AFailureIsToldAndWhatWasComputedIsSaved) {
 }
 
 TEST_P(PushedFrames, AFailureOfMappingIsToldByALaterCall) {
-  f_.journal.failing = "integrate 2";
+  f_.calls.failing = "integrate 2";
   Engine engine = this->engine();
   const std::string message = message_of(
       [&] {

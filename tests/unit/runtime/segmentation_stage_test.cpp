@@ -11,12 +11,12 @@
 namespace stillpoint {
 namespace {
 
-using testing::Journal;
+using testing::CallLog;
 using Schedule = SegmentationOptions::Schedule;
 using Strings = std::vector<std::string>;
 
 struct SegmentationFixture {
-  Journal journal;
+  CallLog calls;
   StopSignal stop;
   TimeLog times;
 
@@ -28,9 +28,9 @@ struct SegmentationFixture {
   }
   std::unique_ptr<SegmentationStage> make(const SegmentationOptions& options, Mode mode) {
     return std::make_unique<SegmentationStage>(
-        Stage<Segmenter>{std::make_shared<testing::FakeSegmenter>(journal), "fake"},
-        Stage<Propagator>{std::make_shared<testing::FakePropagator>(journal), "fake"}, options,
-        mode, stop, times);
+        Stage<Segmenter>{std::make_shared<testing::FakeSegmenter>(calls), "fake"},
+        Stage<Propagator>{std::make_shared<testing::FakePropagator>(calls), "fake"}, options, mode,
+        stop, times);
   }
 };
 
@@ -49,7 +49,7 @@ TEST(SegmentationStage, WaitGivesEveryFrameItsOwnLabels) {
       ASSERT_TRUE(labels && labels->known());
       EXPECT_EQ(labels->frame, i);
     }
-    EXPECT_EQ(f.journal.entries("propagate 4"), (Strings{"propagate 4 4"}));
+    EXPECT_EQ(f.calls.entries("propagate 4"), (Strings{"propagate 4 4"}));
   }
 }
 
@@ -60,17 +60,17 @@ TEST(SegmentationStage, LatestInlineImitatesABusyNetwork) {
   // The first labels are waited for. Frame 1 takes until 4; of those that came meanwhile, the
   // newest is next and takes until 7.
   EXPECT_EQ(
-      f.journal.entries("propagate"),
+      f.calls.entries("propagate"),
       (Strings{"propagate 0 0", "propagate 0 1", "propagate 0 2", "propagate 0 3", "propagate 1 4",
                "propagate 1 5", "propagate 1 6", "propagate 4 7", "propagate 4 8"}));
-  EXPECT_EQ(f.journal.entries("segment"), (Strings{"segment 0", "segment 1", "segment 4"}));
+  EXPECT_EQ(f.calls.entries("segment"), (Strings{"segment 0", "segment 1", "segment 4"}));
 }
 
 TEST(SegmentationStage, LatestInlineWithoutLatencyIsWait) {
   SegmentationFixture f;
   const auto stage = f.make(Schedule::kLatest, Mode::kInline, 0);
   for (std::uint32_t i = 0; i < 4; ++i) process(*stage, i);
-  EXPECT_EQ(f.journal.entries("propagate"),
+  EXPECT_EQ(f.calls.entries("propagate"),
             (Strings{"propagate 0 0", "propagate 1 1", "propagate 2 2", "propagate 3 3"}));
 }
 
@@ -79,7 +79,7 @@ TEST(SegmentationStage, LatestInlineTakesAFrameEveryInterval) {
   const auto stage =
       f.make({.schedule = Schedule::kLatest, .interval = 3, .latency = 1}, Mode::kInline);
   for (std::uint32_t i = 0; i <= 7; ++i) process(*stage, i);
-  EXPECT_EQ(f.journal.entries("propagate"),
+  EXPECT_EQ(f.calls.entries("propagate"),
             (Strings{"propagate 0 0", "propagate 0 1", "propagate 0 2", "propagate 0 3",
                      "propagate 3 4", "propagate 3 5", "propagate 3 6", "propagate 6 7"}));
 }
@@ -89,7 +89,7 @@ TEST(SegmentationStage, AnIntervalShorterThanTheNetworkTakesChangesNothing) {
   const auto stage =
       f.make({.schedule = Schedule::kLatest, .interval = 2, .latency = 3}, Mode::kInline);
   for (std::uint32_t i = 0; i <= 8; ++i) process(*stage, i);
-  EXPECT_EQ(f.journal.entries("segment"), (Strings{"segment 0", "segment 2", "segment 5"}));
+  EXPECT_EQ(f.calls.entries("segment"), (Strings{"segment 0", "segment 2", "segment 5"}));
 }
 
 TEST(SegmentationStage, LatestThreadedTakesAFrameEveryInterval) {
@@ -97,25 +97,25 @@ TEST(SegmentationStage, LatestThreadedTakesAFrameEveryInterval) {
   const auto stage = f.make({.schedule = Schedule::kLatest, .interval = 3}, Mode::kThreaded);
   for (std::uint32_t i = 0; i <= 8; ++i) {
     process(*stage, i);
-    if (i % 3 == 0) f.journal.wait_for("segment " + std::to_string(i));
+    if (i % 3 == 0) f.calls.wait_for("segment " + std::to_string(i));
   }
   stage->end();
-  EXPECT_EQ(f.journal.entries("segment"), (Strings{"segment 0", "segment 3", "segment 6"}));
+  EXPECT_EQ(f.calls.entries("segment"), (Strings{"segment 0", "segment 3", "segment 6"}));
 }
 
 TEST(SegmentationStage, LatestThreadedABusyNetworkGoesOnWithTheNewest) {
   SegmentationFixture f;
   std::latch release(1);
-  f.journal.hook = [&](const std::string& entry) {
+  f.calls.hook = [&](const std::string& entry) {
     if (entry == "segment 2") release.wait();
   };
   const auto stage = f.make({.schedule = Schedule::kLatest, .interval = 2}, Mode::kThreaded);
   for (std::uint32_t i = 0; i <= 2; ++i) process(*stage, i);
-  f.journal.wait_for("segment 2");
+  f.calls.wait_for("segment 2");
   for (std::uint32_t i = 3; i <= 7; ++i) process(*stage, i);
   release.count_down();
   stage->end();
-  EXPECT_EQ(f.journal.entries("segment"), (Strings{"segment 0", "segment 2", "segment 7"}));
+  EXPECT_EQ(f.calls.entries("segment"), (Strings{"segment 0", "segment 2", "segment 7"}));
 }
 
 TEST(SegmentationStage, WaitGivesEveryFrameItsLabelsWhateverTheInterval) {
@@ -127,20 +127,20 @@ TEST(SegmentationStage, WaitGivesEveryFrameItsLabelsWhateverTheInterval) {
 TEST(SegmentationStage, LatestThreadedNeverWaitsForABusyNetwork) {
   SegmentationFixture f;
   std::latch release(1);
-  f.journal.hook = [&](const std::string& entry) {
+  f.calls.hook = [&](const std::string& entry) {
     if (entry == "segment 1") release.wait();
   };
   const auto stage = f.make(Schedule::kLatest, Mode::kThreaded);
   process(*stage, 0);
   const auto first = std::make_shared<const Frame>(testing::make_frame(1));
   stage->offer(first);
-  f.journal.wait_for("segment 1");
+  f.calls.wait_for("segment 1");
   stage->at(first);
   for (std::uint32_t i = 2; i < 6; ++i) EXPECT_TRUE(process(*stage, i)->known());
-  EXPECT_TRUE(f.journal.contains("propagate 0 5"));
+  EXPECT_TRUE(f.calls.contains("propagate 0 5"));
   release.count_down();
   stage->end();
-  EXPECT_EQ(f.journal.entries("segment"), (Strings{"segment 0", "segment 1", "segment 5"}));
+  EXPECT_EQ(f.calls.entries("segment"), (Strings{"segment 0", "segment 1", "segment 5"}));
 }
 
 TEST(SegmentationStage, WithoutSegmenterNothingIsKnown) {
@@ -155,7 +155,7 @@ TEST(SegmentationStage, WithoutSegmenterNothingIsKnown) {
 
 TEST(SegmentationStage, AFailureEndsTheWait) {
   SegmentationFixture f;
-  f.journal.failing = "segment 0";
+  f.calls.failing = "segment 0";
   const auto stage = f.make(Schedule::kWait, Mode::kThreaded);
   EXPECT_EQ(process(*stage, 0), nullptr);
   try {
@@ -168,7 +168,7 @@ TEST(SegmentationStage, AFailureEndsTheWait) {
 TEST(SegmentationStage, OnFailureContinueGoesOnWithoutLabelsAndCounts) {
   for (const Mode mode : {Mode::kInline, Mode::kThreaded}) {
     SegmentationFixture f;
-    f.journal.failing = "segment 1";
+    f.calls.failing = "segment 1";
     const auto stage = f.make(Schedule::kWait, mode, 3, SegmentationOptions::OnFailure::kContinue);
     EXPECT_TRUE(process(*stage, 0)->known());
     EXPECT_FALSE(process(*stage, 1)->known());

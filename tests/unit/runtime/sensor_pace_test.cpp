@@ -57,13 +57,13 @@ TEST_P(SensorPace, TwoFramesWaitAndTheOldestMakesRoom) {
   EngineFixture f(8);  // 0.1 s apart
   auto clock = std::make_unique<ManualClock>();
   ManualClock* time = clock.get();
-  f.journal.hook = [&](const std::string& entry) {
+  f.calls.hook = [&](const std::string& entry) {
     if (entry == "track 0") time->advance(0.45);   // 3 and 4 wait, 1 and 2 had to go
     if (entry == "output 4") time->advance(0.65);  // 5 and 6 wait
     if (entry == "output 6") time->set(0.75);      // frame 7, the last
   };
   Engine(f.stages(), runtime(GetParam(), Pace::kSensor), {}, std::move(clock)).run();
-  EXPECT_EQ(f.journal.entries("track"),
+  EXPECT_EQ(f.calls.entries("track"),
             (Strings{"track 0", "track 3", "track 4", "track 5", "track 6", "track 7"}));
   EXPECT_EQ(f.output->dropped, 2);
 }
@@ -83,26 +83,25 @@ TEST_P(SensorPace, WhilePausedTheRecordingWaitsAndNothingIsDropped) {
   Stages stages = f.stages();
   stages.outputs.push_back({{keeper, "keeper"}});
   LiveRun::Pause pause;
-  f.journal.hook = [&](const std::string& entry) {
+  f.calls.hook = [&](const std::string& entry) {
     if (entry != "output 0") return;
     pause = keeper->kept->pause();
     time->set(100);  // all are due
   };
   std::thread viewer([&] {
-    f.journal.wait_for(
-        "source 4");  // 1 is to be tracked next, 2 and 3 wait, there is no room for 4
+    f.calls.wait_for("source 4");  // 1 is to be tracked next, 2 and 3 wait, there is no room for 4
     pause.reset();
   });
   Engine(std::move(stages), runtime(GetParam(), Pace::kSensor), {}, std::move(clock)).run();
   viewer.join();
-  EXPECT_EQ(f.journal.entries("track").size(), 5u);
+  EXPECT_EQ(f.calls.entries("track").size(), 5u);
   EXPECT_EQ(f.output->dropped, 0);
 }
 
 TEST_P(SensorPace, AStopEndsTheWait) {
   EngineFixture f(8);
   std::stop_source stop;
-  f.journal.hook = [&](const std::string& entry) {
+  f.calls.hook = [&](const std::string& entry) {
     if (entry == "output 0") stop.request_stop();
   };
   Engine(f.stages(), runtime(GetParam(), Pace::kSensor), {}, std::make_unique<ManualClock>())

@@ -1,4 +1,4 @@
-// Results as a plugin written in haste would give them: each is refused, with what is wrong and
+// Results as a plugin written carelessly would give them: each is refused, with what is wrong and
 // what to do.
 #include "stillpoint/runtime/stage_results.hpp"
 

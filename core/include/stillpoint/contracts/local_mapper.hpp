@@ -22,10 +22,10 @@ class STILLPOINT_EXPORT LocalMapper {
   /// Quick. `map` is the newest version, with corrections of loops that came since the last call.
   virtual SparseMap insert(SparseMap map, KeyFrame keyframe) = 0;
 
-  /// Triangulates, fuses, culls and adjusts around the key frame inserted last. `hurry` is
+  /// Triangulates, fuses, culls and adjusts around the key frame inserted last. `end_early` is
   /// requested when another key frame waits: end early with a consistent map. Never requested
   /// inline.
-  virtual SparseMap refine(SparseMap map, KeyFrameId keyframe, std::stop_token hurry) = 0;
+  virtual SparseMap refine(SparseMap map, KeyFrameId keyframe, std::stop_token end_early) = 0;
 };
 
 }  // namespace stillpoint

@@ -24,9 +24,10 @@ class STILLPOINT_EXPORT LoopCloser {
   virtual std::optional<MapCorrection> close(const SparseMap& map, KeyFrameId latest,
                                              std::stop_token stop) = 0;
 
-  /// After a correction has been applied: the whole map adjusted once more. `hurry` is requested
-  /// when many key frames wait for close(): end early with the best so far. Never requested inline.
-  virtual std::optional<MapCorrection> adjust(const SparseMap& map, std::stop_token hurry);
+  /// After a correction has been applied: the whole map adjusted once more. `end_early` is
+  /// requested when many key frames wait for close(): end early with the best so far. Never
+  /// requested inline.
+  virtual std::optional<MapCorrection> adjust(const SparseMap& map, std::stop_token end_early);
 };
 
 }  // namespace stillpoint

@@ -11,7 +11,7 @@
 #include <variant>
 #include <vector>
 
-#include "stillpoint/runtime/hurry.hpp"
+#include "stillpoint/runtime/early_end.hpp"
 #include "stillpoint/runtime/map_store.hpp"
 #include "stillpoint/runtime/stage.hpp"
 #include "stillpoint/runtime/worker.hpp"
@@ -98,14 +98,14 @@ class MappingSystem {
   // Used by the loop thread: a correction was sent that the maps of waiting queries do not have.
   bool correction_pending_ = false;
 
-  Hurry mapping_hurry_;     // of the local adjustment under way
-  Hurry adjustment_hurry_;  // of that of the whole map
+  EarlyEnd mapping_end_;     // of the local adjustment under way
+  EarlyEnd adjustment_end_;  // of that of the whole map
 
   // Last: their threads use all the others.
   Worker<MappingItem> local_mapping_;
   Worker<LoopItem> loop_closing_;
   Worker<DenseItem> dense_mapping_;
-  std::stop_callback<std::function<void()>> hurry_on_stop_;
+  std::stop_callback<std::function<void()>> ends_on_stop_;
 };
 
 }  // namespace stillpoint

@@ -1,4 +1,4 @@
-// What the journal keeps of frames, calls of stages and loops, and the records of them.
+// What the event log keeps of frames, calls of stages and loops, and the records of them.
 #pragma once
 
 #include <cstddef>

@@ -1,4 +1,4 @@
-#include "output_web/journal_records.hpp"
+#include "output_web/event_records.hpp"
 
 #include <algorithm>
 #include <limits>

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "output_web/journal_records.hpp"
+#include "output_web/event_records.hpp"
 #include "output_web/request.hpp"
 #include "output_web/truth.hpp"
 #include "output_web/voxels.hpp"
@@ -31,14 +31,14 @@ struct Seen {
 
 /// Written by the pipeline's threads, who wait for nothing but a copy of pointers, and read by the
 /// server's.
-class Journal {
+class EventLog {
  public:
   struct Run {
     std::string name;    ///< of the recording
     ClassNames classes;  ///< of the segmenter
     Truth truth;
   };
-  explicit Journal(Run run) : run_(std::move(run)) {}
+  explicit EventLog(Run run) : run_(std::move(run)) {}
 
   void add(const FrameReport& report);
   void finish(const RunSummary& summary);

@@ -11,8 +11,8 @@
 
 namespace stillpoint::segmenter_label_images {
 
-struct HostileOptions {
-  enum class Kind { kNone, kEverything, kNobody, kBlobs } hostile = Kind::kNone;
+struct AdversarialOptions {
+  enum class Kind { kNone, kEverything, kNobody, kBlobs } adversarial = Kind::kNone;
   std::vector<std::string> mistaken;  ///< classes whose objects get the false class
   double late = 0;                    ///< seconds
 
@@ -20,18 +20,18 @@ struct HostileOptions {
 };
 
 /// They depend on the seed and on the frame alone.
-class HostileLabels {
+class AdversarialLabels {
  public:
   /// `false_label`: replaces labels. Throws Error(kUsage) when `mistaken` has no such class.
-  HostileLabels(const HostileOptions& options, const ClassNames& classes, int false_label,
-                std::uint64_t seed);
+  AdversarialLabels(const AdversarialOptions& options, const ClassNames& classes, int false_label,
+                    std::uint64_t seed);
 
-  bool any() const { return kind_ != HostileOptions::Kind::kNone || !mistaken_.empty(); }
+  bool any() const { return kind_ != AdversarialOptions::Kind::kNone || !mistaken_.empty(); }
   /// `period`: frames with the same number have the same blobs.
   cv::Mat apply(const cv::Mat& labels, std::uint32_t period) const;
 
  private:
-  HostileOptions::Kind kind_;
+  AdversarialOptions::Kind kind_;
   std::vector<int> mistaken_;
   int false_label_;
   std::uint64_t seed_;

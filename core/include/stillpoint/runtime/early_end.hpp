@@ -7,7 +7,7 @@
 namespace stillpoint {
 
 /// Any thread may ask; it concerns the work under way, not what comes after it.
-class Hurry {
+class EarlyEnd {
  public:
   /// For work that begins now; `already` asks at once.
   std::stop_token begin(bool already) {

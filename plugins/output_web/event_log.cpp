@@ -1,4 +1,4 @@
-#include "output_web/journal.hpp"
+#include "output_web/event_log.hpp"
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
@@ -31,7 +31,7 @@ void write_text(Record kind, const std::string& text, MessageWriter& writer) {
 
 }  // namespace
 
-struct Journal::Snapshot {
+struct EventLog::Snapshot {
   FrameReport latest;
   std::vector<FrameEntry> frames;  // new ones, or all for a fit
   std::size_t first_new = 0;       // of these
@@ -52,7 +52,7 @@ struct Journal::Snapshot {
   std::span<const FrameEntry> new_frames() const { return std::span(frames).subspan(first_new); }
 };
 
-void Journal::add(const FrameReport& report) {
+void EventLog::add(const FrameReport& report) {
   const TrackResult& result = report.result;
   FrameEntry entry{.pose = {.frame = report.frame->index,
                             .time = report.frame->time,
@@ -83,23 +83,23 @@ void Journal::add(const FrameReport& report) {
   latest_ = report;
 }
 
-void Journal::set_steering(std::string state) {
+void EventLog::set_steering(std::string state) {
   const std::lock_guard lock(mutex_);
   steering_ = std::move(state);
   ++steering_changes_;
 }
 
-bool Journal::shows_voxels() const {
+bool EventLog::shows_voxels() const {
   const std::lock_guard lock(mutex_);
   return voxels_ != nullptr;
 }
 
-void Journal::set_voxels(VoxelsPtr voxels) {
+void EventLog::set_voxels(VoxelsPtr voxels) {
   const std::lock_guard lock(mutex_);
   voxels_ = std::move(voxels);
 }
 
-void Journal::add_times(const std::vector<StageTime>& times) {
+void EventLog::add_times(const std::vector<StageTime>& times) {
   for (const StageTime& time : times) {
     auto stage = std::ranges::find(stages_, time.stage);
     if (stage == stages_.end()) stage = stages_.insert(stages_.end(), time.stage);
@@ -113,7 +113,7 @@ void Journal::add_times(const std::vector<StageTime>& times) {
 }
 
 // Compares with the map before: what mapping has moved meanwhile is among it.
-void Journal::add_loop(const FrameReport& report) {
+void EventLog::add_loop(const FrameReport& report) {
   if (!latest_.map || !report.map || report.loops_closed == latest_.loops_closed) return;
   LoopEntry loop{.frame = report.frame->index};
   for (KeyFrameId id = 0; id < latest_.map->keyframe_id_end(); ++id) {
@@ -128,7 +128,7 @@ void Journal::add_loop(const FrameReport& report) {
   loops_.push_back(loop);
 }
 
-void Journal::finish(const RunSummary& summary) {
+void EventLog::finish(const RunSummary& summary) {
   const Json json = {{"complete", summary.complete},
                      {"failure", summary.failure},
                      {"dropped_frames", summary.dropped_frames},
@@ -141,7 +141,7 @@ void Journal::finish(const RunSummary& summary) {
   end_ = text_of(json);
 }
 
-std::string Journal::news(Seen& seen, const Request& request) {
+std::string EventLog::news(Seen& seen, const Request& request) {
   const Snapshot now = snapshot(seen, request);
   if (now.empty()) return {};
   MessageWriter writer;
@@ -171,7 +171,7 @@ std::string Journal::news(Seen& seen, const Request& request) {
   return writer.take();
 }
 
-Journal::Snapshot Journal::snapshot(Seen& seen, const Request& request) const {
+EventLog::Snapshot EventLog::snapshot(Seen& seen, const Request& request) const {
   const std::lock_guard lock(mutex_);
   Snapshot now{.latest = latest_, .first_stage = seen.stages};
   now.stages.assign(stages_.begin() + static_cast<std::ptrdiff_t>(seen.stages), stages_.end());
@@ -204,7 +204,7 @@ Journal::Snapshot Journal::snapshot(Seen& seen, const Request& request) const {
   return now;
 }
 
-std::string Journal::hello(const Camera& camera) const {
+std::string EventLog::hello(const Camera& camera) const {
   Json classes = Json::array();
   for (std::size_t id = 0; id < run_.classes.size(); ++id)
     classes.push_back(
@@ -222,7 +222,7 @@ std::string Journal::hello(const Camera& camera) const {
                   {"classes", classes}});
 }
 
-const std::string& Journal::picture(const FrameReport& report) {
+const std::string& EventLog::picture(const FrameReport& report) {
   if (picture_frame_ != report.frame->index) {
     picture_ = picture_of(report);
     picture_frame_ = report.frame->index;

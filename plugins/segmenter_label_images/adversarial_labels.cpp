@@ -1,4 +1,4 @@
-#include "segmenter_label_images/hostile_labels.hpp"
+#include "segmenter_label_images/adversarial_labels.hpp"
 
 #include <opencv2/core.hpp>
 
@@ -11,8 +11,8 @@ constexpr int kBlobs = 6;  // they cover about a third of the image
 
 }  // namespace
 
-void HostileOptions::visit(OptionVisitor& v) {
-  v.choice("hostile", hostile,
+void AdversarialOptions::visit(OptionVisitor& v) {
+  v.choice("adversarial", adversarial,
            {{"none", Kind::kNone},
             {"everything", Kind::kEverything},
             {"nobody", Kind::kNobody},
@@ -24,14 +24,14 @@ void HostileOptions::visit(OptionVisitor& v) {
     {.min = 0, .max = 60, .unit = "s", .help = "labels are those of the image so much earlier"});
 }
 
-HostileLabels::HostileLabels(const HostileOptions& options, const ClassNames& classes,
-                             int false_label, std::uint64_t seed)
-    : kind_(options.hostile), false_label_(false_label), seed_(seed) {
+AdversarialLabels::AdversarialLabels(const AdversarialOptions& options, const ClassNames& classes,
+                                     int false_label, std::uint64_t seed)
+    : kind_(options.adversarial), false_label_(false_label), seed_(seed) {
   for (const std::string& name : options.mistaken) mistaken_.push_back(class_id(classes, name));
 }
 
-cv::Mat HostileLabels::apply(const cv::Mat& labels, std::uint32_t period) const {
-  using Kind = HostileOptions::Kind;
+cv::Mat AdversarialLabels::apply(const cv::Mat& labels, std::uint32_t period) const {
+  using Kind = AdversarialOptions::Kind;
   if (kind_ == Kind::kEverything) return {labels.size(), CV_8UC1, cv::Scalar(false_label_)};
   cv::Mat result = kind_ == Kind::kNone ? labels.clone() : cv::Mat::zeros(labels.size(), CV_8UC1);
   if (kind_ == Kind::kBlobs) {
