@@ -1,7 +1,7 @@
 #include "output_files/keyframes_output.hpp"
 
-#include "output_files/tum_pose.hpp"
 #include "stillpoint/support/atomic_file.hpp"
+#include "stillpoint/support/tum_pose.hpp"
 
 namespace stillpoint::output_files {
 

@@ -1,8 +1,8 @@
 #include "output_files/trajectory_output.hpp"
 
-#include "output_files/tum_pose.hpp"
 #include "stillpoint/support/atomic_file.hpp"
 #include "stillpoint/support/trajectory.hpp"
+#include "stillpoint/support/tum_pose.hpp"
 
 namespace stillpoint::output_files {
 

@@ -1,16 +1,13 @@
 #include "ros2/dense_files.hpp"
 
-#include <stdlib.h>  // mkdtemp
 #include <sys/resource.h>
 #include <unistd.h>
 
 #include <algorithm>
-#include <cerrno>
-#include <string>
-#include <system_error>
 
 #include "ros2_messages/cost_map_file.hpp"
 #include "ros2_messages/octree_file.hpp"
+#include "stillpoint/support/temporary_folder.hpp"
 
 namespace stillpoint::ros2 {
 namespace {
@@ -19,28 +16,6 @@ namespace fs = std::filesystem;
 
 constexpr int kNice = 10;     // a tenth of tracking's share of the processor
 constexpr double kRest = 20;  // times what saving and reading took
-
-class TemporaryFolder {
- public:
-  TemporaryFolder() {
-    std::string path = (fs::temp_directory_path() / "stillpoint_ros2_XXXXXX").string();
-    if (!::mkdtemp(path.data()))
-      throw Error(Fault::kUsage, "cannot be made: " + std::generic_category().message(errno), path,
-                  "set TMPDIR to a folder that can be written");
-    path_ = path;
-  }
-  ~TemporaryFolder() {
-    std::error_code ignored;
-    fs::remove_all(path_, ignored);
-  }
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-
-  const fs::path& path() const { return path_; }
-
- private:
-  fs::path path_;
-};
 
 // Tracking comes first. On Linux, the nice value belongs to a thread.
 void lower_priority() {

@@ -130,6 +130,37 @@ TEST(Evaluation, RelativeErrorIsTheDriftPerSecond) {
               kExact);
 }
 
+// A scale that is wrong by a hundredth: a centimetre per metre, however fast the camera moves.
+TEST(Evaluation, RelativeErrorPerMetreDoesNotDependOnSpeed) {
+  Trajectory reference{.name = "reference", .poses = {}}, estimate = reference;
+  double way = 0;
+  for (int i = 0; i < 400; ++i) {
+    way += 0.02 + 0.015 * std::sin(0.1 * i);
+    Pose pose = Pose::Identity();
+    pose.translation() = Eigen::Vector3d(way, 0, 0);
+    reference.poses.push_back({i / 30.0, pose});
+    pose.translation() *= 1.01;
+    estimate.poses.push_back({i / 30.0, pose});
+  }
+  EvaluationOptions metres;
+  metres.delta = {1, DeltaUnit::kMetres};
+  const Evaluation e = evaluate(reference, estimate, {}, metres);
+  EXPECT_NEAR(e.relative->translation_m.mean, 0.01, 5e-4);  // poses are 0.5 to 3.5 cm apart
+  EXPECT_LT(e.relative->translation_m.standard_deviation, 3e-4);
+  EXPECT_GT(evaluate(reference, estimate, {}, {}).relative->translation_m.standard_deviation, 1e-3);
+}
+
+TEST(Evaluation, AlignedTrajectoriesLieOnTheReference) {
+  const Trajectory path = winding_path(50, 0.1);
+  const Evaluation e = evaluate(path, moved(path, some_pose(), 1.0), {}, {});
+  const auto poses = aligned(e.rigid.reference_from_estimate, e.estimate);
+  ASSERT_EQ(poses.size(), path.poses.size());
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    EXPECT_EQ(poses[i].time, path.poses[i].time);
+    EXPECT_TRUE(poses[i].world_from_camera.isApprox(path.poses[i].world_from_camera, 1e-9));
+  }
+}
+
 TEST(Evaluation, ShortRecordingHasNoRelativeError) {
   const Trajectory path = winding_path(10, 0.05);
   EXPECT_FALSE(evaluate(path, path, {}, {}).relative.has_value());

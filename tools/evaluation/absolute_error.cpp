@@ -62,6 +62,17 @@ AbsoluteError absolute_error(const Trajectory& reference, const Trajectory& esti
   return result;
 }
 
+std::vector<StampedPose> aligned(const Alignment& reference_from_estimate,
+                                 const Trajectory& estimate) {
+  std::vector<StampedPose> poses = estimate.poses;
+  for (StampedPose& pose : poses) {
+    const Eigen::Vector3d position = aligned(reference_from_estimate, pose);
+    pose.world_from_camera = reference_from_estimate.target_from_source * pose.world_from_camera;
+    pose.world_from_camera.translation() = position;
+  }
+  return poses;
+}
+
 Eigen::Vector3d aligned(const Alignment& reference_from_estimate, const StampedPose& estimate) {
   return reference_from_estimate.target_from_source *
          (reference_from_estimate.scale * estimate.world_from_camera.translation());

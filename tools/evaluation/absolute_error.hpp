@@ -31,6 +31,10 @@ struct AbsoluteError {
 AbsoluteError absolute_error(const Trajectory& reference, const Trajectory& estimate,
                              std::span<const TimePair> pairs, AlignmentKind kind);
 
+/// The whole estimate beside the reference; its times stay.
+std::vector<StampedPose> aligned(const Alignment& reference_from_estimate,
+                                 const Trajectory& estimate);
+
 /// A position of the estimate, as the alignment places it beside the reference.
 Eigen::Vector3d aligned(const Alignment& reference_from_estimate, const StampedPose& estimate);
 

@@ -8,16 +8,33 @@
 #include <vector>
 
 #include "evaluation/association.hpp"
+#include "stillpoint/error.hpp"
 
 namespace stillpoint::evaluation {
 namespace {
 
 constexpr double kReferenceIntervals = 2;  // a reference pose farther away in time is none
 
+constexpr std::pair<DeltaUnit, const char*> kSymbols[] = {
+    {DeltaUnit::kSeconds, "s"}, {DeltaUnit::kFrames, "f"}, {DeltaUnit::kMetres, "m"}};
+
+// What `delta` is counted along, for every pose.
+std::vector<double> axis_of(const Trajectory& trajectory, DeltaUnit unit) {
+  std::vector<double> axis = times_of(trajectory);
+  if (unit == DeltaUnit::kFrames) std::iota(axis.begin(), axis.end(), 0.0);
+  if (unit == DeltaUnit::kMetres) {
+    axis.front() = 0;
+    for (std::size_t i = 1; i < axis.size(); ++i)
+      axis[i] = axis[i - 1] + (trajectory.poses[i].world_from_camera.translation() -
+                               trajectory.poses[i - 1].world_from_camera.translation())
+                                  .norm();
+  }
+  return axis;
+}
+
 // Pairs (i, j) of estimated poses that are `delta` apart.
-std::vector<TimePair> intervals(const std::vector<double>& times, const Delta& delta) {
-  std::vector<double> axis = times;
-  if (delta.unit == DeltaUnit::kFrames) std::iota(axis.begin(), axis.end(), 0.0);
+std::vector<TimePair> intervals(const Trajectory& estimate, const Delta& delta) {
+  const std::vector<double> axis = axis_of(estimate, delta.unit);
   std::vector<TimePair> result;
   for (std::size_t i = 0; i < axis.size(); ++i) {
     const std::size_t j = closest(axis, axis[i] + delta.length);
@@ -33,6 +50,16 @@ Pose earlier_from_later(const StampedPose& earlier, const StampedPose& later) {
 
 }  // namespace
 
+std::string symbol_of(DeltaUnit unit) {
+  return std::ranges::find(kSymbols, unit, &std::pair<DeltaUnit, const char*>::first)->second;
+}
+
+DeltaUnit delta_unit_of(const std::string& symbol) {
+  for (const auto& [unit, name] : kSymbols)
+    if (symbol == name) return unit;
+  throw Error(Fault::kUsage, "'" + symbol + "' is not s, f or m", "unit of the relative error");
+}
+
 std::optional<RelativeError> relative_error(const Trajectory& reference, const Trajectory& estimate,
                                             const Delta& delta, double offset) {
   const std::vector<double> reference_times = times_of(reference);
@@ -40,7 +67,7 @@ std::optional<RelativeError> relative_error(const Trajectory& reference, const T
   const double max_difference = kReferenceIntervals * median_interval(reference);
   std::vector<double> translations, rotations;
   std::vector<MotionError> motions;
-  for (const auto& [i, j] : intervals(estimate_times, delta)) {
+  for (const auto& [i, j] : intervals(estimate, delta)) {
     const double from_time = estimate_times[i] + offset, to_time = estimate_times[j] + offset;
     const StampedPose& from = reference.poses[closest(reference_times, from_time)];
     const StampedPose& to = reference.poses[closest(reference_times, to_time)];

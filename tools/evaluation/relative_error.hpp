@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "evaluation/statistics.hpp"
@@ -11,7 +12,12 @@
 
 namespace stillpoint::evaluation {
 
-enum class DeltaUnit { kSeconds, kFrames };
+enum class DeltaUnit { kSeconds, kFrames, kMetres /* along the estimated path */ };
+
+/// "s", "f", "m", as the benchmark's script has them.
+std::string symbol_of(DeltaUnit unit);
+/// Throws Error(kUsage) for any other.
+DeltaUnit delta_unit_of(const std::string& symbol);
 
 struct Delta {
   double length = 1.0;
@@ -32,11 +38,12 @@ struct RelativeError {
   std::vector<MotionError> per_pair;  ///< by rising time
 };
 
-/// As the benchmark's evaluate_rpe.py with --fixed_delta: every estimated pose is paired with the
-/// one closest to `delta` later, except where that is the last pose; both take the closest pose of
-/// the reference, and pairs more than two reference intervals away from it are dropped. `offset`
-/// (seconds) is added to the times of the estimate. Nothing when fewer than two pairs remain: the
-/// recording is too short. Unlike the script, more than 10,000 pairs are not thinned out at random.
+/// As the benchmark's evaluate_rpe.py with --fixed_delta and --delta_unit s, f or m: every
+/// estimated pose is paired with the one closest to `delta` later, except where that is the last
+/// pose; both take the closest pose of the reference, and pairs more than two reference intervals
+/// away from it are dropped. `offset` (seconds) is added to the times of the estimate. Nothing when
+/// fewer than two pairs remain: the recording is too short. Unlike the script, more than 10,000
+/// pairs are not thinned out at random.
 std::optional<RelativeError> relative_error(const Trajectory& reference, const Trajectory& estimate,
                                             const Delta& delta, double offset);
 

@@ -28,7 +28,7 @@ std::string shortest(double value) {
 
 std::string delta_text(const Delta& delta) {
   const std::string length = shortest(delta.length);
-  if (delta.unit == DeltaUnit::kSeconds) return length + " s";
+  if (delta.unit != DeltaUnit::kFrames) return length + " " + symbol_of(delta.unit);
   return length + (delta.length == 1 ? " frame" : " frames");
 }
 
@@ -72,9 +72,8 @@ nlohmann::ordered_json trajectory_json(const Trajectory& t) {
 }
 
 nlohmann::ordered_json relative_json(const Evaluation& e) {
-  const bool seconds = e.options.delta.unit == DeltaUnit::kSeconds;
   nlohmann::ordered_json json = {{"delta", e.options.delta.length},
-                                 {"delta_unit", seconds ? "s" : "f"},
+                                 {"delta_unit", symbol_of(e.options.delta.unit)},
                                  {"pairs", e.relative ? e.relative->pairs : 0}};
   json["translation_m"] =
       e.relative ? statistics_json(e.relative->translation_m) : nlohmann::ordered_json();

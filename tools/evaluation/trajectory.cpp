@@ -9,6 +9,8 @@
 
 #include "evaluation/statistics.hpp"
 #include "stillpoint/error.hpp"
+#include "stillpoint/support/atomic_file.hpp"
+#include "stillpoint/support/tum_pose.hpp"
 
 namespace stillpoint::evaluation {
 namespace {
@@ -168,6 +170,13 @@ Pose pose_at(const Trajectory& trajectory, double time) {
   const auto& [before, a] = trajectory.poses[i - 1];
   const auto& [after, b] = trajectory.poses[i];
   return interpolate(a, b, std::clamp((time - before) / (after - before), 0.0, 1.0));
+}
+
+void write_trajectory(const std::filesystem::path& file, const std::vector<StampedPose>& poses) {
+  AtomicFile written(file);
+  for (const StampedPose& pose : poses)
+    write_tum_pose(written.stream(), pose.time, pose.world_from_camera);
+  written.commit();
 }
 
 std::vector<double> times_of(const Trajectory& trajectory) {

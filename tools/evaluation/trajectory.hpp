@@ -30,6 +30,9 @@ struct Trajectory {
 /// else that is not as described above.
 Trajectory read_trajectory(const std::filesystem::path& file);
 
+/// In the format of TUM RGB-D. Throws Error(kUsage) when it cannot be written.
+void write_trajectory(const std::filesystem::path& file, const std::vector<StampedPose>& poses);
+
 /// Where the camera was at any time (seconds): between two rows, or at the nearer end.
 Pose pose_at(const Trajectory& trajectory, double time);
 

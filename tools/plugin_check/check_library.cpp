@@ -1,7 +1,5 @@
 #include "plugin_check/check_library.hpp"
 
-#include <stdlib.h>
-
 #include <algorithm>
 #include <opencv2/core/utility.hpp>
 #include <system_error>
@@ -11,36 +9,12 @@
 #include "plugin_check/stage_cases.hpp"
 #include "stillpoint/error.hpp"
 #include "stillpoint/support/did_you_mean.hpp"
+#include "stillpoint/support/temporary_folder.hpp"
 
 namespace stillpoint::plugin_check {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// Removed with all that a plugin wrote into it.
-class TemporaryFolder {
- public:
-  TemporaryFolder() {
-    std::error_code error;
-    const fs::path parent = fs::temp_directory_path(error);
-    std::string name = (parent / "stillpoint_check_XXXXXX").string();
-    if (error || !::mkdtemp(name.data()))
-      throw Error(Fault::kUsage, "no temporary folder can be made", "plugins check",
-                  "set TMPDIR to a folder that can be written to");
-    path_ = name;
-  }
-  ~TemporaryFolder() {
-    std::error_code error;
-    fs::remove_all(path_, error);
-  }
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-
-  const fs::path& path() const { return path_; }
-
- private:
-  fs::path path_;
-};
 
 /// What the library provides, without loading it into this process.
 nlohmann::json contents_of(const CheckRequest& request) {

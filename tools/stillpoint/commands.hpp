@@ -39,6 +39,9 @@ void add_pipeline_options(CLI::App& command, PipelineRequest& request);
 /// While the result lives, stderr is told of a plugin that holds up loading.
 LateCalls watch_loading();
 
+/// --delta-unit: of --delta, the interval of the relative pose error.
+void add_delta_unit(CLI::App& command, std::string& unit);
+
 /// For values with a range, through which CLI11 lets "nan". Throws Error(kUsage).
 void require_numbers(std::initializer_list<double> values);
 

@@ -28,7 +28,7 @@ constexpr std::pair<const char*, AlignmentKind> kAlignments[] = {
     {"none", AlignmentKind::kNone}};
 
 struct CompareArguments {
-  std::string reference, plot, alignment = "se3";
+  std::string reference, plot, alignment = "se3", delta_unit = "s";
   std::vector<std::string> runs;
   evaluation::EvaluationOptions options;
   bool json = false;
@@ -69,13 +69,14 @@ std::vector<NamedFile> parse_runs(const std::vector<std::string>& texts) {
 
 evaluation::Comparison compare(const CompareArguments& arguments) {
   using namespace evaluation;
+  EvaluationOptions options = arguments.options;
+  options.delta.unit = delta_unit_of(arguments.delta_unit);
   Comparison comparison;
   for (const auto& [name, kind] : kAlignments)
     if (arguments.alignment == name) comparison.alignment = kind;
   const Trajectory reference = read_trajectory(in_folder(arguments.reference, "groundtruth.txt"));
   for (const NamedFile& run : parse_runs(arguments.runs)) {
-    Contestant one{
-        run.name, evaluate(reference, read_trajectory(run.file), {}, arguments.options), {}};
+    Contestant one{run.name, evaluate(reference, read_trajectory(run.file), {}, options), {}};
     one.error = absolute_error(one.evaluation.reference, one.evaluation.estimate,
                                one.evaluation.pairs, comparison.alignment);
     comparison.contestants.push_back(std::move(one));
@@ -133,7 +134,8 @@ void add_compare(CLI::App& app) {
   number("--max-difference", options.max_difference,
          "Largest time difference of poses that are compared, s", 1e-6, 1.0);
   number("--offset", options.offset, "Added to the times of all runs, s", -1e10, 1e10);
-  number("--delta", options.delta.length, "Interval of the relative pose error, s", 1e-3, 1e6);
+  number("--delta", options.delta.length, "Interval of the relative pose error", 1e-3, 1e6);
+  add_delta_unit(*command, arguments->delta_unit);
   command->add_flag("--json", arguments->json, "Print JSON instead of a table");
   command
       ->add_option("--plot", arguments->plot,

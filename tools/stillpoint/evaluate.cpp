@@ -18,7 +18,7 @@ namespace stillpoint {
 namespace {
 
 struct EvaluateArguments {
-  std::string reference, estimate, frames, plot, delta_unit = "s";
+  std::string reference, estimate, frames, plot, aligned, delta_unit = "s";
   evaluation::EvaluationOptions options;
   bool json = false;
 };
@@ -28,7 +28,7 @@ void print_evaluation(const EvaluateArguments& arguments) {
   EvaluationOptions options = arguments.options;
   require_numbers({options.max_difference, options.offset, options.delta.length});
   if (!arguments.plot.empty()) figures::format_of(arguments.plot);  // before the work
-  options.delta.unit = arguments.delta_unit == "s" ? DeltaUnit::kSeconds : DeltaUnit::kFrames;
+  options.delta.unit = delta_unit_of(arguments.delta_unit);
   Trajectory reference = read_trajectory(arguments.reference);
   Trajectory estimate = read_trajectory(arguments.estimate);
   const std::vector<double> frames =
@@ -38,6 +38,9 @@ void print_evaluation(const EvaluateArguments& arguments) {
     std::cout << report_json(result).dump(2) << '\n';
   else
     std::cout << report_table(result);
+  if (!arguments.aligned.empty())
+    write_trajectory(arguments.aligned,
+                     aligned(result.rigid.reference_from_estimate, result.estimate));
   if (arguments.plot.empty()) return;
   const std::string name = std::filesystem::path(arguments.estimate).filename().string();
   const std::vector<Contestant> runs = {{name, result, result.rigid}};
@@ -45,6 +48,15 @@ void print_evaluation(const EvaluateArguments& arguments) {
 }
 
 }  // namespace
+
+void add_delta_unit(CLI::App& command, std::string& unit) {
+  command
+      .add_option("--delta-unit", unit,
+                  "Of --delta: s (seconds), f (frames), m (metres along the estimate)")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"s", "f", "m"}))
+      ->type_name("s|f|m");
+}
 
 void add_evaluate(CLI::App& app) {
   auto arguments = std::make_shared<EvaluateArguments>();
@@ -60,8 +72,10 @@ void add_evaluate(CLI::App& app) {
         ->check(CLI::Range(min, max))
         ->type_name("NUMBER");
   };
-  file("--reference", arguments->reference, "True trajectory, TUM format")->required();
-  file("--estimate", arguments->estimate, "Estimated trajectory, TUM format")->required();
+  file("--reference", arguments->reference, "True trajectory, format of TUM, EuRoC or KITTI")
+      ->required();
+  file("--estimate", arguments->estimate, "Estimated trajectory, in any of these formats")
+      ->required();
   file("--frames", arguments->frames,
        "List of the recording's frames (rgb.txt, associations.txt) for the coverage");
   evaluation::EvaluationOptions& options = arguments->options;
@@ -69,12 +83,11 @@ void add_evaluate(CLI::App& app) {
          "Largest time difference of poses that are compared, s", 1e-6, 1.0);
   number("--offset", options.offset, "Added to the times of the estimate, s", -1e10, 1e10);
   number("--delta", options.delta.length, "Interval of the relative pose error", 1e-3, 1e6);
-  command->add_option("--delta-unit", arguments->delta_unit, "Of --delta: s (seconds), f (frames)")
-      ->capture_default_str()
-      ->check(CLI::IsMember({"s", "f"}))
-      ->type_name("s|f");
+  add_delta_unit(*command, arguments->delta_unit);
   command->add_flag("--json", arguments->json, "Print JSON instead of a table");
   file("--plot", arguments->plot, "Draw both trajectories and the error: .png, .svg or .pdf");
+  file("--aligned", arguments->aligned,
+       "Write the estimate as it lies beside the reference (SE(3)), TUM format");
   command->callback([arguments] { print_evaluation(*arguments); });
 }
 

@@ -2,9 +2,9 @@
 
 #include <gtest/gtest.h>
 
-#include <cstdlib>
 #include <fstream>
 #include <stillpoint/error.hpp>
+#include <stillpoint/support/temporary_folder.hpp>
 
 namespace stillpoint_ros {
 namespace {
@@ -14,19 +14,14 @@ using stillpoint::Pose;
 
 class DenseMapFiles : public ::testing::Test {
  protected:
-  DenseMapFiles() : folder_(::testing::TempDir() + "stillpoint_ros_XXXXXX") {
-    if (!::mkdtemp(folder_.data())) throw std::runtime_error("no folder");
-  }
-  ~DenseMapFiles() override { std::filesystem::remove_all(folder_); }
-
   std::filesystem::path write(const std::string& name, const std::string& text) const {
-    const std::filesystem::path file = std::filesystem::path(folder_) / name;
+    const std::filesystem::path file = folder_.path() / name;
     std::ofstream(file, std::ios::binary) << text;
     return file;
   }
 
  private:
-  std::string folder_;
+  const stillpoint::TemporaryFolder folder_;
 };
 
 const char* const kDescription =

@@ -3,11 +3,6 @@
 #include <nav_msgs/Path.h>
 #include <ros/console.h>
 
-#include <cerrno>
-#include <cstdlib>
-#include <stillpoint/error.hpp>
-#include <system_error>
-
 #include "dense_map_files.hpp"
 #include "point_clouds.hpp"
 #include "pose_messages.hpp"
@@ -16,19 +11,9 @@ namespace stillpoint_ros {
 namespace {
 
 namespace fs = std::filesystem;
-using stillpoint::Error;
-using stillpoint::Fault;
 
 constexpr double kPathPeriod = 1.0;  // seconds
 constexpr bool kLatch = true;
-
-fs::path make_folder() {
-  std::string folder = (fs::temp_directory_path() / "stillpoint_ros_XXXXXX").string();
-  if (!::mkdtemp(folder.data()))
-    throw Error(Fault::kUsage, "cannot be made: " + std::generic_category().message(errno), folder,
-                "set TMPDIR to a folder that can be written");
-  return folder;
-}
 
 bool wanted(const ros::Publisher& publisher) { return publisher.getNumSubscribers() > 0; }
 
@@ -38,7 +23,6 @@ MapPublisher::MapPublisher(ros::NodeHandle node, const Session& session, const F
                            double period_seconds)
     : session_(session),
       frames_(frames),
-      folder_(make_folder()),
       path_(node.advertise<nav_msgs::Path>("path", 1, kLatch)),
       landmarks_(node.advertise<sensor_msgs::PointCloud2>("landmarks", 1, kLatch)),
       dense_map_(node.advertise<sensor_msgs::PointCloud2>("dense_map", 1, kLatch)),
@@ -53,11 +37,7 @@ MapPublisher::MapPublisher(ros::NodeHandle node, const Session& session, const F
   spinner_.start();
 }
 
-MapPublisher::~MapPublisher() {
-  spinner_.stop();
-  std::error_code ignored;
-  fs::remove_all(folder_, ignored);
-}
+MapPublisher::~MapPublisher() { spinner_.stop(); }
 
 template <class Message>
 void MapPublisher::publish(const ros::Publisher& publisher, Message message,
@@ -99,11 +79,11 @@ void MapPublisher::publish_maps() const {
 }
 
 void MapPublisher::publish_dense_files() const {
-  for (const auto& old : fs::directory_iterator(folder_)) fs::remove(old);
-  session_.save_dense_map(folder_);
-  if (const fs::path file = folder_ / "map.bt"; wanted(octomap_) && fs::exists(file))
+  for (const auto& old : fs::directory_iterator(folder_.path())) fs::remove(old);
+  session_.save_dense_map(folder_.path());
+  if (const fs::path file = folder_.path() / "map.bt"; wanted(octomap_) && fs::exists(file))
     publish(octomap_, octomap_message(file), frames_.world());
-  if (const fs::path file = folder_ / "map.yaml"; wanted(grid_) && fs::exists(file))
+  if (const fs::path file = folder_.path() / "map.yaml"; wanted(grid_) && fs::exists(file))
     publish(grid_, grid_message(file, frames_.mounting()->map_from_world), frames_.map());
 }
 

@@ -6,7 +6,7 @@
 #include <ros/node_handle.h>
 #include <ros/spinner.h>
 
-#include <filesystem>
+#include <stillpoint/support/temporary_folder.hpp>
 
 #include "frames.hpp"
 #include "session.hpp"
@@ -33,7 +33,7 @@ class MapPublisher {
 
   const Session& session_;
   const Frames& frames_;
-  const std::filesystem::path folder_;  // of its own, for the files of the dense map
+  const stillpoint::TemporaryFolder folder_;  // for the files of the dense map
   ros::Publisher path_, landmarks_, dense_map_, octomap_, grid_;
   ros::CallbackQueue queue_;
   ros::WallTimer path_timer_, map_timer_;

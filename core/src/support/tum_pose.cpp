@@ -1,9 +1,9 @@
-#include "output_files/tum_pose.hpp"
+#include "stillpoint/support/tum_pose.hpp"
 
 #include <array>
 #include <cstdio>
 
-namespace stillpoint::output_files {
+namespace stillpoint {
 
 void write_tum_pose(std::ostream& stream, double time, const Pose& world_from_camera) {
   Eigen::Quaterniond q(world_from_camera.linear());
@@ -16,4 +16,4 @@ void write_tum_pose(std::ostream& stream, double time, const Pose& world_from_ca
   stream << line.data();
 }
 
-}  // namespace stillpoint::output_files
+}  // namespace stillpoint
