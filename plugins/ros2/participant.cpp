@@ -131,10 +131,11 @@ void Writer::wait_for_readers(std::chrono::milliseconds at_most) const {
 }
 
 Reader::Reader(const Participant& participant, const std::string& topic, std::string_view type,
-               int depth, bool reliable)
+               int depth, bool reliable, Kept kept)
     : topic_(topic) {
-  const Quality qos = quality(reliable ? DDS_RELIABILITY_RELIABLE : DDS_RELIABILITY_BEST_EFFORT,
-                              DDS_DURABILITY_VOLATILE, depth);
+  const Quality qos = quality(
+      reliable ? DDS_RELIABILITY_RELIABLE : DDS_RELIABILITY_BEST_EFFORT,
+      kept == Kept::kLast ? DDS_DURABILITY_TRANSIENT_LOCAL : DDS_DURABILITY_VOLATILE, depth);
   id_ = required(
       dds_create_reader(participant.id(), topic_of(participant, topic, type), qos.get(), nullptr),
       "DDS makes no reader", topic);

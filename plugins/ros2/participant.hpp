@@ -62,10 +62,10 @@ class Writer {
 
 class Reader {
  public:
-  /// Keeps the last `depth` messages; a `reliable` one refuses writers that are not. Throws as
-  /// Writer.
+  /// Keeps the last `depth` messages; a `reliable` one refuses writers that are not. With kLast it
+  /// also gets what writers of that kind had written before, and refuses others. Throws as Writer.
   Reader(const Participant& participant, const std::string& topic, std::string_view type, int depth,
-         bool reliable);
+         bool reliable, Kept kept = Kept::kShortly);
 
   const std::string& topic() const { return topic_; }
   /// Writers that are known.

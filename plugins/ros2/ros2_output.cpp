@@ -11,7 +11,19 @@ namespace {
 using ros2_messages::Diagnosis;
 using ros2_messages::Mounting;
 
-constexpr std::chrono::seconds kLastPatience(2);  // at the end, for the readers' answers
+constexpr std::chrono::seconds kLastPatience(2);             // at the end, for the readers' answers
+constexpr std::chrono::milliseconds kOdometryPatience(100);  // it may come later than the images
+
+Ros2Output::Options checked(const Ros2Output::Options& options) {
+  const bool asks_tf = !options.camera_frame.empty() || !options.odom_frame.empty();
+  if (asks_tf && options.base_frame == ros2_messages::kCameraFrame)
+    throw Error(Fault::kUsage, "is needed with camera_frame and odom_frame", "base_frame",
+                "name the robot's, such as base_link");
+  if (!options.camera_frame.empty() && !options.base_from_camera.empty())
+    throw Error(Fault::kUsage, "is what tf is asked for with camera_frame", "base_from_camera",
+                "give one of both");
+  return options;
+}
 
 Mounting mounting_of(const Ros2Output::Options& options) {
   Mounting mounting{.map = options.map_frame, .base = options.base_frame};
@@ -54,21 +66,25 @@ void Ros2Output::Options::visit(OptionVisitor& v) {
   v("name", name, {.help = "before the names of all topics but /tf"});
   v("domain", domain, {.min = -1, .max = 232, .help = "of DDS; -1: that of ROS_DOMAIN_ID, or 0"});
   v("map_frame", map_frame, {.help = "where the base was at the first frame"});
-  v("base_frame", base_frame, {.help = "of the robot; it must have no parent in tf"});
+  v("base_frame", base_frame,
+    {.help = "of the robot; without odom_frame it must have no parent in tf"});
   v("base_from_camera", base_from_camera,
     {.help = "x, y, z and quaternion x, y, z, w of the camera in the base; empty: the base is the "
              "camera, and the map has x where it looked, z up"});
+  v("camera_frame", camera_frame,
+    {.help = "of the images: where it is on the base is asked of tf, instead of base_from_camera"});
+  v("odom_frame", odom_frame,
+    {.help = "in which tf has the base, by the robot's odometry: map → odom is published, as REP "
+             "105 has it, instead of map → base"});
   v("path_period", path_period, {.min = 0, .unit = "s", .help = "from one path to the next"});
   v("map_period", map_period,
     {.min = 0, .unit = "s", .help = "from one landmarks, dense_map, octomap and grid to the next"});
 }
 
 Ros2Output::Ros2Output(const Options& options, const StageContext& context)
-    : options_(options),
+    : options_(checked(options)),
       may_save_meanwhile_(!context.deterministic),
       log_(context.log),
-      mounting_(mounting_of(options)),
-      sequence_(mounting_),
       participant_(options.domain),
       topics_([&] {
         const auto writer = [&](const char* name, const char* type, Kept kept) {
@@ -88,14 +104,44 @@ Ros2Output::Ros2Output(const Options& options, const StageContext& context)
             .octomap = writer("/octomap", ros2_messages::Octree::kType, Kept::kLast),
             .grid = writer("/grid", ros2_messages::OccupancyGrid::kType, Kept::kLast)};
       }()) {
-  ros2_messages::Transform world;
-  world.header.frame = mounting_.map;
-  world.child = world_frame();
-  world.header_from_child = mounting_.map_from_world;
-  publish(topics_.static_transform, world);
+  if (!options.camera_frame.empty() || !options.odom_frame.empty()) tf_.emplace(participant_);
+  if (options.camera_frame.empty()) mount(mounting_of(options));
 }
 
-std::string Ros2Output::world_frame() const { return mounting_.map + "_optical"; }
+std::string Ros2Output::world_frame() const { return options_.map_frame + "_optical"; }
+
+void Ros2Output::mount(Mounting mounting) {
+  ros2_messages::Transform world;
+  world.header.frame = mounting.map;
+  world.child = world_frame();
+  world.header_from_child = mounting.map_from_world;
+  publish(topics_.static_transform, world);
+  sequence_.emplace(mounting);
+  mounting_ = std::move(mounting);
+}
+
+/// tf is asked until it knows where the camera is.
+bool Ros2Output::is_mounted() {
+  if (mounting_) return true;
+  if (const auto base_from_camera = look_up(options_.base_frame, options_.camera_frame, {}, {}))
+    mount({.map = options_.map_frame,
+           .base = options_.base_frame,
+           .map_from_world = *base_from_camera,
+           .base_from_camera = *base_from_camera});
+  return mounting_.has_value();
+}
+
+std::optional<Pose> Ros2Output::look_up(const std::string& target, const std::string& source,
+                                        std::optional<double> time,
+                                        std::chrono::milliseconds patience) {
+  auto pose = tf_->target_from_source(target, source, time, patience);
+  if (!pose && !std::exchange(tf_is_silent_, true))
+    log_(LogLevel::kWarning, "tf does not know " + source + " in " + target +
+                                 (time ? " at the time of the images" : "") +
+                                 ": no poses are published until it does");
+  if (pose) tf_is_silent_ = false;
+  return pose;
+}
 
 template <class Message>
 void Ros2Output::publish(const Writer& topic, const Message& message) {
@@ -111,8 +157,9 @@ void Ros2Output::frame(const FrameReport& report) {
   const double time = report.frame->time;
   poses_.push_back(tracked_pose(report));
   publish_state(report);
-  if (const auto messages = sequence_.next(time, report.result)) {
-    publish(topics_.transform, messages->transform);
+  if (!is_mounted()) return;
+  if (const auto messages = sequence_->next(time, report.result)) {
+    publish_transform(messages->transform);
     publish(topics_.odometry, messages->odometry);
     publish(topics_.pose, messages->pose);
   }
@@ -122,7 +169,7 @@ void Ros2Output::frame(const FrameReport& report) {
     publish_landmarks(*report.map, time);
   if (run_ && topics_.dense_map.wanted() && time >= next_dense_map_)
     if (const auto points = run_->dense_map()) {  // or with the next frame
-      publish(topics_.dense_map, ros2_messages::dense_cloud(*points, mounting_, time));
+      publish(topics_.dense_map, ros2_messages::dense_cloud(*points, *mounting_, time));
       next_dense_map_ = time + options_.map_period;
     }
   if (dense_files_) publish_dense_files(time);
@@ -135,6 +182,17 @@ void Ros2Output::publish_dense_files(double time) try {
   if (!std::exchange(has_warned_, true))
     log_(LogLevel::kWarning,
          std::string("octomap and grid cannot be published now: ") + error.what());
+}
+
+void Ros2Output::publish_transform(const ros2_messages::Transform& map_from_base) {
+  if (options_.odom_frame.empty()) return publish(topics_.transform, map_from_base);
+  const auto odom_from_base = look_up(options_.odom_frame, options_.base_frame,
+                                      map_from_base.header.time, kOdometryPatience);
+  if (!odom_from_base) return;
+  ros2_messages::Transform map_from_odom = map_from_base;
+  map_from_odom.child = options_.odom_frame;
+  map_from_odom.header_from_child = map_from_base.header_from_child * odom_from_base->inverse();
+  publish(topics_.transform, map_from_odom);
 }
 
 void Ros2Output::publish_state(const FrameReport& report) {
@@ -155,11 +213,11 @@ void Ros2Output::publish_state(const FrameReport& report) {
 
 void Ros2Output::publish_path(const SparseMap& map, const std::vector<TrackedPose>& poses,
                               double time) {
-  publish(topics_.path, ros2_messages::path_of(map, poses, mounting_, time));
+  publish(topics_.path, ros2_messages::path_of(map, poses, *mounting_, time));
 }
 
 void Ros2Output::publish_landmarks(const SparseMap& map, double time) {
-  publish(topics_.landmarks, ros2_messages::landmark_cloud(map, mounting_, time));
+  publish(topics_.landmarks, ros2_messages::landmark_cloud(map, *mounting_, time));
 }
 
 void Ros2Output::finish(const RunSummary& summary) {
@@ -169,13 +227,13 @@ void Ros2Output::finish(const RunSummary& summary) {
     publish(topics_.state, Diagnosis{.level = Diagnosis::Level::kError,
                                      .name = options_.name,
                                      .message = summary.failure});
-  if (!summary.poses.empty()) {
+  if (!summary.poses.empty() && mounting_) {
     const double time = summary.poses.back().time;
     if (topics_.path.wanted()) publish_path(summary.map, summary.poses, time);
     if (topics_.landmarks.wanted()) publish_landmarks(summary.map, time);
     if (topics_.dense_map.wanted())
       if (const auto points = summary.dense_map(); !points.empty())
-        publish(topics_.dense_map, ros2_messages::dense_cloud(points, mounting_, time));
+        publish(topics_.dense_map, ros2_messages::dense_cloud(points, *mounting_, time));
     publish(read_dense_files(summary.map_directory, dense_files_wanted(), time));
   }
   wait_for_readers();
@@ -194,8 +252,8 @@ void Ros2Output::publish(DenseFiles files) {
     publish(topics_.octomap, *files.octree);
   }
   if (files.grid) {
-    files.grid->header = {files.time, mounting_.map};
-    files.grid->header_from_origin = mounting_.map_from_world * files.grid->header_from_origin;
+    files.grid->header = {files.time, mounting_->map};
+    files.grid->header_from_origin = mounting_->map_from_world * files.grid->header_from_origin;
     publish(topics_.grid, *files.grid);
   }
 }

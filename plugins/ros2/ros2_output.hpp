@@ -1,6 +1,7 @@
 // What a run finds, published while it goes.
 #pragma once
 
+#include <chrono>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -10,6 +11,7 @@
 
 #include "ros2/dense_files.hpp"
 #include "ros2/participant.hpp"
+#include "ros2/transform_listener.hpp"
 #include "ros2_messages/mounting.hpp"
 #include "ros2_messages/pose_messages.hpp"
 
@@ -27,6 +29,8 @@ class Ros2Output final : public Output {
     std::string base_frame = ros2_messages::kCameraFrame;
     std::vector<double> base_from_camera;  ///< x, y, z, then quaternion x, y, z, w; empty: the base
                                            ///< is the camera
+    std::string camera_frame;              ///< not empty: tf has it below the base
+    std::string odom_frame;                ///< not empty: tf has it above the base
     double path_period = 1.0;              ///< seconds
     double map_period = 5.0;               ///< seconds
 
@@ -48,6 +52,11 @@ class Ros2Output final : public Output {
 
   template <class Message>
   void publish(const Writer& topic, const Message& message);
+  void mount(ros2_messages::Mounting mounting);
+  bool is_mounted();
+  std::optional<Pose> look_up(const std::string& target, const std::string& source,
+                              std::optional<double> time, std::chrono::milliseconds patience);
+  void publish_transform(const ros2_messages::Transform& map_from_base);
   void publish_state(const FrameReport& report);
   void publish_path(const SparseMap& map, const std::vector<TrackedPose>& poses, double time);
   void publish_landmarks(const SparseMap& map, double time);
@@ -60,10 +69,12 @@ class Ros2Output final : public Output {
   const Options options_;
   const bool may_save_meanwhile_;  // saving changes when the dense map is brought up to date
   std::function<void(LogLevel, std::string_view)> log_;
-  const ros2_messages::Mounting mounting_;
-  ros2_messages::PoseSequence sequence_;
   Participant participant_;
   Topics topics_;
+  std::optional<TransformListener> tf_;              // where tf is asked
+  std::optional<ros2_messages::Mounting> mounting_;  // once it is known
+  std::optional<ros2_messages::PoseSequence> sequence_;
+  bool tf_is_silent_ = false;
   std::shared_ptr<LiveRun> run_;
   std::optional<DenseFilesReader> dense_files_;
   bool has_warned_ = false;

@@ -8,6 +8,7 @@
 
 #include "bag/bag_reader.hpp"
 #include "bag/messages.hpp"
+#include "support/bag_messages.hpp"
 #include "support/dds_loopback.hpp"
 #include "support/error_text.hpp"
 #include "support/recording_writer.hpp"
@@ -69,6 +70,98 @@ TEST_F(Ros2OutputTest, PublishesPosesOfTheBase) {
   EXPECT_EQ(transforms[0].child, "base_link");
   const Eigen::Vector3d position = transforms[0].parent_from_child.translation();
   EXPECT_LT((position - Eigen::Vector3d(2, 0, 0)).norm(), 1e-9);
+}
+
+/// What the rest of a robot says on tf.
+class Robot {
+ public:
+  explicit Robot(const Participant& participant)
+      : moving_(participant, "/tf", "tf2_msgs/TFMessage", Kept::kShortly),
+        fixed_(participant, "/tf_static", "tf2_msgs/TFMessage", Kept::kLast) {}
+
+  void mount(const std::string& base, const std::string& camera, const Pose& pose) const {
+    fixed_.write(message(0, base, camera, pose));
+  }
+  void move(double time, const Pose& odom_from_base) const {
+    moving_.write(message(time, "odom", "base_link", odom_from_base));
+  }
+
+ private:
+  static Bytes message(double time, const std::string& parent, const std::string& child,
+                       const Pose& pose) {
+    return testing::transforms_message(kCdr, {{.parent = parent,
+                                               .child = child,
+                                               .parent_from_child = pose,
+                                               .stamp = static_cast<std::int64_t>(time * 1e9)}});
+  }
+
+  Writer moving_, fixed_;
+};
+
+/// On /tf, but not of the robot.
+std::optional<bag::TransformMessage> own_transform(const Reader& tf) {
+  const auto until = std::chrono::steady_clock::now() + std::chrono::milliseconds(1);
+  while (const auto message = tf.take(until))
+    for (bag::TransformMessage& transform : bag::read_transforms(*message, kCdr))
+      if (transform.child != "base_link" || transform.parent != "odom") return transform;
+  return std::nullopt;
+}
+
+TEST_F(Ros2OutputTest, PublishesOdometryInTheMap) {
+  options_.base_frame = "base_link";
+  options_.odom_frame = "odom";
+  const Reader tf = reader("/tf", "tf2_msgs/TFMessage");
+  std::vector<std::string> warnings;
+  StageContext context;
+  context.log = [&](LogLevel, std::string_view text) { warnings.emplace_back(text); };
+  Ros2Output output(options_, context);
+  const Robot robot(participant_);
+  const auto moved = [](double x) { return Pose(Eigen::Translation3d(x, 0, 0)); };
+  output.frame(report_at(1, TrackState::kTracking, Pose::Identity()));
+  EXPECT_FALSE(own_transform(tf)) << "nobody knows where the base is in odom";
+  ASSERT_EQ(warnings.size(), 1u);
+  EXPECT_THAT(warnings[0], HasSubstr("tf does not know base_link in odom"));
+  robot.move(1.9, moved(2.9));
+  robot.move(2.1, moved(3.1));
+  output.frame(report_at(2, TrackState::kTracking, Pose(Eigen::Translation3d(0, 0, 2))));
+  const auto transform = own_transform(tf);
+  ASSERT_TRUE(transform);
+  EXPECT_EQ(transform->parent, "map");
+  EXPECT_EQ(transform->child, "odom");
+  EXPECT_EQ(transform->stamp, 2'000'000'000);
+  // The base is the camera, which has gone 2 m along x of the map, and is at 3 m in odom.
+  const Pose map_from_base = ros2_messages::map_from_world() * Pose(Eigen::Translation3d(0, 0, 2));
+  EXPECT_TRUE(transform->parent_from_child.isApprox(map_from_base * moved(3).inverse(), 1e-6));
+}
+
+TEST_F(Ros2OutputTest, AsksTfWhereTheCameraIs) {
+  options_.base_frame = "base_link";
+  options_.camera_frame = "camera";
+  const Reader tf = reader("/tf", "tf2_msgs/TFMessage");
+  Ros2Output output(options_, {});
+  output.frame(report_at(1, TrackState::kTracking, Pose::Identity()));
+  EXPECT_FALSE(own_transform(tf));
+  const Robot robot(participant_);
+  Pose forward(Eigen::Translation3d(0.1, 0, 0.4));
+  forward.linear() = ros2_messages::map_from_world().linear();
+  robot.mount("base_link", "camera", forward);
+  output.frame(report_at(2, TrackState::kTracking, Pose(Eigen::Translation3d(0, 0, 2))));
+  const auto transform = own_transform(tf);
+  ASSERT_TRUE(transform);
+  EXPECT_EQ(transform->parent, "map");
+  EXPECT_EQ(transform->child, "base_link");
+  EXPECT_LT((transform->parent_from_child.translation() - Eigen::Vector3d(2, 0, 0)).norm(), 1e-9);
+}
+
+TEST_F(Ros2OutputTest, RefusesFramesThatCannotBeAskedFor) {
+  options_.odom_frame = "odom";
+  EXPECT_THAT(error_text(Fault::kUsage, [&] { Ros2Output(options_, {}); }),
+              HasSubstr("base_frame: is needed with camera_frame and odom_frame"));
+  options_ = {.domain = options_.domain, .base_frame = "base_link"};
+  options_.camera_frame = "camera";
+  options_.base_from_camera = {0, 0, 1, -0.5, 0.5, -0.5, 0.5};
+  EXPECT_THAT(error_text(Fault::kUsage, [&] { Ros2Output(options_, {}); }),
+              HasSubstr("give one of both"));
 }
 
 TEST_F(Ros2OutputTest, ALostCameraHasAStateAndNoPose) {

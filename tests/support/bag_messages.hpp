@@ -76,7 +76,7 @@ inline BagBytes transforms_message(Serialisation serialisation,
   ByteWriter writer(serialisation);
   writer.number(static_cast<std::uint32_t>(transforms.size()));
   for (const bag::TransformMessage& transform : transforms) {
-    put_header(writer, serialisation, 1'000'000'000, transform.parent);
+    put_header(writer, serialisation, transform.stamp, transform.parent);
     writer.text(transform.child);
     for (const double t : transform.parent_from_child.translation()) writer.number(t);
     const Eigen::Quaterniond rotation(transform.parent_from_child.linear());

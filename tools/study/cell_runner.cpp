@@ -31,7 +31,7 @@ double seconds_since(Clock::time_point start) {
 constexpr const char* kConsole = "console.txt";
 
 /// Throws Error(kUsage) for a folder that no study has made: it stays.
-void require_own(const std::filesystem::path& run) {
+void require_own_run(const std::filesystem::path& run) {
   std::error_code none;
   if (!std::filesystem::exists(run, none) || std::filesystem::is_empty(run, none)) return;
   if (std::filesystem::exists(run / kConsole, none) || read_result(run)) return;
@@ -43,7 +43,7 @@ void require_own(const std::filesystem::path& run) {
 
 std::optional<CellResult> run_cell(const PlannedCell& cell, const Program& program,
                                    const std::stop_token& stop) {
-  require_own(cell.run);
+  require_own_run(cell.run);
   remove_folder(cell.run);
   make_folder(cell.run);
   const Clock::time_point start = Clock::now();

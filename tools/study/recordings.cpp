@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
 constexpr const char* kDescription = "simulated_from.yaml";
 
 /// Throws Error(kUsage) for a folder that no study has made: it stays.
-void require_own(const fs::path& folder) {
+void require_own_recording(const fs::path& folder) {
   std::error_code none;
   if (!fs::exists(folder, none) || fs::is_empty(folder, none)) return;
   if (!fs::exists(folder / kDescription, none))
@@ -61,7 +61,7 @@ bool record(const fs::path& program, const Sequence& sequence, const std::string
             const fs::path& folder, const std::stop_token& stop) {
   const fs::path part = unfinished(folder);
   const fs::path console = part.string() + ".txt";
-  require_own(folder);
+  require_own_recording(folder);
   remove_unfinished(folder);
   remove_folder(folder);
   make_folder(folder.parent_path());

@@ -98,8 +98,9 @@ std::vector<TransformMessage> read_transforms(ByteSpan message, Serialisation se
   ByteReader reader(message, serialisation);
   std::vector<TransformMessage> transforms;
   for (auto left = reader.number<std::uint32_t>(); left > 0; --left) {
-    TransformMessage transform{.parent = read_header(reader, serialisation).frame,
-                               .child = read_frame(reader)};
+    MessageHeader header = read_header(reader, serialisation);
+    TransformMessage transform{
+        .parent = std::move(header.frame), .child = read_frame(reader), .stamp = header.stamp};
     std::array<double, 3> translation;
     std::array<double, 4> rotation;  // x, y, z, w
     read_numbers(reader, translation);

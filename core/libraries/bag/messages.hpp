@@ -56,6 +56,7 @@ struct CameraInfoMessage {
 struct TransformMessage {
   std::string parent, child;  ///< frames
   Pose parent_from_child = Pose::Identity();
+  std::int64_t stamp = 0;  ///< ns
 };
 
 /// All of these throw Error(kData) when the bytes end too early, which a description needs few of.
