@@ -36,7 +36,7 @@ TEST_P(PluginsCheckShipped, Passes) {
 INSTANTIATE_TEST_SUITE_P(Libraries, PluginsCheckShipped,
                          ::testing::Values("decision_objects", "map_checks", "map_octomap",
                                            "map_voxel_cloud", "moving_checks", "orb_slam",
-                                           "output_files", "propagator_flow_depth",
+                                           "output_files", "output_mcap", "propagator_flow_depth",
                                            "segmenter_opencv_dnn"));
 
 TEST(PluginsCheck, TheSimulatorPasses) {
@@ -63,6 +63,36 @@ TEST(PluginsCheck, StagesThatReadARecordingAreCheckedWithOne) {
   EXPECT_THAT(outcome.out, HasSubstr("not checked: source (tum_rgbd): no recording is given"));
   EXPECT_THAT(outcome.out, HasSubstr("give what it needs with --set OPTION=VALUE"));
   EXPECT_THAT(outcome.err, HasSubstr("nothing could be checked"));
+}
+
+TEST(PluginsCheck, TheSegNetPasses) {
+  const Outcome outcome =
+      call({"plugins", "check", library(kShipped, "segmenter_segnet"), "--set",
+            "prototxt=segnet_rooms.prototxt", "--set", "model=segnet_rooms.caffemodel", "--set",
+            "classes=[background,bottle,chair,diningtable,person,pottedplant,sofa,tvmonitor]"});
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.out << outcome.err;
+}
+
+TEST(PluginsCheck, BagsPass) {
+  const TemporaryFolder folder;
+  const std::string bag = (folder.path() / "bag.mcap").string();
+  const Outcome recorded =
+      call({"record", "orb_baseline", "--dataset", simulated_recording().string(), "--set",
+            "source.limit=5", "-o", bag});
+  ASSERT_EQ(recorded.exit_code, 0) << recorded.err;
+  const Outcome outcome =
+      call({"plugins", "check", library(kShipped, "source_bag"), "--set", "path=" + bag});
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.out << outcome.err;
+}
+
+/// Of source and output `ros2`, the output; the source waits for images.
+TEST(PluginsCheck, TheOutputForRos2Passes) {
+  if (!fs::exists(library(kShipped, "ros2"))) GTEST_SKIP() << "ros2 is not built here";
+  const Outcome outcome = call({"plugins", "check", library(kShipped, "ros2"), "output/ros2"},
+                               {.environment = {{"ROS_LOCALHOST_ONLY", "1"}}});
+  if (outcome.err.find("DDS is not installed") != std::string::npos)
+    GTEST_SKIP() << "DDS is not installed";
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.out << outcome.err;
 }
 
 struct Careless {
