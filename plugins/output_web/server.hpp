@@ -39,7 +39,7 @@ class Server {
   std::uint16_t port() const;
   /// The run that viewers may steer. From any thread, like notify(); neither waits.
   void begin(std::shared_ptr<LiveRun> run);
-  /// The events has something new.
+  /// The event log has something new.
   void notify();
 
  private:

@@ -100,13 +100,13 @@ TEST_F(Steered, TellsWhyAMapWasNotSavedAndGoesOn) {
 }
 
 TEST_F(Steered, BearsAFloodOfCommands) {
-  TestViewer unknown(port(*output)), viewer(port(*output));
+  TestViewer flooding(port(*output)), viewer(port(*output));
   for (int round = 0; round < 500; ++round) {
-    tell(unknown, Command::kPause);
-    tell(unknown, Command::kStep);
-    tell(unknown, Command::kGoOn);
+    tell(flooding, Command::kPause);
+    tell(flooding, Command::kStep);
+    tell(flooding, Command::kGoOn);
   }
-  EXPECT_FALSE(state(unknown)["paused"]);
+  EXPECT_FALSE(state(flooding)["paused"]);
   EXPECT_EQ(run->calls().size(), 1500u);
   EXPECT_TRUE(state_after(viewer, Command::kPause)["paused"]);
 }

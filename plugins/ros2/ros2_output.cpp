@@ -17,11 +17,15 @@ constexpr std::chrono::milliseconds kOdometryPatience(100);  // it may come late
 Ros2Output::Options checked(const Ros2Output::Options& options) {
   const bool asks_tf = !options.camera_frame.empty() || !options.odom_frame.empty();
   if (asks_tf && options.base_frame == ros2_messages::kCameraFrame)
-    throw Error(Fault::kUsage, "is needed with camera_frame and odom_frame", "base_frame",
+    throw Error(Fault::kUsage, "is needed with camera_frame or odom_frame", "base_frame",
                 "name the robot's, such as base_link");
   if (!options.camera_frame.empty() && !options.base_from_camera.empty())
     throw Error(Fault::kUsage, "is what tf is asked for with camera_frame", "base_from_camera",
                 "give one of both");
+  if (!options.odom_frame.empty() && options.camera_frame.empty() &&
+      options.base_from_camera.empty())
+    throw Error(Fault::kUsage, "needs to know where the camera is on the base", "odom_frame",
+                "give camera_frame, for which tf is asked, or base_from_camera");
   return options;
 }
 
@@ -123,24 +127,18 @@ void Ros2Output::mount(Mounting mounting) {
 /// tf is asked until it knows where the camera is.
 bool Ros2Output::is_mounted() {
   if (mounting_) return true;
-  if (const auto base_from_camera = look_up(options_.base_frame, options_.camera_frame, {}, {}))
+  const auto base_from_camera =
+      tf_->target_from_source(options_.base_frame, options_.camera_frame, {}, {});
+  if (base_from_camera)
     mount({.map = options_.map_frame,
            .base = options_.base_frame,
            .map_from_world = *base_from_camera,
            .base_from_camera = *base_from_camera});
+  else if (!std::exchange(has_warned_of_camera_, true))
+    log_(LogLevel::kWarning, "tf does not know " + options_.camera_frame + " in " +
+                                 options_.base_frame +
+                                 ": until it does, only the state is published");
   return mounting_.has_value();
-}
-
-std::optional<Pose> Ros2Output::look_up(const std::string& target, const std::string& source,
-                                        std::optional<double> time,
-                                        std::chrono::milliseconds patience) {
-  auto pose = tf_->target_from_source(target, source, time, patience);
-  if (!pose && !std::exchange(tf_is_silent_, true))
-    log_(LogLevel::kWarning, "tf does not know " + source + " in " + target +
-                                 (time ? " at the time of the images" : "") +
-                                 ": no poses are published until it does");
-  if (pose) tf_is_silent_ = false;
-  return pose;
 }
 
 template <class Message>
@@ -186,9 +184,15 @@ void Ros2Output::publish_dense_files(double time) try {
 
 void Ros2Output::publish_transform(const ros2_messages::Transform& map_from_base) {
   if (options_.odom_frame.empty()) return publish(topics_.transform, map_from_base);
-  const auto odom_from_base = look_up(options_.odom_frame, options_.base_frame,
-                                      map_from_base.header.time, kOdometryPatience);
-  if (!odom_from_base) return;
+  const auto odom_from_base = tf_->target_from_source(options_.odom_frame, options_.base_frame,
+                                                      map_from_base.header.time, kOdometryPatience);
+  if (!odom_from_base) {
+    if (frames_without_odometry_++ == 0)
+      log_(LogLevel::kWarning, "tf does not know " + options_.base_frame + " in " +
+                                   options_.odom_frame + " at the time of an image: map → " +
+                                   options_.odom_frame + " is left out");
+    return;
+  }
   ros2_messages::Transform map_from_odom = map_from_base;
   map_from_odom.child = options_.odom_frame;
   map_from_odom.header_from_child = map_from_base.header_from_child * odom_from_base->inverse();
@@ -237,6 +241,10 @@ void Ros2Output::finish(const RunSummary& summary) {
     publish(read_dense_files(summary.map_directory, dense_files_wanted(), time));
   }
   wait_for_readers();
+  if (frames_without_odometry_ > 1)
+    log_(LogLevel::kWarning, "tf did not know " + options_.base_frame + " in " +
+                                 options_.odom_frame + " at the time of " +
+                                 std::to_string(frames_without_odometry_) + " images");
   if (refused_ > 0)
     log_(LogLevel::kWarning,
          "a reader was too slow: " + std::to_string(refused_) + " messages could not be published");

@@ -1,7 +1,7 @@
 // What a run finds, published while it goes.
 #pragma once
 
-#include <chrono>
+#include <cstddef>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -54,8 +54,6 @@ class Ros2Output final : public Output {
   void publish(const Writer& topic, const Message& message);
   void mount(ros2_messages::Mounting mounting);
   bool is_mounted();
-  std::optional<Pose> look_up(const std::string& target, const std::string& source,
-                              std::optional<double> time, std::chrono::milliseconds patience);
   void publish_transform(const ros2_messages::Transform& map_from_base);
   void publish_state(const FrameReport& report);
   void publish_path(const SparseMap& map, const std::vector<TrackedPose>& poses, double time);
@@ -74,7 +72,8 @@ class Ros2Output final : public Output {
   std::optional<TransformListener> tf_;              // where tf is asked
   std::optional<ros2_messages::Mounting> mounting_;  // once it is known
   std::optional<ros2_messages::PoseSequence> sequence_;
-  bool tf_is_silent_ = false;
+  bool has_warned_of_camera_ = false;
+  std::size_t frames_without_odometry_ = 0;
   std::shared_ptr<LiveRun> run_;
   std::optional<DenseFilesReader> dense_files_;
   bool has_warned_ = false;

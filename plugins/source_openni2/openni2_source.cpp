@@ -155,7 +155,7 @@ OpenNi2Source::~OpenNi2Source() {
   live_camera::undo_in_driver([this] {
     camera_.color.stop();
     camera_.depth.stop();
-    std::this_thread::sleep_for(kLastFrameOfDriver);
+    if (uri_of(camera_.device) == "Dummy") std::this_thread::sleep_for(kLastFrameOfDriver);
   });
 }
 

@@ -1,5 +1,6 @@
 // One file of a folder that another program wrote; the others are as they should be.
 #include <memory>
+#include <opencv2/imgcodecs.hpp>
 #include <string>
 
 #include "fuzz/fuzz_target.hpp"
@@ -32,6 +33,12 @@ FuzzTarget one_file(const std::string& name, const std::string& seed,
           .words = kNumbers};
 }
 
+std::string image(int type) {
+  std::vector<std::uint8_t> bytes;
+  cv::imencode(".png", cv::Mat(48, 64, type, cv::Scalar::all(80)), bytes);
+  return {bytes.begin(), bytes.end()};
+}
+
 constexpr const char* kImages = "#timestamp [ns],filename\n1403636580838555648,a.png\n";
 constexpr const char* kSensor =
     "sensor_type: camera\nT_BS:\n  data: [0, -1, 0, 0.1, 1, 0, 0, 0.2, 0, 0, 1, 0.3, 0, 0, 0, 1]\n"
@@ -43,6 +50,8 @@ FuzzTarget euroc(const std::string& name, const std::string& seed) {
   return one_file(name, seed,
                   {{"mav0/cam0/data.csv", kImages},
                    {"mav0/depth0/data.csv", kImages},
+                   {"mav0/cam0/data/a.png", image(CV_8UC3)},
+                   {"mav0/depth0/data/a.png", image(CV_16UC1)},
                    {"mav0/cam0/sensor.yaml", kSensor},
                    {"mav0/state_groundtruth_estimate0/data.csv", kTruth}},
                   [](const fs::path& folder) { importing::open_euroc(folder, {})->truth(); });

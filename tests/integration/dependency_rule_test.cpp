@@ -132,11 +132,16 @@ TEST(DependencyRule, ToolsDoNotKnowPlugins) {
 // A program of one's own can do what these do.
 TEST(DependencyRule, RunAndRecordAreClientsOfTheEngine) {
   for (const char* name : {"run", "record", "main", "interrupt", "run_folder", "run_table",
-                           "map_saver", "progress", "console", "pipeline_options"})
+                           "map_saver", "progress", "console", "pipeline_options"}) {
+    bool found = false;
     for (const char* suffix : {".cpp", ".hpp"})
       if (const fs::path file = kRoot / "tools/stillpoint" / (std::string(name) + suffix);
-          fs::exists(file))
+          fs::exists(file)) {
         expect_none_begins(file, {"stillpoint/runtime"});
+        found = true;
+      }
+    EXPECT_TRUE(found) << name;
+  }
 }
 
 TEST(DependencyRule, LibrariesOfTheToolsDoNotKnowTheRuntime) {

@@ -56,7 +56,7 @@ TEST_F(SceneFileTest, ImpossibleScenesAreRefused) {
        {"motion: {position: [1e300, 0, 1]}", "motion: {look_at: [0, -1e300, 1]}",
         "people: [{path: [1, 1e39]}]", "balls: [{from: [1, 2, 1e300]}]"})
     EXPECT_THAT(simulate(std::string("version: 1\nsource: {") + place + "}\n").err,
-                HasSubstr("1000 m"));
+                HasSubstr("is outside [-1000, 1000]"));
 }
 
 TEST_F(SceneFileTest, UnknownScenesAreAnsweredWithThoseThereAre) {

@@ -126,10 +126,12 @@ TEST_F(Ablate, AFolderHoldsOneStudy) {
 TEST_F(Ablate, TheFirstRepeatKeepsPicturesOfItsWorstFrames) {
   ASSERT_EQ(ablate(kShort + "pictures: 1\nrepeats: 2\n").exit_code, 0);
   EXPECT_TRUE(fs::exists(out() / "runs/tiny/few/0/images/000000.jpg"));
+  EXPECT_THAT(text_of(out() / "runs/tiny/few/0/pipeline.yaml"),
+              AllOf(HasSubstr("worst: 1 "), HasSubstr("panels: true ")));
   EXPECT_FALSE(fs::exists(out() / "runs/tiny/few/1/images"));
   const Outcome report = call({"report", out().string()});
   EXPECT_EQ(report.exit_code, 0) << report.err;
-  EXPECT_THAT(text_of(out() / "report.html"), HasSubstr("000000.jpg"));
+  EXPECT_THAT(text_of(out() / "report.html"), HasSubstr("id=\"picture-0-0\">"));
   EXPECT_EQ(ablate(kShort + "repeats: 2\n").err, "4 of 4 runs are there already\n");
 }
 

@@ -55,6 +55,21 @@ TEST(ImageFile, TextAndCommentsBeforeTheSizeOfAPnm) {
   expect_size(Bytes(text.begin(), text.end()), {640, 480});
 }
 
+// What OpenCV decodes is what was stated, also where a comment or a number ends oddly.
+TEST(ImageFile, PnmCannotHideItsSize) {
+  for (const std::string text : {"P5 #x\r60 40\r255\n#1\n1 1 255\n", "P5 60#40 255\n1 \n 9 255\n",
+                                 "P5 60 40#1 1\n 255 ", "P5\n60 40 255\n"}) {
+    Bytes file(text.begin(), text.end());
+    file.resize(file.size() + 60 * 1255, 7);
+    const cv::Mat image = cv::imdecode(file, cv::IMREAD_UNCHANGED);
+    SCOPED_TRACE(text);
+    const auto stated = stated_image_size(file);
+    if (image.empty()) continue;  // refused by OpenCV
+    ASSERT_TRUE(stated);
+    EXPECT_EQ(*stated, image.size());
+  }
+}
+
 // A decoder skips what is no marker, and markers without a length.
 TEST(ImageFile, JpegCannotHideItsSize) {
   const cv::Size size(317, 243);

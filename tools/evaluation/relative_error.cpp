@@ -38,7 +38,7 @@ std::vector<TimePair> intervals(const Trajectory& estimate, const Delta& delta) 
   std::vector<TimePair> result;
   for (std::size_t i = 0; i < axis.size(); ++i) {
     const std::size_t j = closest(axis, axis[i] + delta.length);
-    if (j + 1 < axis.size()) result.push_back({i, j});
+    if (axis[j] < axis.back()) result.push_back({i, j});
   }
   return result;
 }

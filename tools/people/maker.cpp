@@ -63,6 +63,7 @@ double share_of_people(const cv::Mat& labels) {
 Coverage make_recording(const RecordingPlan& plan, const BaseRecording& base,
                         const Sources& sources, const fs::path& out, int threads) {
   const fs::path part = out.string() + '.' + std::to_string(::getpid()) + ".part";
+  fs::remove_all(part);
   const Maker maker(plan, base, sources);
   const std::vector<BasePair> pairs = pairs_of(plan, base);
   Coverage coverage{.frames = static_cast<int>(pairs.size())};

@@ -9,6 +9,8 @@
 #include <cstring>
 #include <fstream>
 #include <iterator>
+#include <string>
+#include <string_view>
 #include <system_error>
 #include <utility>
 #include <vector>
@@ -25,18 +27,35 @@ constexpr const char* kResults[] = {"pipeline.yaml", "log.txt",     "trajectory.
                                     "summary.json",  "run.mcap",    "sparse.map"};
 constexpr const char* kMaps[] = {"map.ot", "map.bt", "map.ply", "map.pgm", "map.yaml", "cloud.ply"};
 
+bool is_number(std::string_view text) {
+  return !text.empty() && text.find_first_not_of("0123456789") == std::string_view::npos;
+}
+
 /// "000042.jpg"
 bool is_picture(const fs::path& file) {
   const std::string number = file.stem().string();
-  return number.size() >= 6 && number.find_first_not_of("0123456789") == std::string::npos &&
+  return number.size() >= 6 && is_number(number) &&
          (file.extension() == ".jpg" || file.extension() == ".png");
 }
 
 /// "trajectory.txt.1234.part", of a run that was killed; this run's outputs have begun theirs.
-bool is_unfinished_result(const fs::path& file) {
-  return file.extension() == ".part" &&
-         file.stem().extension() != '.' + std::to_string(::getpid()) &&
-         std::ranges::find(kResults, file.stem().stem().string()) != std::end(kResults);
+bool is_unfinished(const fs::path& file) {
+  const std::string process = file.stem().extension().string();  // ".1234"
+  if (file.extension() != ".part" || process.size() < 2 || !is_number(process.substr(1)) ||
+      process == '.' + std::to_string(::getpid()))
+    return false;
+  const fs::path name = file.stem().stem();
+  const auto is_name = [&](const char* known) { return name == known; };
+  return std::ranges::any_of(kResults, is_name) || std::ranges::any_of(kMaps, is_name) ||
+         is_picture(name);
+}
+
+std::vector<fs::path> unfinished_in(const fs::path& folder) {
+  std::vector<fs::path> files;
+  std::error_code none;
+  for (const auto& entry : fs::directory_iterator(folder, none))
+    if (is_unfinished(entry.path())) files.push_back(entry.path());
+  return files;
 }
 
 /// Maps and pictures, by their names: nothing else in these folders is the program's.
@@ -152,10 +171,8 @@ void RunFolder::require_results_of_a_run() const {
 void RunFolder::remove_earlier_results() const {
   std::error_code error;
   bool found = false;
-  std::vector<fs::path> unfinished;
-  for (const auto& entry : fs::directory_iterator(path_, error))
-    if (is_unfinished_result(entry.path())) unfinished.push_back(entry.path());
-  for (const fs::path& file : unfinished) fs::remove(file, error);
+  for (const char* folder : {".", "map", "images"})
+    for (const fs::path& file : unfinished_in(path_ / folder)) fs::remove(file, error);
   error.clear();
   for (const char* name : kResults) {
     found = fs::remove(path_ / name, error) || found;

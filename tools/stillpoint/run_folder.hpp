@@ -39,8 +39,7 @@ class RunFolder {
   const std::filesystem::path& path() const { return path_; }
   /// Into log.txt; warnings and errors also to the console. May be called from any thread.
   void log(LogLevel level, std::string_view text) const;
-  /// Maps and pictures of an earlier run that this one has not replaced. After a run that did not
-  /// fail.
+  /// Maps and pictures of an earlier run that this one has not replaced. At the end of a run.
   void remove_earlier_files() const;
   /// Names of what is in it, sorted; folders end with '/'.
   std::vector<std::string> contents() const;

@@ -109,7 +109,7 @@ class LatexReport {
                      .caption = "Absolute trajectory error, RMSE (m)." +
                                 runs_note("Median (smallest--largest)") +
                                 " In brackets: coverage, where it is below 100\\,\\%, and how many "
-                                "runs tracked at all, where not all did. Bold: the "
+                                "runs a figure is of, where not all have one. Bold: the "
                                 "smallest of its row, among those that cover the same." +
                                 published_note(systems) + missing_note(),
                      .columns = "l",

@@ -41,8 +41,10 @@ void remove_unfinished(const fs::path& folder) {
   std::error_code none;
   for (const auto& entry : fs::directory_iterator(folder.parent_path(), none)) {
     const std::string name = entry.path().filename().string();
-    if (!name.starts_with(begin) || !name.ends_with(".part")) continue;
-    const std::string number = name.substr(begin.size(), name.size() - begin.size() - 5);
+    const std::size_t end = name.rfind(".part");  // of x.1234.part and x.1234.part.txt
+    if (!name.starts_with(begin) || end == std::string::npos || end < begin.size()) continue;
+    if (name.substr(end) != ".part" && name.substr(end) != ".part.txt") continue;
+    const std::string number = name.substr(begin.size(), end - begin.size());
     const bool is_number = !number.empty() && std::ranges::all_of(number, [](unsigned char c) {
       return std::isdigit(c);
     });

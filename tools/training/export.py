@@ -69,7 +69,7 @@ def main():
     apart = difference(network, args.file, size)
     print(f'{args.file}: {args.file.stat().st_size} bytes, differs by at most {apart:.1e}')
     if not apart < LARGEST_DIFFERENCE:
-        sys.exit('export: the file computes something else than the checkpoint')
+        sys.exit(f'export: the file computes something else than the checkpoint, by {apart:.1e}')
 
 
 if __name__ == '__main__':

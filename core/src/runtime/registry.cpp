@@ -39,14 +39,18 @@ void describe(const PluginEntry& entry, const fs::path& library, OptionVisitor& 
   }
 }
 
-/// Nothing can leave a destructor: what ended it is said, and main() gives the exit code.
+/// Nothing can leave a destructor: what ended it is said, and main() gives the exit code. Within a
+/// guarded call, that one ends.
 void destroy_guarded(const std::string& name, void (*destroy)(void*), void* object,
                      const std::function<void(LogLevel, std::string_view)>& log) {
+  if (StageGuard::is_in_call()) return destroy(object);
   try {
     auto call = [&] { destroy(object); };
     call_guarded("the destructor of " + name, std::nullopt, call);
   } catch (const std::exception& error) {
     log(LogLevel::kWarning, "the destructor of " + name + ": " + error.what());
+  } catch (...) {
+    log(LogLevel::kWarning, "the destructor of " + name + ": it threw no std::exception");
   }
 }
 

@@ -139,8 +139,8 @@ std::string reason_of(int what) {
 [[noreturn]] void fail(const Call& call, int what) {
   const std::string reason = reason_of(what);
   std::snprintf(final_message.data(), final_message.size(),
-                "error: %s: %s; what was computed could not be saved\n", call.stage.c_str(),
-                reason.c_str());
+                "error: %s: %s; what followed did not return, results may be missing\n",
+                call.stage.c_str(), reason.c_str());
   ::alarm(kSecondsToSave);
   ended_a_call = true;
   throw std::runtime_error(reason);
@@ -227,6 +227,8 @@ std::size_t StageGuard::give_up() {
   for (const Call* call : calls) pthread_kill(call->thread, kGiveUp);
   return calls.size();
 }
+
+bool StageGuard::is_in_call() { return current != nullptr; }
 
 bool StageGuard::has_ended_a_call() { return ended_a_call; }
 

@@ -22,7 +22,7 @@ namespace {
 
 AtomicFile::AtomicFile(std::filesystem::path path)
     : path_(std::move(path)),
-      // A name that is nobody else's.
+      // A name that no other process of this machine uses.
       temporary_(path_.string() + '.' + std::to_string(::getpid()) + ".part") {
   std::error_code error;
   const std::filesystem::file_status there = std::filesystem::status(path_, error);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cstdio>
+#include <cstdlib>
 #include <limits>
 #include <memory>
 #include <string_view>
@@ -96,18 +97,21 @@ std::optional<cv::Size> size_of_bmp(Bytes file) {
   return size_of(side(18), side(22));
 }
 
-/// Numbers in plain text after the kind; a comment ends with its line.
+/// Numbers in plain text after the kind, read as OpenCV reads them: a comment ends with its line,
+/// and one byte after a number is passed over whatever it is.
 std::optional<cv::Size> size_of_pnm(Bytes file) {
   std::size_t at = 2;
   const auto number = [&]() -> std::int64_t {
     while (at < file.size() && (std::isspace(file[at]) || file[at] == '#'))
       if (file[at++] == '#')
-        while (at < file.size() && file[at] != '\n') ++at;
+        while (at < file.size() && file[at] != '\n' && file[at] != '\r') ++at;
     std::int64_t value = 0;
     const std::size_t begin = at;
     for (; at < file.size() && std::isdigit(file[at]); ++at)
       value = std::min(10 * value + (file[at] - '0'), kLongestSide);
-    return at == begin ? -1 : value;
+    if (at == begin) return -1;
+    ++at;
+    return value;
   };
   const std::int64_t width = number();
   const std::int64_t height = number();

@@ -18,7 +18,7 @@ TemporaryFolder::TemporaryFolder() {
     throw Error(
         Fault::kUsage,
         "cannot be made: " + (error ? error.message() : std::generic_category().message(errno)),
-        path, "set TMPDIR to a folder that can be written");
+        "a temporary folder", "set TMPDIR to a folder that can be written");
   path_ = path;
 }
 

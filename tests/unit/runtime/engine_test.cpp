@@ -220,7 +220,7 @@ TEST_P(EngineInBothModes, AStopBeforeTheRunProcessesNothing) {
   EXPECT_EQ(f.output->finished, 1);
 }
 
-TEST(Engine, ARefinementIsHurriedWhenAnotherKeyFrameWaits) {
+TEST(Engine, ARefinementEndsEarlyWhenAnotherKeyFrameWaits) {
   EngineFixture f(5);
   f.mapper->while_refining = [&](KeyFrameId id, std::stop_token end_early) {
     if (id > 0) return;
@@ -235,7 +235,7 @@ TEST(Engine, ARefinementIsHurriedWhenAnotherKeyFrameWaits) {
   EXPECT_EQ(f.output->map.keyframe_count(), 3u);
 }
 
-TEST(Engine, AStopHurriesTheRefinementUnderWay) {
+TEST(Engine, AStopEndsTheRefinementUnderWay) {
   EngineFixture f(1);
   std::stop_source stop;
   f.mapper->while_refining = [&](KeyFrameId, std::stop_token end_early) {
@@ -246,7 +246,7 @@ TEST(Engine, AStopHurriesTheRefinementUnderWay) {
   EXPECT_EQ(f.output->map.keyframe_count(), 1u);
 }
 
-TEST(Engine, InlineNeverHurries) {
+TEST(Engine, InlineNeverEndsEarly) {
   EngineFixture f(9);
   f.mapper->while_refining = [](KeyFrameId, std::stop_token end_early) {
     EXPECT_FALSE(end_early.stop_requested());

@@ -87,7 +87,7 @@ struct RunSummary {
 class STILLPOINT_EXPORT Output {
  public:
   static constexpr const char* kKind = "output";
-  static constexpr std::uint32_t kApi = 5;  ///< see kPluginApi
+  static constexpr std::uint32_t kApi = 6;  ///< see kPluginApi
   virtual ~Output();
 
   /// Before the first frame of a run that its source drives; a program that gives the frames itself

@@ -36,6 +36,8 @@ class STILLPOINT_EXPORT StageGuard {
   static std::vector<std::string> calls_longer_than(double seconds);
   /// Ends the calls under way where they are: they fail. Gives their number.
   static std::size_t give_up();
+  /// Whether this thread is in a guarded call.
+  static bool is_in_call();
   /// Whether it had to end a call. Destructors of that plugin may crash or hang as well.
   static bool has_ended_a_call();
 };

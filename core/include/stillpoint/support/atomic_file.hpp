@@ -8,8 +8,8 @@
 
 namespace stillpoint {
 
-/// Written beside its place, under a name of its own that ends in .part, and put there by commit().
-/// Without commit(), nothing is left behind.
+/// Written beside its place, under a name of this process that ends in .part, and put there by
+/// commit(). Without commit(), nothing is left behind.
 class STILLPOINT_EXPORT AtomicFile {
  public:
   /// Makes missing folders. Throws Error when the file cannot be made, or what is there is no file.

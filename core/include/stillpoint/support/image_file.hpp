@@ -22,7 +22,7 @@ STILLPOINT_EXPORT std::optional<cv::Size> stated_image_size(std::span<const std:
 STILLPOINT_EXPORT void require_image_size(std::span<const std::uint8_t> file,
                                           const std::string& where);
 
-/// `bytes`: the file, less than 256 MiB. Throws Error(kData) when it is not there, no regular file
+/// `bytes`: the file, at most 256 MiB. Throws Error(kData) when it is not there, no regular file
 /// (a pipe would be waited for), empty, too large, or require_image_size() throws.
 STILLPOINT_EXPORT void read_image_file(const std::filesystem::path& file,
                                        std::vector<std::uint8_t>& bytes);
