@@ -167,6 +167,51 @@ TEST_P(StageThatEndsTheProcess, IsNamedInItsDestructor) {
   EXPECT_GT(count_poses(out() / "trajectory.txt"), 3u);
 }
 
+struct MisdeedOfThread {
+  const char* how;
+  const char* where;
+  const char* reason;
+};
+
+/// A moving checker that does it at the fourth frame, on a thread that is not the engine's.
+class ThreadOfPlugin
+    : public BadPlugins,
+      public ::testing::WithParamInterface<std::tuple<const char*, MisdeedOfThread>> {};
+
+INSTANTIATE_TEST_SUITE_P(
+    Ways, ThreadOfPlugin,
+    ::testing::Combine(
+        ::testing::Values("inline", "threaded"),
+        ::testing::Values(
+            MisdeedOfThread{"crash", "thread", "it crashed: SIGSEGV, Segmentation fault"},
+            MisdeedOfThread{"throw", "thread", "it crashed: SIGABRT, Aborted"},
+            MisdeedOfThread{"exit", "thread", "it called std::exit()"},
+            MisdeedOfThread{"abort", "awaited_thread", "it crashed: SIGABRT, Aborted"},
+            MisdeedOfThread{"crash", "thread_pool", "it crashed: SIGSEGV, Segmentation fault"})),
+    [](const auto& test) {
+      const MisdeedOfThread& misdeed = std::get<1>(test.param);
+      return std::string(std::get<0>(test.param)) + "_" + misdeed.how + "_" + misdeed.where;
+    });
+
+TEST_P(ThreadOfPlugin, IsNamedAndResultsAreSaved) {
+  const auto& [mode, misdeed] = GetParam();
+  const Outcome outcome = run("orb_baseline",
+                              on_recording({"--set",
+                                            std::string("moving_checker={type: misbehaves, how: ") +
+                                                misdeed.how + ", where: " + misdeed.where + "}",
+                                            "--set", std::string("runtime.mode=") + mode}),
+                              with_plugins());
+  const std::string message = "a thread of " +
+                              (folder_.path() / "libstillpoint_misbehaves.so").string() +
+                              " failed: " + misdeed.reason;
+  EXPECT_EQ(outcome.exit_code, kStageFailed) << outcome.signal;
+  EXPECT_THAT(outcome.err, HasSubstr("error: " + message));
+  EXPECT_GE(count_poses(out() / "trajectory.txt"), 3u);
+  const auto summary = json_file(out() / "summary.json");
+  EXPECT_FALSE(summary["complete"]);
+  EXPECT_EQ(summary["failure"], message);
+}
+
 using StageThatWritesToImages = StageThatMisbehaves;
 INSTANTIATE_TEST_SUITE_P(
     Modes, StageThatWritesToImages,

@@ -116,9 +116,9 @@ TEST_F(NewPlugin, NothingIsLeftOfWhatCannotBeWritten) {
   constexpr std::size_t kMaxPath = 4095;
   std::string deep = "made";
   while (deep.size() + 200 < kMaxPath) deep += "/" + std::string(150, 'x');
-  deep += "/" +
-          std::string(
-              kMaxPath - deep.size() - 1 - std::string("/CMakeLists.txt.4194304.part").size(), 'y');
+  deep += "/" + std::string(kMaxPath - deep.size() - 1 -
+                                std::string("/CMakeLists.txt.4194304-0.part").size(),
+                            'y');
   const Outcome outcome = make("tracker", "a_plugin_with_a_long_name", {"-o", deep});
   expect_refused(outcome, ".part: cannot write: File name too long");
   EXPECT_TRUE(fs::is_empty(folder_.path()));

@@ -210,14 +210,14 @@ TEST_F(Run, EarlierPicturesDoNotOutliveTheirRun) {
   const std::string every_frame = "outputs=[{type: images, every: 1}]";
   run_with({"--set", every_frame});
   EXPECT_TRUE(fs::exists(images / "000002.jpg"));
-  const auto halves = {out() / "same/trajectory.txt.4194304.part",
-                       images / "000001.jpg.4194304.part"};
+  const auto halves = {out() / "same/trajectory.txt.4194304-0.part",
+                       images / "000001.jpg.4194304-0.part"};
   for (const auto& half : halves) std::ofstream(half) << "of a run that was killed";
-  std::ofstream(out() / "same/mine.txt.7.part") << "a file of the user's";
+  std::ofstream(out() / "same/mine.txt.7-0.part") << "a file of the user's";
   std::ofstream(images / "mine.jpg") << "a picture of the user's";
   run_with({});
   for (const auto& half : halves) EXPECT_FALSE(fs::exists(half)) << half;
-  EXPECT_TRUE(fs::exists(out() / "same/mine.txt.7.part"));
+  EXPECT_TRUE(fs::exists(out() / "same/mine.txt.7-0.part"));
   EXPECT_FALSE(fs::exists(images / "000002.jpg"));
   EXPECT_TRUE(fs::exists(images / "mine.jpg"));
   fs::remove(images / "mine.jpg");

@@ -1,6 +1,7 @@
 // `stillpoint report` as a user calls it, and its page in a browser.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <nlohmann/json.hpp>
 
@@ -142,7 +143,10 @@ TEST(ReportProgram, DamagedRunsAreShownAsFarAsTheyGo) {
                "excluded_percent\n0,1.0,trac");
   folder.write("run/trajectory.txt", "1000.0 0 0 0 0 0\n");
   folder.write("run/map/map.ot", "# Octomap OcTree file\n");
-  folder.write("run/images/000000.jpg", "no picture");
+  for (const auto& picture : fs::directory_iterator(run / "images"))
+    std::ofstream(picture.path()) << "no picture";
+  fs::remove(run / "images/000000.jpg");
+  ASSERT_EQ(::mkfifo((run / "images/000000.jpg").c_str(), 0600), 0);
   const Outcome outcome = call({"report", run.string()});
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_THAT(outcome.err, AllOf(HasSubstr("note: summary.json cannot be read"),

@@ -97,6 +97,17 @@ TEST_F(AtomicFileTest, OnAFullDiskTheEarlierFileStaysWhole) {
   EXPECT_EQ(files(), 1U);
 }
 
+TEST_F(AtomicFileTest, OfTwoThatAreWrittenAtOnceBothAreWhole) {
+  AtomicFile first(folder_ / "map"), second(folder_ / "map");
+  first.stream() << "the longer one";
+  second.stream() << "short";
+  second.commit();
+  EXPECT_EQ(contents(folder_ / "map"), "short");
+  first.commit();
+  EXPECT_EQ(contents(folder_ / "map"), "the longer one");
+  EXPECT_EQ(files(), 1U);
+}
+
 TEST_F(AtomicFileTest, FilesBesideItAreSomebodyElses) {
   std::ofstream(folder_ / "map.part") << "mine";
   write(folder_ / "map", "text");

@@ -10,6 +10,7 @@
 #include "report/page_json.hpp"
 #include "stillpoint/error.hpp"
 #include "stillpoint/support/base64.hpp"
+#include "stillpoint/support/image_file.hpp"
 #include "study/text_file.hpp"
 
 namespace stillpoint::report {
@@ -33,7 +34,11 @@ std::string text_of(const Json& json) {
 /// As JPEG, no wider than a page shows it. Empty when it cannot be read.
 std::string jpeg_of(const std::filesystem::path& file) {
   constexpr int kWidth = 960, kQuality = 80;
-  cv::Mat picture = cv::imread(file.string());
+  cv::Mat picture;
+  try {
+    picture = cv::imdecode(read_image_file(file), cv::IMREAD_COLOR);
+  } catch (const Error&) {
+  }
   if (picture.empty()) return {};
   if (picture.cols > kWidth)
     cv::resize(picture, picture, {kWidth, picture.rows * kWidth / picture.cols}, 0, 0,

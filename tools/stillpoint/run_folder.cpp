@@ -38,12 +38,19 @@ bool is_picture(const fs::path& file) {
          (file.extension() == ".jpg" || file.extension() == ".png");
 }
 
-/// "trajectory.txt.1234.part", of a run that was killed; this run's outputs have begun theirs.
+/// The process of an AtomicFile's temporary name, "trajectory.txt.1234-0.part"; empty: of none.
+std::string process_of(const fs::path& file) {
+  const std::string numbers = file.stem().extension().string();  // ".1234-0"
+  const std::size_t dash = numbers.find('-');
+  if (file.extension() != ".part" || dash == std::string::npos) return {};
+  std::string process = numbers.substr(1, dash - 1);
+  return is_number(process) && is_number(numbers.substr(dash + 1)) ? process : std::string();
+}
+
+/// Of a run that was killed; this run's outputs have begun theirs.
 bool is_unfinished(const fs::path& file) {
-  const std::string process = file.stem().extension().string();  // ".1234"
-  if (file.extension() != ".part" || process.size() < 2 || !is_number(process.substr(1)) ||
-      process == '.' + std::to_string(::getpid()))
-    return false;
+  const std::string process = process_of(file);
+  if (process.empty() || process == std::to_string(::getpid())) return false;
   const fs::path name = file.stem().stem();
   const auto is_name = [&](const char* known) { return name == known; };
   return std::ranges::any_of(kResults, is_name) || std::ranges::any_of(kMaps, is_name) ||

@@ -1,6 +1,9 @@
 #include "stillpoint/engine/stage_guard.hpp"
 
+#include <dlfcn.h>
+#include <execinfo.h>
 #include <pthread.h>
+#include <semaphore.h>
 #include <setjmp.h>
 #include <signal.h>
 #include <unistd.h>
@@ -16,9 +19,11 @@
 #include <iomanip>
 #include <memory>
 #include <mutex>
+#include <span>
 #include <sstream>
 #include <stdexcept>
 
+#include "stillpoint/engine/stage_error.hpp"
 #include "stillpoint/runtime/read_only_images.hpp"
 
 namespace stillpoint {
@@ -32,6 +37,9 @@ constexpr int kExited = 1000;  // beyond all signals, like the next
 constexpr int kWroteToImage = 1001;
 constexpr unsigned kSecondsToSave = 30;
 constexpr std::size_t kHandlerStackSize = 64 * 1024;  // bytes
+// A call may wait for a thread that has crashed. Others shall come to their end before that: what
+// is ended leaves its locks behind.
+constexpr std::chrono::seconds kTimeToReturn{2};
 
 struct Call {
   const std::string& stage;
@@ -50,6 +58,18 @@ STILLPOINT_OF_THREAD volatile sig_atomic_t bookkeeping = 0;
 
 std::atomic<bool> guarded{false};
 std::atomic<bool> ended_a_call{false};
+
+/// Where the libraries of plugins begin in memory: signal handlers look for them, hence no list.
+std::array<std::atomic<const void*>, 256> libraries{};
+
+/// The first thread of a plugin that ended outside all calls. Such a thread stays where it is.
+struct EndedThread {
+  std::atomic<int> what{0};  // as in reason_of(); 0: none. The rest is set before
+  std::array<char, 1024> library{};
+  std::atomic<bool> told{false};  // a call has failed for it
+  sem_t happened{};
+};
+EndedThread ended_thread;
 std::array<char, 256> final_message{};  // of the handler of SIGALRM
 std::mutex calls_mutex;
 std::vector<Call*> calls;  // guarded by calls_mutex
@@ -102,15 +122,44 @@ class HandlerStack {
   std::unique_ptr<char[]> memory_;
 };
 
+/// The file of the plugin whose code the calling thread is in; nullptr: no plugin's. For signal
+/// handlers: the caller has loaded what backtrace() needs.
+const char* plugin_of_thread() {
+  std::array<void*, 64> callers{};
+  const int depth = ::backtrace(callers.data(), static_cast<int>(callers.size()));
+  for (void* caller : std::span(callers).first(static_cast<std::size_t>(depth))) {
+    Dl_info object{};
+    if (::dladdr(caller, &object) == 0) continue;
+    for (const auto& library : libraries)
+      if (library == object.dli_fbase) return object.dli_fname;
+  }
+  return nullptr;
+}
+
+/// Returns when it is no thread of a plugin. It must not go on, and must not end: it may hold
+/// locks, and exit() or the end of a thread would run more code of the plugin.
+void keep_thread_of_plugin(int what) {
+  static std::atomic_flag taken;
+  const char* const library = plugin_of_thread();
+  if (!library) return;
+  ended_a_call = true;
+  if (!taken.test_and_set()) {
+    std::strncpy(ended_thread.library.data(), library, ended_thread.library.size() - 1);
+    ended_thread.what = what;
+    ::sem_post(&ended_thread.happened);
+  }
+  for (;;) ::pause();
+}
+
 void write_to_stderr(const char* words) {  // for signal handlers
   [[maybe_unused]] const auto written = ::write(STDERR_FILENO, words, std::strlen(words));
 }
 
 extern "C" void on_crash(int signal, siginfo_t* info, void*) {
   const bool wrote_to_image = signal == SIGSEGV && in_read_only_image(info->si_addr);
-  if (current && !bookkeeping)
-    siglongjmp(current->return_point, wrote_to_image ? kWroteToImage : signal);
-  if (wrote_to_image) write_to_stderr("error: a thread of a plugin wrote to an image of a frame\n");
+  const int what = wrote_to_image ? kWroteToImage : signal;
+  if (current && !bookkeeping) siglongjmp(current->return_point, what);
+  if (!current) keep_thread_of_plugin(what);
   ::signal(signal, SIG_DFL);
   ::raise(signal);
 }
@@ -121,6 +170,7 @@ extern "C" void on_give_up(int signal) {
 
 extern "C" void on_exit_of_process() {
   if (guarded && current && !bookkeeping) siglongjmp(current->return_point, kExited);
+  if (guarded && !current) keep_thread_of_plugin(kExited);
 }
 
 extern "C" void on_saving_hangs(int) {
@@ -136,12 +186,29 @@ std::string reason_of(int what) {
   return std::string("it crashed: SIG") + sigabbrev_np(what) + ", " + sigdescr_np(what);
 }
 
-[[noreturn]] void fail(const Call& call, int what) {
-  const std::string reason = reason_of(what);
+/// What follows has a time to save results in.
+void begin_to_save(const std::string& where, const std::string& reason) {
   std::snprintf(final_message.data(), final_message.size(),
                 "error: %s: %s; what followed did not return, results may be missing\n",
-                call.stage.c_str(), reason.c_str());
+                where.c_str(), reason.c_str());
   ::alarm(kSecondsToSave);
+}
+
+std::string name_of_ended_thread() {
+  return std::string("a thread of ") + ended_thread.library.data();
+}
+
+/// For the first call that notices: "a thread of PLUGIN failed: it crashed: …".
+void throw_of_ended_thread() {
+  if (ended_thread.what == 0 || ended_thread.told.exchange(true)) return;
+  const std::runtime_error reason(reason_of(ended_thread.what));
+  throw StageError(name_of_ended_thread(), std::nullopt, &reason);
+}
+
+[[noreturn]] void fail(const Call& call, int what) {
+  if (what == kGiveUp) throw_of_ended_thread();
+  const std::string reason = reason_of(what);
+  begin_to_save(call.stage, reason);
   ended_a_call = true;
   throw std::runtime_error(reason);
 }
@@ -177,6 +244,27 @@ void watch(const std::stop_token& stop, double patience, const LateCalls::Late& 
   }
 }
 
+std::size_t give_up_calls_since_before(Clock::time_point time) {
+  const std::lock_guard all(calls_mutex);
+  return static_cast<std::size_t>(std::ranges::count_if(calls, [&](const Call* call) {
+    return call->start < time && pthread_kill(call->thread, kGiveUp) == 0;
+  }));
+}
+
+/// Sees to it that the run ends after a thread of a plugin has ended.
+void watch_threads(const std::stop_token& stop) {
+  while (::sem_wait(&ended_thread.happened) != 0) {
+  }
+  if (stop.stop_requested()) return;
+  const auto end_of_thread = Clock::now();
+  begin_to_save(name_of_ended_thread(), reason_of(ended_thread.what));
+  std::mutex mutex;
+  std::condition_variable_any stopped;
+  std::unique_lock lock(mutex);
+  stopped.wait_for(lock, stop, kTimeToReturn, [] { return false; });
+  if (!stop.stop_requested()) give_up_calls_since_before(end_of_thread);
+}
+
 void handle_crash(int signal) {
   struct sigaction action {};
   action.sa_sigaction = on_crash;
@@ -194,6 +282,10 @@ void handle(int signal, void (*handler)(int)) {
 }  // namespace
 
 StageGuard::StageGuard() {
+  std::array<void*, 1> caller{};
+  ::backtrace(caller.data(), 1);  // loads what later calls need, which a signal handler must not
+  ::sem_init(&ended_thread.happened, 0, 0);
+  threads_ = std::jthread(watch_threads);
   for (const int signal : kCrashes) handle_crash(signal);
   handle(kGiveUp, on_give_up);
   handle(SIGALRM, on_saving_hangs);
@@ -204,13 +296,19 @@ StageGuard::StageGuard() {
 
 StageGuard::~StageGuard() {
   guarded = false;
+  threads_.request_stop();
+  ::sem_post(&ended_thread.happened);
   ::alarm(0);
   for (const int signal : kCrashes) ::signal(signal, SIG_DFL);
   ::signal(kGiveUp, SIG_IGN);
   ::signal(SIGALRM, SIG_DFL);
 }
 
-void StageGuard::library_was_loaded() {
+void StageGuard::library_was_loaded(const void* begin) {
+  for (auto& library : libraries) {
+    const void* none = nullptr;
+    if (library.compare_exchange_strong(none, begin) || none == begin) break;
+  }
   if (guarded) std::atexit(on_exit_of_process);
 }
 
@@ -222,15 +320,20 @@ std::vector<std::string> StageGuard::calls_longer_than(double seconds) {
   return texts;
 }
 
-std::size_t StageGuard::give_up() {
-  const std::lock_guard all(calls_mutex);
-  for (const Call* call : calls) pthread_kill(call->thread, kGiveUp);
-  return calls.size();
-}
+std::size_t StageGuard::give_up() { return give_up_calls_since_before(Clock::time_point::max()); }
 
 bool StageGuard::is_in_call() { return current != nullptr; }
 
 bool StageGuard::has_ended_a_call() { return ended_a_call; }
+
+std::string StageGuard::unreported_end() {
+  try {
+    throw_of_ended_thread();
+  } catch (const StageError& error) {
+    return error.what();
+  }
+  return {};
+}
 
 LateCalls::LateCalls(double patience_seconds, Late late) {
   if (patience_seconds > 0)
@@ -243,6 +346,7 @@ LateCalls::LateCalls(double patience_seconds, Late late) {
 void call_guarded(const std::string& stage, std::optional<std::uint32_t> frame,
                   void (*function)(void*), void* argument) {
   if (!guarded) return function(argument);
+  if (!current) throw_of_ended_thread();
   thread_local const HandlerStack kStack;
   Call call{.stage = stage, .frame = frame};
   const Registered registered(call);

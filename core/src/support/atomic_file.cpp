@@ -2,6 +2,7 @@
 
 #include <unistd.h>
 
+#include <atomic>
 #include <cerrno>
 #include <cstring>
 #include <string>
@@ -18,12 +19,17 @@ namespace {
               "check the folder's permissions and the free space");
 }
 
+/// A name that nothing else on this machine uses.
+std::string temporary_name(const std::filesystem::path& path) {
+  static std::atomic<unsigned> number{0};
+  return path.string() + '.' + std::to_string(::getpid()) + '-' + std::to_string(number++) +
+         ".part";
+}
+
 }  // namespace
 
 AtomicFile::AtomicFile(std::filesystem::path path)
-    : path_(std::move(path)),
-      // A name that no other process of this machine uses.
-      temporary_(path_.string() + '.' + std::to_string(::getpid()) + ".part") {
+    : path_(std::move(path)), temporary_(temporary_name(path_)) {
   std::error_code error;
   const std::filesystem::file_status there = std::filesystem::status(path_, error);
   if (std::filesystem::exists(there) && !std::filesystem::is_regular_file(there))

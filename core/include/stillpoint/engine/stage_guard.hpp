@@ -19,6 +19,10 @@ namespace stillpoint {
 /// std::exit(), fails as if it had thrown an exception: in a stage, in a constructor, or while it
 /// is loaded. Only for programs that own their signal handlers; one guard at a time.
 ///
+/// A thread that a plugin made itself, or a library for it (of a thread pool, say), is stopped
+/// where it is; the next call of any stage fails with "a thread of PLUGIN failed: …". Calls that do
+/// not return within two seconds of that are ended: they may wait for that thread.
+///
 /// Locks and memory that the plugin held are not released: results can be saved, but the run cannot
 /// go on. If saving hangs as well, the process ends after half a minute.
 class STILLPOINT_EXPORT StageGuard {
@@ -30,7 +34,9 @@ class STILLPOINT_EXPORT StageGuard {
 
   /// To be called after each library is loaded: std::exit() destroys in reverse order, so that the
   /// statics of a library loaded after the guard would go before the guard notices the exit.
-  static void library_was_loaded();
+  /// `begin` is where the library begins in memory (dli_fbase of dladdr()), by which its threads
+  /// are recognised.
+  static void library_was_loaded(const void* begin);
   /// The calls of plugins that take longer than that: "tracking (orb) has not returned for 12 s,
   /// frame 3".
   static std::vector<std::string> calls_longer_than(double seconds);
@@ -38,8 +44,15 @@ class STILLPOINT_EXPORT StageGuard {
   static std::size_t give_up();
   /// Whether this thread is in a guarded call.
   static bool is_in_call();
-  /// Whether it had to end a call. Destructors of that plugin may crash or hang as well.
+  /// Whether it had to end a call, or to stop a thread. Destructors of that plugin may crash or
+  /// hang as well.
   static bool has_ended_a_call();
+  /// Of a thread that was stopped after the last call: "a thread of PLUGIN failed: …". Empty: none,
+  /// or a call has failed for it.
+  static std::string unreported_end();
+
+ private:
+  std::jthread threads_;  // ends calls that wait for a thread that was stopped
 };
 
 /// While it lives, says which calls of plugins take long; one at a time.

@@ -8,7 +8,7 @@
 
 namespace stillpoint {
 
-/// Written beside its place, under a name of this process that ends in .part, and put there by
+/// Written beside its place, under a name of its own that ends in .part, and put there by
 /// commit(). Without commit(), nothing is left behind.
 class STILLPOINT_EXPORT AtomicFile {
  public:
