@@ -198,15 +198,19 @@ std::string name_of_ended_thread() {
   return std::string("a thread of ") + ended_thread.library.data();
 }
 
-/// For the first call that notices: "a thread of PLUGIN failed: it crashed: …".
-void throw_of_ended_thread() {
-  if (ended_thread.what == 0 || ended_thread.told.exchange(true)) return;
+/// "a thread of PLUGIN failed: it crashed: …"
+[[noreturn]] void throw_of_ended_thread() {
   const std::runtime_error reason(reason_of(ended_thread.what));
   throw StageError(name_of_ended_thread(), std::nullopt, &reason);
 }
 
+/// For the first call that notices.
+void throw_of_ended_thread_once() {
+  if (ended_thread.what != 0 && !ended_thread.told.exchange(true)) throw_of_ended_thread();
+}
+
 [[noreturn]] void fail(const Call& call, int what) {
-  if (what == kGiveUp) throw_of_ended_thread();
+  if (what == kGiveUp && ended_thread.what != 0) throw_of_ended_thread();  // it waited for that one
   const std::string reason = reason_of(what);
   begin_to_save(call.stage, reason);
   ended_a_call = true;
@@ -328,7 +332,7 @@ bool StageGuard::has_ended_a_call() { return ended_a_call; }
 
 std::string StageGuard::unreported_end() {
   try {
-    throw_of_ended_thread();
+    throw_of_ended_thread_once();
   } catch (const StageError& error) {
     return error.what();
   }
@@ -346,7 +350,7 @@ LateCalls::LateCalls(double patience_seconds, Late late) {
 void call_guarded(const std::string& stage, std::optional<std::uint32_t> frame,
                   void (*function)(void*), void* argument) {
   if (!guarded) return function(argument);
-  if (!current) throw_of_ended_thread();
+  if (!current) throw_of_ended_thread_once();
   thread_local const HandlerStack kStack;
   Call call{.stage = stage, .frame = frame};
   const Registered registered(call);
