@@ -73,7 +73,7 @@ TEST_F(BadPlugins, FailingStageIsNamedAndResultsAreSaved) {
   for (const char* mode : {"inline", "threaded"}) {
     const Outcome outcome = run("orb_baseline",
                                 on_recording({"--set", "moving_checker.type=throws_later", "--set",
-                                              std::string("runtime.mode=") + mode}),
+                                              std::string("runtime.mode=") + misdeed.mode}),
                                 with_plugins());
     EXPECT_EQ(outcome.exit_code, kStageFailed);
     const std::string message =
@@ -201,7 +201,7 @@ TEST_P(ThreadOfPlugin, IsNamedAndResultsAreSaved) {
                               on_recording({"--set",
                                             std::string("moving_checker={type: misbehaves, how: ") +
                                                 misdeed.how + ", where: " + misdeed.where + "}",
-                                            "--set", std::string("runtime.mode=") + mode}),
+                                            "--set", std::string("runtime.mode=") + misdeed.mode}),
                               with_plugins());
   const std::string message = "a thread of " +
                               (folder_.path() / "libstillpoint_misbehaves.so").string() +
