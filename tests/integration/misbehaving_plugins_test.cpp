@@ -73,7 +73,7 @@ TEST_F(BadPlugins, FailingStageIsNamedAndResultsAreSaved) {
   for (const char* mode : {"inline", "threaded"}) {
     const Outcome outcome = run("orb_baseline",
                                 on_recording({"--set", "moving_checker.type=throws_later", "--set",
-                                              std::string("runtime.mode=") + misdeed.mode}),
+                                              std::string("runtime.mode=") + mode}),
                                 with_plugins());
     EXPECT_EQ(outcome.exit_code, kStageFailed);
     const std::string message =

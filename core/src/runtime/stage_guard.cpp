@@ -200,6 +200,7 @@ std::string name_of_ended_thread() {
 
 /// "a thread of PLUGIN failed: it crashed: …"
 [[noreturn]] void throw_of_ended_thread() {
+  ended_thread.told = true;
   const std::runtime_error reason(reason_of(ended_thread.what));
   throw StageError(name_of_ended_thread(), std::nullopt, &reason);
 }
