@@ -129,7 +129,7 @@ struct Report {
 
 TEST_F(OutputFiles, TimingsAreStreamedAndComplete) {
   TimingsOutput output({}, context);
-  EXPECT_THAT(files(), ElementsAre(::testing::MatchesRegex("timings.csv.[0-9]+.part")));
+  EXPECT_THAT(files(), ElementsAre(::testing::MatchesRegex("timings.csv.[0-9]+-[0-9]+.part")));
   output.frame(Report()());
   times = {{"loop", 1.0, 0.5, 59}};
   output.finish(summary());

@@ -70,6 +70,7 @@ struct EndedThread {
   sem_t happened{};
 };
 EndedThread ended_thread;
+pid_t watched_process = 0;              // that of watch_threads()
 std::array<char, 256> final_message{};  // of the handler of SIGALRM
 std::mutex calls_mutex;
 std::vector<Call*> calls;  // guarded by calls_mutex
@@ -136,11 +137,12 @@ const char* plugin_of_thread() {
   return nullptr;
 }
 
-/// Returns when it is no thread of a plugin. It must not go on, and must not end: it may hold
+/// Returns when it is no thread of a plugin, or in a child of the guarded process, where nobody
+/// watches: that one ends as usual. It must not go on, and must not end: it may hold
 /// locks, and exit() or the end of a thread would run more code of the plugin.
 void keep_thread_of_plugin(int what) {
   static std::atomic_flag taken;
-  const char* const library = plugin_of_thread();
+  const char* const library = ::getpid() == watched_process ? plugin_of_thread() : nullptr;
   if (!library) return;
   ended_a_call = true;
   if (!taken.test_and_set()) {
@@ -160,6 +162,7 @@ extern "C" void on_crash(int signal, siginfo_t* info, void*) {
   const int what = wrote_to_image ? kWroteToImage : signal;
   if (current && !bookkeeping) siglongjmp(current->return_point, what);
   if (!current) keep_thread_of_plugin(what);
+  if (wrote_to_image) write_to_stderr("error: a thread of a plugin wrote to an image of a frame\n");
   ::signal(signal, SIG_DFL);
   ::raise(signal);
 }
@@ -290,6 +293,7 @@ StageGuard::StageGuard() {
   std::array<void*, 1> caller{};
   ::backtrace(caller.data(), 1);  // loads what later calls need, which a signal handler must not
   ::sem_init(&ended_thread.happened, 0, 0);
+  watched_process = ::getpid();
   threads_ = std::jthread(watch_threads);
   for (const int signal : kCrashes) handle_crash(signal);
   handle(kGiveUp, on_give_up);
