@@ -132,8 +132,8 @@ int main(int argc, char** argv) {
   const stillpoint::StageGuard guard;
   const int exit_code = run_and_say_why_not(argc, argv);
   if (!stillpoint::StageGuard::has_ended_a_call()) return exit_code;
-  if (const std::string end = stillpoint::StageGuard::unreported_end(); !end.empty())
-    std::cerr << "error: " << end << '\n';
+  const std::string end = stillpoint::StageGuard::ended_thread_text();
+  if (exit_code == 0 && !end.empty()) std::cerr << "error: " << end << '\n';
   std::cout << std::flush;
   // Nothing more of that plugin is to be run. Where it crashed in a destructor, all is saved.
   std::_Exit(exit_code != 0 ? exit_code : static_cast<int>(Fault::kStage));

@@ -25,13 +25,6 @@ std::string loader_message(const std::string& file) {
   return std::string(text);
 }
 
-/// Where it begins in memory.
-const void* begin_of(const boost::dll::shared_library& library) {
-  Dl_info object{};
-  const auto* const stamp = ::dlsym(library.native(), kPluginSymbol);
-  return stamp && ::dladdr(stamp, &object) != 0 ? object.dli_fbase : nullptr;
-}
-
 /// Runs the library's static constructors; empty with a reason when it cannot be loaded.
 boost::dll::shared_library load(const fs::path& file, std::string& reason) {
   boost::dll::shared_library library;
@@ -51,7 +44,7 @@ boost::dll::shared_library load(const fs::path& file, std::string& reason) {
     throw Error(Fault::kStage, "it threw something that is not a std::exception", name,
                 "its static constructors did that; fix the plugin, or remove it from the folder");
   }
-  StageGuard::library_was_loaded(begin_of(library));
+  if (reason.empty()) StageGuard::library_was_loaded(::dlsym(library.native(), kPluginSymbol));
   return library;
 }
 

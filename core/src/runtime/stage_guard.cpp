@@ -2,6 +2,7 @@
 
 #include <dlfcn.h>
 #include <execinfo.h>
+#include <link.h>
 #include <pthread.h>
 #include <semaphore.h>
 #include <setjmp.h>
@@ -37,9 +38,10 @@ constexpr int kExited = 1000;  // beyond all signals, like the next
 constexpr int kWroteToImage = 1001;
 constexpr unsigned kSecondsToSave = 30;
 constexpr std::size_t kHandlerStackSize = 64 * 1024;  // bytes
-// A call may wait for a thread that has crashed. Others shall come to their end before that: what
-// is ended leaves its locks behind.
+// After the end of a thread: calls that were under way may wait for it, and so may those that save
+// results. What is ended leaves its locks behind, hence some patience.
 constexpr std::chrono::seconds kTimeToReturn{2};
+constexpr std::chrono::seconds kTimeToSave{10};
 
 struct Call {
   const std::string& stage;
@@ -55,23 +57,24 @@ struct Call {
 #define STILLPOINT_OF_THREAD thread_local __attribute__((tls_model("initial-exec")))
 STILLPOINT_OF_THREAD Call* current = nullptr;
 STILLPOINT_OF_THREAD volatile sig_atomic_t bookkeeping = 0;
+STILLPOINT_OF_THREAD bool calls_stages = false;  // a thread of the engine or of its user
 
 std::atomic<bool> guarded{false};
 std::atomic<bool> ended_a_call{false};
 
-/// Where the libraries of plugins begin in memory: signal handlers look for them, hence no list.
+/// Where the libraries of plugins begin in memory: an array, since signal handlers read it.
 std::array<std::atomic<const void*>, 256> libraries{};
 
-/// The first thread of a plugin that ended outside all calls. Such a thread stays where it is.
+/// The first thread of a plugin that ended outside all calls. It stays where it is.
 struct EndedThread {
-  std::atomic<int> what{0};  // as in reason_of(); 0: none. The rest is set before
+  std::atomic_flag taken;
+  std::atomic<int> what{0};  // as in reason_of(), set last; 0: none
   std::array<char, 1024> library{};
-  std::atomic<bool> told{false};  // a call has failed for it
-  sem_t happened{};
 };
 EndedThread ended_thread;
-pid_t watched_process = 0;              // that of watch_threads()
-std::array<char, 256> final_message{};  // of the handler of SIGALRM
+sem_t thread_ended{};
+std::atomic<pid_t> watched_process{0};   // that of the ThreadWatch; 0: there is none
+std::array<char, 1280> final_message{};  // of the handler of SIGALRM
 std::mutex calls_mutex;
 std::vector<Call*> calls;  // guarded by calls_mutex
 
@@ -123,45 +126,67 @@ class HandlerStack {
   std::unique_ptr<char[]> memory_;
 };
 
-/// The file of the plugin whose code the calling thread is in; nullptr: no plugin's. For signal
-/// handlers: the caller has loaded what backtrace() needs.
-const char* plugin_of_thread() {
+const void* begin_of_object(const void* address) {
+  dl_find_object object{};
+  return ::_dl_find_object(const_cast<void*>(address), &object) == 0 ? object.dlfo_map_start
+                                                                     : nullptr;
+}
+
+/// The file of the plugin whose code is among the callers; nullptr: no plugin's. For signal
+/// handlers: StageGuard has loaded what backtrace() needs.
+const char* plugin_among_callers() {
   std::array<void*, 64> callers{};
   const int depth = ::backtrace(callers.data(), static_cast<int>(callers.size()));
   for (void* caller : std::span(callers).first(static_cast<std::size_t>(depth))) {
-    Dl_info object{};
-    if (::dladdr(caller, &object) == 0) continue;
+    dl_find_object object{};
+    if (::_dl_find_object(caller, &object) != 0) continue;
     for (const auto& library : libraries)
-      if (library == object.dli_fbase) return object.dli_fname;
+      if (library == object.dlfo_map_start) return object.dlfo_link_map->l_name;
   }
   return nullptr;
-}
-
-/// Returns when it is no thread of a plugin, or in a child of the guarded process, where nobody
-/// watches: that one ends as usual. It must not go on, and must not end: it may hold
-/// locks, and exit() or the end of a thread would run more code of the plugin.
-void keep_thread_of_plugin(int what) {
-  static std::atomic_flag taken;
-  const char* const library = ::getpid() == watched_process ? plugin_of_thread() : nullptr;
-  if (!library) return;
-  ended_a_call = true;
-  if (!taken.test_and_set()) {
-    std::strncpy(ended_thread.library.data(), library, ended_thread.library.size() - 1);
-    ended_thread.what = what;
-    ::sem_post(&ended_thread.happened);
-  }
-  for (;;) ::pause();
 }
 
 void write_to_stderr(const char* words) {  // for signal handlers
   [[maybe_unused]] const auto written = ::write(STDERR_FILENO, words, std::strlen(words));
 }
 
+/// Cuts off what finds no room. For signal handlers.
+void append(std::span<char> text, const char* words) {
+  const std::size_t used = std::strlen(text.data());
+  std::strncpy(text.data() + used, words, text.size() - used - 1);
+}
+
+/// Never returns: the thread may hold locks, and ending it would run more of the plugin's code.
+[[noreturn]] void stop_thread(const char* library, int what) {
+  if (!ended_thread.taken.test_and_set()) {
+    append(ended_thread.library, library);
+    append(final_message, "error: a thread of ");
+    append(final_message, library);
+    append(final_message, " failed; what followed did not return, results may be missing\n");
+    ::alarm(kSecondsToSave);
+    ended_thread.what = what;
+    ended_a_call = true;
+    ::sem_post(&thread_ended);
+  }
+  for (;;) ::pause();
+}
+
+/// Of a thread that is in no call. Returns when the process has to end as usual.
+void end_thread(int what) {
+  const char* const library = plugin_among_callers();
+  if (!library) return;
+  if (!calls_stages && ::getpid() == watched_process) stop_thread(library, what);
+  write_to_stderr("error: ended by ");
+  write_to_stderr(library);
+  write_to_stderr("\n");
+  if (what == kExited) ::_exit(1);
+}
+
 extern "C" void on_crash(int signal, siginfo_t* info, void*) {
   const bool wrote_to_image = signal == SIGSEGV && in_read_only_image(info->si_addr);
   const int what = wrote_to_image ? kWroteToImage : signal;
   if (current && !bookkeeping) siglongjmp(current->return_point, what);
-  if (!current) keep_thread_of_plugin(what);
+  if (!current) end_thread(what);
   if (wrote_to_image) write_to_stderr("error: a thread of a plugin wrote to an image of a frame\n");
   ::signal(signal, SIG_DFL);
   ::raise(signal);
@@ -173,7 +198,7 @@ extern "C" void on_give_up(int signal) {
 
 extern "C" void on_exit_of_process() {
   if (guarded && current && !bookkeeping) siglongjmp(current->return_point, kExited);
-  if (guarded && !current) keep_thread_of_plugin(kExited);
+  if (guarded && !current) end_thread(kExited);
 }
 
 extern "C" void on_saving_hangs(int) {
@@ -189,34 +214,18 @@ std::string reason_of(int what) {
   return std::string("it crashed: SIG") + sigabbrev_np(what) + ", " + sigdescr_np(what);
 }
 
-/// What follows has a time to save results in.
-void begin_to_save(const std::string& where, const std::string& reason) {
-  std::snprintf(final_message.data(), final_message.size(),
-                "error: %s: %s; what followed did not return, results may be missing\n",
-                where.c_str(), reason.c_str());
-  ::alarm(kSecondsToSave);
-}
-
-std::string name_of_ended_thread() {
-  return std::string("a thread of ") + ended_thread.library.data();
-}
-
-/// "a thread of PLUGIN failed: it crashed: …"
-[[noreturn]] void throw_of_ended_thread() {
-  ended_thread.told = true;
+StageError error_of_ended_thread() {
   const std::runtime_error reason(reason_of(ended_thread.what));
-  throw StageError(name_of_ended_thread(), std::nullopt, &reason);
-}
-
-/// For the first call that notices.
-void throw_of_ended_thread_once() {
-  if (ended_thread.what != 0 && !ended_thread.told.exchange(true)) throw_of_ended_thread();
+  return {std::string("a thread of ") + ended_thread.library.data(), std::nullopt, &reason};
 }
 
 [[noreturn]] void fail(const Call& call, int what) {
-  if (what == kGiveUp && ended_thread.what != 0) throw_of_ended_thread();  // it waited for that one
+  if (what == kGiveUp && ended_thread.what != 0) throw error_of_ended_thread();  // waited for it
   const std::string reason = reason_of(what);
-  begin_to_save(call.stage, reason);
+  std::snprintf(final_message.data(), final_message.size(),
+                "error: %s: %s; what followed did not return, results may be missing\n",
+                call.stage.c_str(), reason.c_str());
+  ::alarm(kSecondsToSave);
   ended_a_call = true;
   throw std::runtime_error(reason);
 }
@@ -252,25 +261,38 @@ void watch(const std::stop_token& stop, double patience, const LateCalls::Late& 
   }
 }
 
-std::size_t give_up_calls_since_before(Clock::time_point time) {
+std::size_t give_up_calls_begun_before(Clock::time_point time) {
   const std::lock_guard all(calls_mutex);
   return static_cast<std::size_t>(std::ranges::count_if(calls, [&](const Call* call) {
     return call->start < time && pthread_kill(call->thread, kGiveUp) == 0;
   }));
 }
 
-/// Sees to it that the run ends after a thread of a plugin has ended.
-void watch_threads(const std::stop_token& stop) {
-  while (::sem_wait(&ended_thread.happened) != 0) {
+void watch_threads(const std::stop_token& stop, const ThreadWatch::Ended& ended) {
+  while (::sem_wait(&thread_ended) != 0) {
   }
   if (stop.stop_requested()) return;
   const auto end_of_thread = Clock::now();
-  begin_to_save(name_of_ended_thread(), reason_of(ended_thread.what));
+  ended(std::make_exception_ptr(error_of_ended_thread()));
   std::mutex mutex;
   std::condition_variable_any stopped;
   std::unique_lock lock(mutex);
-  stopped.wait_for(lock, stop, kTimeToReturn, [] { return false; });
-  if (!stop.stop_requested()) give_up_calls_since_before(end_of_thread);
+  const auto wait = [&](std::chrono::seconds time) {
+    stopped.wait_for(lock, stop, time, [] { return false; });
+    return !stop.stop_requested();
+  };
+  if (wait(kTimeToReturn)) give_up_calls_begun_before(end_of_thread);
+  while (wait(kTimeToSave)) give_up_calls_begun_before(Clock::now() - kTimeToSave);
+}
+
+/// Signals are for threads that wait for them.
+std::jthread without_signals(std::function<void(const std::stop_token&)> function) {
+  sigset_t all, before;
+  sigfillset(&all);
+  pthread_sigmask(SIG_SETMASK, &all, &before);
+  std::jthread thread(std::move(function));
+  pthread_sigmask(SIG_SETMASK, &before, nullptr);
+  return thread;
 }
 
 void handle_crash(int signal) {
@@ -292,9 +314,10 @@ void handle(int signal, void (*handler)(int)) {
 StageGuard::StageGuard() {
   std::array<void*, 1> caller{};
   ::backtrace(caller.data(), 1);  // loads what later calls need, which a signal handler must not
-  ::sem_init(&ended_thread.happened, 0, 0);
-  watched_process = ::getpid();
-  threads_ = std::jthread(watch_threads);
+  ended_thread.taken.clear();
+  ended_thread.what = 0;
+  ended_thread.library.fill('\0');
+  final_message.fill('\0');
   for (const int signal : kCrashes) handle_crash(signal);
   handle(kGiveUp, on_give_up);
   handle(SIGALRM, on_saving_hangs);
@@ -305,15 +328,14 @@ StageGuard::StageGuard() {
 
 StageGuard::~StageGuard() {
   guarded = false;
-  threads_.request_stop();
-  ::sem_post(&ended_thread.happened);
   ::alarm(0);
   for (const int signal : kCrashes) ::signal(signal, SIG_DFL);
   ::signal(kGiveUp, SIG_IGN);
   ::signal(SIGALRM, SIG_DFL);
 }
 
-void StageGuard::library_was_loaded(const void* begin) {
+void StageGuard::library_was_loaded(const void* address) {
+  const void* const begin = begin_of_object(address);
   for (auto& library : libraries) {
     const void* none = nullptr;
     if (library.compare_exchange_strong(none, begin) || none == begin) break;
@@ -329,19 +351,29 @@ std::vector<std::string> StageGuard::calls_longer_than(double seconds) {
   return texts;
 }
 
-std::size_t StageGuard::give_up() { return give_up_calls_since_before(Clock::time_point::max()); }
+std::size_t StageGuard::give_up() { return give_up_calls_begun_before(Clock::time_point::max()); }
 
 bool StageGuard::is_in_call() { return current != nullptr; }
 
 bool StageGuard::has_ended_a_call() { return ended_a_call; }
 
-std::string StageGuard::unreported_end() {
-  try {
-    throw_of_ended_thread_once();
-  } catch (const StageError& error) {
-    return error.what();
-  }
-  return {};
+std::string StageGuard::ended_thread_text() {
+  return ended_thread.what != 0 ? error_of_ended_thread().what() : std::string();
+}
+
+ThreadWatch::ThreadWatch(Ended ended) {
+  if (!guarded) return;
+  ::sem_init(&thread_ended, 0, 0);
+  watcher_ = without_signals(
+      [ended = std::move(ended)](const std::stop_token& stop) { watch_threads(stop, ended); });
+  watched_process = ::getpid();
+}
+
+ThreadWatch::~ThreadWatch() {
+  if (!watcher_.joinable()) return;
+  watched_process = 0;
+  watcher_.request_stop();
+  ::sem_post(&thread_ended);
 }
 
 LateCalls::LateCalls(double patience_seconds, Late late) {
@@ -355,7 +387,7 @@ LateCalls::LateCalls(double patience_seconds, Late late) {
 void call_guarded(const std::string& stage, std::optional<std::uint32_t> frame,
                   void (*function)(void*), void* argument) {
   if (!guarded) return function(argument);
-  if (!current) throw_of_ended_thread_once();
+  calls_stages = true;
   thread_local const HandlerStack kStack;
   Call call{.stage = stage, .frame = frame};
   const Registered registered(call);

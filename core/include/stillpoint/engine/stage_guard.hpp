@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <exception>
 #include <functional>
 #include <optional>
 #include <string>
@@ -19,9 +20,7 @@ namespace stillpoint {
 /// std::exit(), fails as if it had thrown an exception: in a stage, in a constructor, or while it
 /// is loaded. Only for programs that own their signal handlers; one guard at a time.
 ///
-/// A thread that a plugin made itself, or a library for it (of a thread pool, say), is stopped
-/// where it is; the next call of any stage fails with "a thread of PLUGIN failed: …". Calls that do
-/// not return within two seconds of that are ended: they may wait for that thread.
+/// Threads that a plugin has made itself are for ThreadWatch.
 ///
 /// Locks and memory that the plugin held are not released: results can be saved, but the run cannot
 /// go on. If saving hangs as well, the process ends after half a minute.
@@ -34,9 +33,8 @@ class STILLPOINT_EXPORT StageGuard {
 
   /// To be called after each library is loaded: std::exit() destroys in reverse order, so that the
   /// statics of a library loaded after the guard would go before the guard notices the exit.
-  /// `begin` is where the library begins in memory (dli_fbase of dladdr()), by which its threads
-  /// are recognised.
-  static void library_was_loaded(const void* begin);
+  /// `address`: of anything in the library, by which its threads are recognised.
+  static void library_was_loaded(const void* address);
   /// The calls of plugins that take longer than that: "tracking (orb) has not returned for 12 s,
   /// frame 3".
   static std::vector<std::string> calls_longer_than(double seconds);
@@ -47,12 +45,8 @@ class STILLPOINT_EXPORT StageGuard {
   /// Whether it had to end a call, or to stop a thread. Destructors of that plugin may crash or
   /// hang as well.
   static bool has_ended_a_call();
-  /// Of a thread that was stopped after the last call: "a thread of PLUGIN failed: …". Empty: none,
-  /// or a call has failed for it.
-  static std::string unreported_end();
-
- private:
-  std::jthread threads_;  // ends calls that wait for a thread that was stopped
+  /// "a thread of PLUGIN failed: it crashed: …"; empty: none was stopped.
+  static std::string ended_thread_text();
 };
 
 /// While it lives, says which calls of plugins take long; one at a time.
@@ -62,6 +56,26 @@ class STILLPOINT_EXPORT LateCalls {
   /// 0: never.
   using Late = std::function<void(const std::string& what)>;
   LateCalls(double patience_seconds, Late late);
+
+ private:
+  std::jthread watcher_;
+};
+
+/// While it lives, and a StageGuard, a thread that ends the process by a crash, an exception or
+/// std::exit() ends the run instead, if code of a plugin is among its callers: the plugin has made
+/// it, or a pool for it. It is stopped where it is, for the rest of the process. Not recognised are
+/// a stack that overflows there, and threads of a library that run none of the plugin's own code.
+/// One watch at a time; a child of the process (fork) is not watched.
+class STILLPOINT_EXPORT ThreadWatch {
+ public:
+  /// Called on the watch's thread, once, with a StageError: "a thread of PLUGIN failed: it crashed:
+  /// …". Calls of stages that have not returned two seconds after that are ended, and later ones
+  /// that take more than ten: they may wait for the thread.
+  using Ended = std::function<void(std::exception_ptr failure)>;
+  explicit ThreadWatch(Ended ended);
+  ~ThreadWatch();
+  ThreadWatch(const ThreadWatch&) = delete;
+  ThreadWatch& operator=(const ThreadWatch&) = delete;
 
  private:
   std::jthread watcher_;

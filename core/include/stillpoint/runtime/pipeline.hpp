@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "stillpoint/engine/pace_clock.hpp"
+#include "stillpoint/engine/stage_guard.hpp"
 #include "stillpoint/runtime/beside_tracking.hpp"
 #include "stillpoint/runtime/controlled_run.hpp"
 #include "stillpoint/runtime/frame_feed.hpp"
@@ -61,6 +62,7 @@ class Pipeline {
   const double wall_start_;
   const double cpu_start_;
   StopSignal stop_;
+  ThreadWatch plugin_threads_{[this](std::exception_ptr failure) { stop_.fail(failure); }};
   TimeLog times_;
 
   Stage<Source> source_;  // until run()
