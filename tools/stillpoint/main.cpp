@@ -12,6 +12,7 @@
 #include "commit.hpp"
 #include "stillpoint/engine/freed_memory.hpp"
 #include "stillpoint/engine/stage_guard.hpp"
+#include "stillpoint/engine/thread_watch.hpp"
 #include "stillpoint/error.hpp"
 #include "stillpoint/support/did_you_mean.hpp"
 
@@ -132,7 +133,7 @@ int main(int argc, char** argv) {
   const stillpoint::StageGuard guard;
   const int exit_code = run_and_say_why_not(argc, argv);
   if (!stillpoint::StageGuard::has_ended_a_call()) return exit_code;
-  const std::string end = stillpoint::StageGuard::ended_thread_text();
+  const std::string end = stillpoint::ThreadWatch::failure_text();
   if (exit_code == 0 && !end.empty()) std::cerr << "error: " << end << '\n';
   std::cout << std::flush;
   // Nothing more of that plugin is to be run. Where it crashed in a destructor, all is saved.

@@ -25,7 +25,7 @@ namespace stillpoint {
 /// Each contract also has a version of its own, kApi, for its functions, their arguments and their
 /// results. A version is raised by every change that requires plugins to be rebuilt
 /// (docs/writing_a_plugin.md).
-inline constexpr std::uint32_t kPluginApi = 10;
+inline constexpr std::uint32_t kPluginApi = 11;
 
 #define STILLPOINT_TEXT_(x) #x
 #define STILLPOINT_TEXT(x) STILLPOINT_TEXT_(x)
@@ -41,16 +41,16 @@ inline constexpr std::uint32_t kPluginApi = 10;
 #define STILLPOINT_EIGEN_ORDER_ ""
 #endif
 
-/// What must match so that program and plugin can exchange C++ objects: compiler, language,
-/// standard library and its debug mode, Eigen with its alignment (of memory and of members; -mavx
-/// changes both) and storage order, OpenCV.
-inline constexpr const char* kAbiTag = "gcc" STILLPOINT_TEXT(__GNUC__)             //
-    "-c++" STILLPOINT_TEXT(__cplusplus)                                            //
-    "-cxx11abi" STILLPOINT_TEXT(_GLIBCXX_USE_CXX11_ABI) STILLPOINT_STD_DEBUG_      //
-    "-eigen" STILLPOINT_TEXT(EIGEN_WORLD_VERSION) "."                              //
-    STILLPOINT_TEXT(EIGEN_MAJOR_VERSION) "." STILLPOINT_TEXT(EIGEN_MINOR_VERSION)  //
-    "-align" STILLPOINT_TEXT(EIGEN_MAX_ALIGN_BYTES) "."                            //
-    STILLPOINT_TEXT(EIGEN_MAX_STATIC_ALIGN_BYTES) STILLPOINT_EIGEN_ORDER_          //
+/// What must match so that program and plugin can exchange C++ objects: language, standard library
+/// (of the g++ that it came with; clang++ uses the same) and its debug mode, Eigen with its
+/// alignment (of memory and of members; -mavx changes both) and storage order, OpenCV.
+inline constexpr const char* kAbiTag = "libstdc++" STILLPOINT_TEXT(_GLIBCXX_RELEASE)  //
+    "-c++" STILLPOINT_TEXT(__cplusplus)                                               //
+    "-cxx11abi" STILLPOINT_TEXT(_GLIBCXX_USE_CXX11_ABI) STILLPOINT_STD_DEBUG_         //
+    "-eigen" STILLPOINT_TEXT(EIGEN_WORLD_VERSION) "."                                 //
+    STILLPOINT_TEXT(EIGEN_MAJOR_VERSION) "." STILLPOINT_TEXT(EIGEN_MINOR_VERSION)     //
+    "-align" STILLPOINT_TEXT(EIGEN_MAX_ALIGN_BYTES) "."                               //
+    STILLPOINT_TEXT(EIGEN_MAX_STATIC_ALIGN_BYTES) STILLPOINT_EIGEN_ORDER_             //
     "-opencv" STILLPOINT_TEXT(CV_VERSION_MAJOR) "." STILLPOINT_TEXT(CV_VERSION_MINOR);
 
 enum class LogLevel { kDebug, kInfo, kWarning, kError };

@@ -62,7 +62,7 @@ std::string why_stamp_does_not_fit(const Stamp& stamp) {
   if (stamp.abi != kAbiTag)
     return "built with " + (stamp.abi.empty() ? "nothing known" : stamp.abi) +
            ", this program with " + kAbiTag +
-           "; rebuild it with the same compiler, Eigen, OpenCV and processor flags";
+           "; rebuild it with the same standard library, Eigen, OpenCV and processor flags";
   std::string reason;
   for (const auto& [kind, api] : stamp.kinds) {
     reason = why_kind_does_not_fit(kind, api);

@@ -1,9 +1,9 @@
 // Plugins that crash, end the process or never return: named, and what was computed is saved.
 #pragma once
 
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
-#include <exception>
 #include <functional>
 #include <optional>
 #include <string>
@@ -38,15 +38,15 @@ class STILLPOINT_EXPORT StageGuard {
   /// The calls of plugins that take longer than that: "tracking (orb) has not returned for 12 s,
   /// frame 3".
   static std::vector<std::string> calls_longer_than(double seconds);
+  using Time = std::chrono::steady_clock::time_point;
   /// Ends the calls under way where they are: they fail. Gives their number.
-  static std::size_t give_up();
+  static std::size_t give_up(Time begun_before = Time::max());
   /// Whether this thread is in a guarded call.
   static bool is_in_call();
   /// Whether it had to end a call, or to stop a thread. Destructors of that plugin may crash or
   /// hang as well.
   static bool has_ended_a_call();
-  /// "a thread of PLUGIN failed: it crashed: …"; empty: none was stopped.
-  static std::string ended_thread_text();
+  static bool exists();
 };
 
 /// While it lives, says which calls of plugins take long; one at a time.
@@ -56,26 +56,6 @@ class STILLPOINT_EXPORT LateCalls {
   /// 0: never.
   using Late = std::function<void(const std::string& what)>;
   LateCalls(double patience_seconds, Late late);
-
- private:
-  std::jthread watcher_;
-};
-
-/// While it lives, and a StageGuard, a thread that ends the process by a crash, an exception or
-/// std::exit() ends the run instead, if code of a plugin is among its callers: the plugin has made
-/// it, or a pool for it. It is stopped where it is, for the rest of the process. Not recognised are
-/// a stack that overflows there, and threads of a library that run none of the plugin's own code.
-/// One watch at a time; a child of the process (fork) is not watched.
-class STILLPOINT_EXPORT ThreadWatch {
- public:
-  /// Called on the watch's thread, once, with a StageError: "a thread of PLUGIN failed: it crashed:
-  /// …". Calls of stages that have not returned two seconds after that are ended, and later ones
-  /// that take more than ten: they may wait for the thread.
-  using Ended = std::function<void(std::exception_ptr failure)>;
-  explicit ThreadWatch(Ended ended);
-  ~ThreadWatch();
-  ThreadWatch(const ThreadWatch&) = delete;
-  ThreadWatch& operator=(const ThreadWatch&) = delete;
 
  private:
   std::jthread watcher_;

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "stillpoint/engine/pace_clock.hpp"
-#include "stillpoint/engine/stage_guard.hpp"
+#include "stillpoint/engine/thread_watch.hpp"
 #include "stillpoint/runtime/beside_tracking.hpp"
 #include "stillpoint/runtime/controlled_run.hpp"
 #include "stillpoint/runtime/frame_feed.hpp"

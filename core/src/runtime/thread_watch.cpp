@@ -1,0 +1,67 @@
+#include "stillpoint/engine/thread_watch.hpp"
+
+#include <signal.h>
+
+#include <chrono>
+#include <condition_variable>
+#include <mutex>
+#include <utility>
+
+#include "stillpoint/engine/stage_guard.hpp"
+#include "stillpoint/runtime/plugin_thread.hpp"
+
+namespace stillpoint {
+namespace {
+
+// Calls that were under way may wait for the thread, and so may those that save results. What is
+// ended leaves its locks behind, hence some patience.
+constexpr std::chrono::seconds kTimeToReturn{2};
+constexpr std::chrono::seconds kTimeToSave{10};
+
+void watch_threads(const std::stop_token& stop, const ThreadWatch::Ended& ended) {
+  wait_for_stopped_thread();
+  if (stop.stop_requested()) return;
+  const auto end_of_thread = std::chrono::steady_clock::now();
+  ended(std::make_exception_ptr(*error_of_stopped_thread()));
+  std::mutex mutex;
+  std::condition_variable_any stopped;
+  std::unique_lock lock(mutex);
+  const auto wait = [&](std::chrono::seconds time) {
+    stopped.wait_for(lock, stop, time, [] { return false; });
+    return !stop.stop_requested();
+  };
+  if (wait(kTimeToReturn)) StageGuard::give_up(end_of_thread);
+  while (wait(kTimeToSave)) StageGuard::give_up(std::chrono::steady_clock::now() - kTimeToSave);
+}
+
+/// Signals are for threads that wait for them.
+std::jthread without_signals(std::function<void(const std::stop_token&)> function) {
+  sigset_t all, before;
+  sigfillset(&all);
+  pthread_sigmask(SIG_SETMASK, &all, &before);
+  std::jthread thread(std::move(function));
+  pthread_sigmask(SIG_SETMASK, &before, nullptr);
+  return thread;
+}
+
+}  // namespace
+
+ThreadWatch::ThreadWatch(Ended ended) {
+  if (!StageGuard::exists()) return;
+  begin_wait_for_threads();
+  watcher_ = without_signals(
+      [ended = std::move(ended)](const std::stop_token& stop) { watch_threads(stop, ended); });
+}
+
+ThreadWatch::~ThreadWatch() {
+  if (!watcher_.joinable()) return;
+  watcher_.request_stop();
+  end_wait_for_threads();
+}
+
+std::string ThreadWatch::failure_text() {
+  const auto error = error_of_stopped_thread();
+  return error ? error->what() : std::string();
+}
+
+}  // namespace stillpoint
