@@ -1,10 +1,13 @@
 # Helpers of the project's own build.
 
-# Warnings for a target. Designated initialisers may leave out fields that have defaults; -Wrestrict
+# Warnings for a target, of g++. Designated initialisers may leave out fields that have defaults; -Wrestrict
 # is wrong about std::string in g++ 12 (GCC bug 105651), and so are three more when headers are
 # precompiled. A unity build includes source files, whose unnamed namespaces g++ then takes for a
 # header's. The preset `dev` has neither.
 function(stillpoint_compile_options target)
+  if(NOT CMAKE_CXX_COMPILER_ID STREQUAL "GNU")  # for the sanitizers only
+    return()
+  endif()
   set(strictness)
   if(STILLPOINT_WARNINGS_AS_ERRORS)
     list(APPEND strictness -Werror)
@@ -39,9 +42,11 @@ function(stillpoint_sanitize_quickly target)
   endif()
 endfunction()
 
-# For targets that compute nothing themselves.
+# stillpoint_compile_quickly(TARGET [LEVEL]): for targets that compute nothing themselves.
 function(stillpoint_compile_quickly target)
-  target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)
+  set(level ${ARGN} -O1)
+  list(GET level 0 level)
+  target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:${level}>)
   stillpoint_sanitize_quickly(${target})
 endfunction()
 
@@ -58,7 +63,7 @@ function(stillpoint_add_precompiled_headers)
     add_executable(stillpoint_test_headers EXCLUDE_FROM_ALL ${empty})
     target_precompile_headers(stillpoint_test_headers PRIVATE ${common} <gmock/gmock.h>)
     target_link_libraries(stillpoint_test_headers PRIVATE GTest::gmock)
-    stillpoint_compile_quickly(stillpoint_test_headers)
+    stillpoint_compile_quickly(stillpoint_test_headers -O0)
     list(APPEND owners stillpoint_test_headers)
   endif()
   foreach(owner IN LISTS owners)
@@ -82,7 +87,7 @@ function(stillpoint_add_tests name)
     STILLPOINT_SOURCE_DIR="${PROJECT_SOURCE_DIR}" STILLPOINT_BINARY_DIR="${PROJECT_BINARY_DIR}")
   target_link_libraries(${name} PRIVATE ${ARG_LINK} stillpoint::sdk GTest::gmock GTest::gtest_main)
   target_precompile_headers(${name} REUSE_FROM stillpoint_test_headers)
-  stillpoint_compile_quickly(${name})
+  stillpoint_compile_quickly(${name} -O0)
   gtest_discover_tests(${name} DISCOVERY_MODE PRE_TEST NO_PRETTY_VALUES DISCOVERY_TIMEOUT 60)
 endfunction()
 
@@ -117,7 +122,10 @@ function(stillpoint_add_project_plugin name)
   target_precompile_headers(stillpoint_${name} REUSE_FROM stillpoint_code_headers)
   stillpoint_compile_options(stillpoint_${name})
   target_link_libraries(stillpoint_${name} PRIVATE ${name}_code)
-  target_link_options(stillpoint_${name} PRIVATE -Wl,--no-undefined -Wl,--exclude-libs,ALL)
+  if(NOT CMAKE_CXX_FLAGS MATCHES "-fsanitize")  # its run-time library is in the program
+    target_link_options(stillpoint_${name} PRIVATE -Wl,--no-undefined)
+  endif()
+  target_link_options(stillpoint_${name} PRIVATE -Wl,--exclude-libs,ALL)
   set_target_properties(stillpoint_${name} PROPERTIES
     LIBRARY_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/lib/stillpoint/plugins
     INSTALL_RPATH "$ORIGIN/../..")

@@ -13,7 +13,9 @@ function(stillpoint_add_plugin name)
     COMMAND stillpoint::stillpoint plugins check $<TARGET_FILE:${name}> ${ARG_CHECK_OPTIONS})
   target_link_libraries(${name} PRIVATE stillpoint::sdk)
   # Symbols missing at load time would be found out by the user instead of the author.
-  target_link_options(${name} PRIVATE -Wl,--no-undefined)
+  if(NOT CMAKE_CXX_FLAGS MATCHES "-fsanitize")  # clang++ has its run-time library in the program
+    target_link_options(${name} PRIVATE -Wl,--no-undefined)
+  endif()
   set_target_properties(${name} PROPERTIES
     OUTPUT_NAME stillpoint_${name}
     CXX_VISIBILITY_PRESET hidden

@@ -100,7 +100,8 @@ INSTANTIATE_TEST_SUITE_P(Modes, Interruption,
 // Depth stays: without any, a pair counts as unusable and tracking would never see the frame.
 class Darkness : public ::testing::Test {
  protected:
-  static constexpr int kBegin = kSimulatedFrames / 2, kDark = 10;
+  static constexpr int kDark = 10;
+  const int kBegin = kSimulatedFrames / 2;
 
   void SetUp() override {
     for (int frame = kBegin; frame < kBegin + kDark; ++frame)

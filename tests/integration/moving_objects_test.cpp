@@ -53,7 +53,7 @@ INSTANTIATE_TEST_SUITE_P(Pipelines, Method,
 TEST_P(Method, IsAccurateInBothModes) {
   const std::string pipeline = GetParam();
   for (const std::string mode : {"inline", "threaded"}) {
-    if (kSanitized && mode == "inline") continue;  // the same code with less to go wrong
+    if (sanitized_build() && mode == "inline") continue;  // the same code with less to go wrong
     const auto more = pipeline == "geometry_only" ? std::vector<std::string>() : kImitatedNetwork;
     const Outcome outcome = run(mode, pipeline, mode, more);
     ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
@@ -62,7 +62,7 @@ TEST_P(Method, IsAccurateInBothModes) {
 }
 
 TEST_F(MovingObjects, InlineRepeatsEveryByteWithTheShippedNetwork) {
-  if (kSanitized) GTEST_SKIP() << "a network takes minutes under a sanitizer";
+  if (sanitized_build()) GTEST_SKIP() << "a network takes minutes under a sanitizer";
   for (const char* name : {"first", "second"}) {
     const Outcome outcome = run(name, "stillpoint", "inline", {});
     ASSERT_EQ(outcome.exit_code, 0) << outcome.err;

@@ -20,7 +20,7 @@ fs::path walk() {
 class PerceptualAliasing : public ::testing::TestWithParam<const char*> {};
 
 TEST_P(PerceptualAliasing, ClosesNoLoop) {
-  if (kSanitized) GTEST_SKIP() << "takes minutes under a sanitizer";
+  if (sanitized_build()) GTEST_SKIP() << "takes minutes under a sanitizer";
   const TemporaryFolder folder;
   const fs::path recording = walk();
   const std::string out = (folder.path() / "run").string();

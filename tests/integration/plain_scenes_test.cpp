@@ -36,7 +36,7 @@ TEST_P(PlainScenes, ACornerIsTrackedToTheEnd) {
 }
 
 TEST_P(PlainScenes, ASlideDownACorridorIsReported) {
-  if (kSanitized) GTEST_SKIP() << "takes minutes under a sanitizer";
+  if (sanitized_build()) GTEST_SKIP() << "takes minutes under a sanitizer";
   const fs::path recording = recording_of("plain_corridor", 150);
   const auto summary = run(recording);
   EXPECT_EQ(summary["tracked_frames"], 150);

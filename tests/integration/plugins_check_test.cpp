@@ -19,7 +19,7 @@ namespace {
 namespace fs = std::filesystem;
 using ::testing::HasSubstr;
 
-const fs::path kShipped = fs::path(STILLPOINT_BINARY_DIR) / "lib/stillpoint/plugins";
+const fs::path kShipped = build_folder() / "lib/stillpoint/plugins";
 const fs::path kBad = fs::path(STILLPOINT_BINARY_DIR) / "tests/plugins_bad/plugins";
 
 std::string library(const fs::path& folder, const std::string& name) {

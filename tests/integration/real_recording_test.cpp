@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 TEST(RealRecording, IsTrackedToTheEnd) {
   const fs::path recording = shared_data() / "data/tum_fr1_xyz";
   if (!fs::exists(recording)) GTEST_SKIP() << "no recording in " << recording;
-  constexpr int kFrames = kSanitized ? 30 : 200;
+  const int kFrames = sanitized_build() ? 30 : 200;
   const TemporaryFolder folder;
   const Outcome outcome =
       call({"run", "orb_baseline", "--dataset", recording.string(), "--camera", "tum_fr1", "-o",
@@ -33,7 +33,7 @@ TEST(RealRecording, IsTrackedToTheEnd) {
 
 // Two people who cover up to a quarter of the image.
 TEST(RealRecording, WithRealPeopleIsTrackedAsWell) {
-  if (kSanitized) GTEST_SKIP() << "a network takes minutes under a sanitizer";
+  if (sanitized_build()) GTEST_SKIP() << "a network takes minutes under a sanitizer";
   const fs::path recording = shared_data() / "data/tum_fr1_xyz", photos = shared_data() / "photos";
   if (!fs::exists(recording) || !fs::exists(photos))
     GTEST_SKIP() << "no " << recording << " or " << photos;

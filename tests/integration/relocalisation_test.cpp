@@ -115,7 +115,7 @@ class Relocalisation : public ::testing::Test {
  protected:
   // Not under a sanitizer: long recordings, and code that other tests reach.
   void SetUp() override {
-    if (kSanitized) GTEST_SKIP() << "takes minutes under a sanitizer";
+    if (sanitized_build()) GTEST_SKIP() << "takes minutes under a sanitizer";
   }
 
   fs::path last_run() const { return folder_.path() / std::to_string(runs_); }

@@ -38,7 +38,7 @@ constexpr const char* kPressButtons = R"((() => {
 })())";
 
 TEST(SteeredRun, DoesWhatTheButtonsOfThePageSay) {
-  if (!fs::exists(fs::path(STILLPOINT_BINARY_DIR) / "share/stillpoint/report.html"))
+  if (!fs::exists(build_folder() / "share/stillpoint/report.html"))
     GTEST_SKIP() << "built without pages: npm or esbuild are missing";
   SKIP_WITHOUT_BROWSER();
   const TemporaryFolder folder;

@@ -130,13 +130,13 @@ TEST_F(RegistryTest, NewerApi) {
 }
 TEST_F(RegistryTest, WrongTag) {
   use("wrong_tag");
-  EXPECT_THAT(reason(), HasSubstr("built with gcc7-eigen3.3-align32, this program with gcc"));
+  EXPECT_THAT(reason(), HasSubstr("built with gcc7-eigen3.3-align32, this program with libstdc++"));
 }
 TEST_F(RegistryTest, OtherLayout) {
   use("other_layout");
   EXPECT_THAT(reason(), AllOf(HasSubstr("-cxx11abi1-glibcxxdebug-eigen"),
                               ::testing::ContainsRegex("-align[0-9]+\\.0-"),
-                              HasSubstr(", this program with gcc")));
+                              HasSubstr(", this program with libstdc++")));
 }
 TEST_F(RegistryTest, UndefinedSymbol) {
   use("undefined_symbol");

@@ -20,13 +20,12 @@
 #include <utility>
 #include <vector>
 
+#include "support/build_folder.hpp"
 #include "support/recording_writer.hpp"
 
 namespace stillpoint::testing {
 
-inline std::filesystem::path program_file() {
-  return std::filesystem::path(STILLPOINT_BINARY_DIR) / "bin/stillpoint";
-}
+inline std::filesystem::path program_file() { return build_folder() / "bin/stillpoint"; }
 
 inline std::string text_of(const std::filesystem::path& file) {
   std::ifstream stream(file, std::ios::binary);

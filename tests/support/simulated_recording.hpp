@@ -20,16 +20,10 @@
 
 namespace stillpoint::testing {
 
-// Under a sanitizer the program takes many times as long.
-#ifdef STILLPOINT_SANITIZED
-constexpr bool kSanitized = true;
-#else
-constexpr bool kSanitized = false;
-#endif
-
 constexpr const char* kScene = "fr3_walking_xyz_empty";
 constexpr const char* kSceneWithPeople = "fr3_walking_xyz";
-constexpr int kSimulatedFrames = kSanitized ? 30 : 60;
+/// A sanitized program takes many times as long.
+inline const int kSimulatedFrames = sanitized_build() ? 30 : 60;
 
 /// Held while the file exists and until the end of the scope; other processes wait.
 class FileLock {

@@ -47,12 +47,11 @@ EngineSetup setup_of(const fs::path& folder, const std::string& mode,
                      const std::string& pipeline = "stillpoint") {
   // A test program lies elsewhere than an installed library.
   ::setenv("STILLPOINT_CONFIG_PATH", STILLPOINT_SOURCE_DIR "/configs", 1);
-  return {
-      .request = {.pipeline = pipeline,
-                  .assignments = {"runtime.mode=" + mode},
-                  .pushed = true,
-                  .plugin_folders = {fs::path(STILLPOINT_BINARY_DIR) / "lib/stillpoint/plugins"}},
-      .output_directory = folder};
+  return {.request = {.pipeline = pipeline,
+                      .assignments = {"runtime.mode=" + mode},
+                      .pushed = true,
+                      .plugin_folders = {build_folder() / "lib/stillpoint/plugins"}},
+          .output_directory = folder};
 }
 
 void push_all(Engine& engine, const fs::path& recording) {

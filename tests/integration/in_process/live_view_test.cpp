@@ -11,6 +11,7 @@
 #include "output_web/test_viewer.hpp"
 #include "stillpoint/engine/engine.hpp"
 #include "stillpoint/testing/test_recording.hpp"
+#include "support/build_folder.hpp"
 #include "support/recording_writer.hpp"
 
 namespace stillpoint::testing {
@@ -29,13 +30,12 @@ const TestRecording& watched_recording() {
 std::unique_ptr<Engine> engine_for(const std::string& mode, const std::vector<std::string>& outputs,
                                    const fs::path& folder, std::string& url) {
   ::setenv("STILLPOINT_CONFIG_PATH", STILLPOINT_SOURCE_DIR "/configs", 1);
-  EngineSetup setup{
-      .request = {.pipeline = "orb_baseline",
-                  .assignments = {"runtime.mode=" + mode},
-                  .outputs = outputs,
-                  .pushed = true,
-                  .plugin_folders = {fs::path(STILLPOINT_BINARY_DIR) / "lib/stillpoint/plugins"}},
-      .output_directory = folder};
+  EngineSetup setup{.request = {.pipeline = "orb_baseline",
+                                .assignments = {"runtime.mode=" + mode},
+                                .outputs = outputs,
+                                .pushed = true,
+                                .plugin_folders = {build_folder() / "lib/stillpoint/plugins"}},
+                    .output_directory = folder};
   setup.log = [&url](LogLevel, std::string_view text) {
     const std::size_t place = text.find("http://");
     if (place != std::string_view::npos) url = text.substr(place);

@@ -68,13 +68,13 @@ TEST_P(LoopClosing, ClosesTheLoopAndLeavesASoundMap) {
                        "\nloop_closer: {type: orb}\n");
   const fs::path recording = once_around();
   Registry registry;
-  const PipelineConfig config = load_pipeline(
-      {.pipeline = file.string(),
-       .dataset = recording,
-       .camera = (recording / "camera.yaml").string(),
-       .assignments = {std::string("runtime.mode=") + GetParam()},
-       .plugin_folders = {fs::path(STILLPOINT_BINARY_DIR) / "lib/stillpoint/plugins"}},
-      registry);
+  const PipelineConfig config =
+      load_pipeline({.pipeline = file.string(),
+                     .dataset = recording,
+                     .camera = (recording / "camera.yaml").string(),
+                     .assignments = {std::string("runtime.mode=") + GetParam()},
+                     .plugin_folders = {build_folder() / "lib/stillpoint/plugins"}},
+                    registry);
   Stages stages = make_stages(config, folder.path(), [](LogLevel, std::string_view) {});
   const auto closer = std::make_shared<CheckedLoopCloser>(stages.loop_closer.object);
   stages.loop_closer.object = closer;

@@ -80,9 +80,9 @@ TEST(BesideTracking, ThreadedAFailureStopsTheRun) {
 
 TEST(BesideTracking, AStopEndsTheWait) {
   Fixture f;
-  BesideTracking beside(Mode::kThreaded, f.stop, f.times);
   std::latch called(1);
-  std::latch release(1);
+  std::latch release(1);  // used by the thread of the next until that has ended
+  BesideTracking beside(Mode::kThreaded, f.stop, f.times);
   beside.start([&] {
     called.count_down();
     release.wait();
