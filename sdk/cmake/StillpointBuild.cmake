@@ -1,16 +1,17 @@
 # Helpers of the project's own build.
 
-# Warnings for a target, of g++. Designated initialisers may leave out fields that have defaults; -Wrestrict
+# Warnings for a target. Designated initialisers may leave out fields that have defaults; -Wrestrict
 # is wrong about std::string in g++ 12 (GCC bug 105651), and so are three more when headers are
 # precompiled. A unity build includes source files, whose unnamed namespaces g++ then takes for a
 # header's. The preset `dev` has neither.
 function(stillpoint_compile_options target)
-  if(NOT CMAKE_CXX_COMPILER_ID STREQUAL "GNU")  # for the sanitizers only
-    return()
-  endif()
   set(strictness)
   if(STILLPOINT_WARNINGS_AS_ERRORS)
     list(APPEND strictness -Werror)
+  endif()
+  if(NOT CMAKE_CXX_COMPILER_ID STREQUAL "GNU")  # clang++, of the sanitizers
+    target_compile_options(${target} PRIVATE -Wall -Wextra -Wno-missing-field-initializers ${strictness})
+    return()
   endif()
   if(CMAKE_UNITY_BUILD)
     list(APPEND strictness -Wno-subobject-linkage)
@@ -122,7 +123,8 @@ function(stillpoint_add_project_plugin name)
   target_precompile_headers(stillpoint_${name} REUSE_FROM stillpoint_code_headers)
   stillpoint_compile_options(stillpoint_${name})
   target_link_libraries(stillpoint_${name} PRIVATE ${name}_code)
-  if(NOT CMAKE_CXX_FLAGS MATCHES "-fsanitize")  # its run-time library is in the program
+  # clang++ has the run-time library of a sanitizer in the program.
+  if(NOT (CMAKE_CXX_COMPILER_ID MATCHES "Clang" AND CMAKE_CXX_FLAGS MATCHES "-fsanitize"))
     target_link_options(stillpoint_${name} PRIVATE -Wl,--no-undefined)
   endif()
   target_link_options(stillpoint_${name} PRIVATE -Wl,--exclude-libs,ALL)

@@ -13,7 +13,8 @@ function(stillpoint_add_plugin name)
     COMMAND stillpoint::stillpoint plugins check $<TARGET_FILE:${name}> ${ARG_CHECK_OPTIONS})
   target_link_libraries(${name} PRIVATE stillpoint::sdk)
   # Symbols missing at load time would be found out by the user instead of the author.
-  if(NOT CMAKE_CXX_FLAGS MATCHES "-fsanitize")  # clang++ has its run-time library in the program
+  # clang++ has the run-time library of a sanitizer in the program.
+  if(NOT (CMAKE_CXX_COMPILER_ID MATCHES "Clang" AND CMAKE_CXX_FLAGS MATCHES "-fsanitize"))
     target_link_options(${name} PRIVATE -Wl,--no-undefined)
   endif()
   set_target_properties(${name} PROPERTIES

@@ -198,6 +198,21 @@ TEST_F(Run, NothingTrackedIsSaid) {
   EXPECT_THAT(run_with("100").err, ::testing::Not(HasSubstr("no frame was tracked")));
 }
 
+// In containers many processes have the same number.
+TEST_F(Run, HalvesOfAKilledRunWithTheNumberOfThisProcessAreRemoved) {
+  const fs::path folder = out() / "same";
+  fs::create_directories(folder);
+  const std::string script =
+      "for i in 0 1 2; do echo half >\"$1/trajectory.txt.$$-$i.part\"; done; "
+      "exec \"$0\" run orb_baseline --dataset \"$2\" -o \"$1\" --set source.limit=3";
+  const Outcome outcome =
+      call({"-c", script, program_file(), folder, simulated_recording()}, {.program = "/bin/sh"});
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_EQ(count_poses(folder / "trajectory.txt"), 3);
+  for (const auto& entry : fs::directory_iterator(folder))
+    EXPECT_NE(entry.path().extension(), ".part") << entry.path();
+}
+
 TEST_F(Run, EarlierPicturesDoNotOutliveTheirRun) {
   const auto run_with = [&](const std::vector<std::string>& settings) {
     std::vector<std::string> arguments = {"--dataset", simulated_recording().string(), "--set",

@@ -26,7 +26,7 @@ CONTRACTS = ["contracts/frame.hpp", "contracts/camera.hpp", "pose_math.hpp", "er
 ENGINE = ["engine/engine.hpp", "engine/pipeline_config.hpp", "engine/stages.hpp", "engine/make_stages.hpp",
           "engine/map_file.hpp", "engine/registry.hpp", "engine/config_lookup.hpp",
           "engine/install_layout.hpp", "engine/pace_clock.hpp", "engine/stage_guard.hpp",
-          "engine/stage_error.hpp", "engine/folder_lock.hpp", "engine/freed_memory.hpp"]
+          "engine/thread_watch.hpp", "engine/stage_error.hpp", "engine/folder_lock.hpp", "engine/freed_memory.hpp"]
 
 
 # ---- Markdown

@@ -38,30 +38,29 @@ bool is_picture(const fs::path& file) {
          (file.extension() == ".jpg" || file.extension() == ".png");
 }
 
-/// The process of an AtomicFile's temporary name, "trajectory.txt.1234-0.part"; empty: of none.
-std::string process_of(const fs::path& file) {
+/// The temporary name of an AtomicFile, "trajectory.txt.1234-0.part".
+bool is_temporary(const fs::path& file) {
   const std::string numbers = file.stem().extension().string();  // ".1234-0"
   const std::size_t dash = numbers.find('-');
-  if (file.extension() != ".part" || dash == std::string::npos) return {};
-  std::string process = numbers.substr(1, dash - 1);
-  return is_number(process) && is_number(numbers.substr(dash + 1)) ? process : std::string();
+  return file.extension() == ".part" && dash != std::string::npos &&
+         is_number(numbers.substr(1, dash - 1)) && is_number(numbers.substr(dash + 1));
 }
 
-/// Of a run that was killed; this run's outputs have begun theirs.
+/// By its name, one that a run has not finished.
 bool is_unfinished(const fs::path& file) {
-  const std::string process = process_of(file);
-  if (process.empty() || process == std::to_string(::getpid())) return false;
+  if (!is_temporary(file)) return false;
   const fs::path name = file.stem().stem();
   const auto is_name = [&](const char* known) { return name == known; };
   return std::ranges::any_of(kResults, is_name) || std::ranges::any_of(kMaps, is_name) ||
          is_picture(name);
 }
 
-std::vector<fs::path> unfinished_in(const fs::path& folder) {
+std::vector<fs::path> unfinished_in(const fs::path& run) {
   std::vector<fs::path> files;
   std::error_code none;
-  for (const auto& entry : fs::directory_iterator(folder, none))
-    if (is_unfinished(entry.path())) files.push_back(entry.path());
+  for (const char* folder : {".", "map", "images"})
+    for (const auto& entry : fs::directory_iterator(run / folder, none))
+      if (is_unfinished(entry.path())) files.push_back(entry.path());
   return files;
 }
 
@@ -102,6 +101,7 @@ RunFolder::RunFolder(fs::path path, Console& console) : path_(std::move(path)), 
   if (error) fail(path_, error.message());
   lock_.emplace(path_);
   if (::access(path_.c_str(), W_OK) != 0) fail(path_, std::strerror(errno));
+  unfinished_ = unfinished_in(path_);
 }
 
 RunFolder::~RunFolder() {
@@ -178,8 +178,7 @@ void RunFolder::require_results_of_a_run() const {
 void RunFolder::remove_earlier_results() const {
   std::error_code error;
   bool found = false;
-  for (const char* folder : {".", "map", "images"})
-    for (const fs::path& file : unfinished_in(path_ / folder)) fs::remove(file, error);
+  for (const fs::path& file : unfinished_) fs::remove(file, error);
   error.clear();
   for (const char* name : kResults) {
     found = fs::remove(path_ / name, error) || found;

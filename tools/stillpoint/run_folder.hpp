@@ -53,6 +53,7 @@ class RunFolder {
   Console& console_;
   bool made_ = false;  // by this run
   std::optional<FolderLock> lock_;
+  std::vector<std::filesystem::path> unfinished_;  // by runs that were killed
   mutable std::mutex mutex_;
   std::shared_ptr<spdlog::logger> log_;                          // guarded, like early_
   mutable std::vector<std::pair<LogLevel, std::string>> early_;  // lines before begin()

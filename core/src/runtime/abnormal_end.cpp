@@ -36,22 +36,22 @@ std::string reason_of(int what) {
 }
 
 void start_time_to_save(std::span<const char* const> words) {
-  final_message.fill('\0');
+  ::alarm(kSecondsToSave);
+  if (saving.exchange(true)) return;
   append_to_message("error: ");
   for (const char* part : words) append_to_message(part);
   append_to_message("; what followed did not return, results may be missing\n");
-  ::alarm(kSecondsToSave);
-  saving = true;
 }
 
 bool has_started_to_save() { return saving; }
 
 void watch_time_to_save() {
+  final_message.fill('\0');
+  saving = false;
   struct sigaction action {};
   action.sa_handler = on_saving_hangs;
   action.sa_flags = SA_ONSTACK;
   sigaction(SIGALRM, &action, nullptr);
-  saving = false;
 }
 
 void end_time_to_save() {

@@ -23,7 +23,7 @@ std::array<std::atomic<const void*>, 256> libraries{};
 /// The first one, outside all calls. It stays where it is.
 struct StoppedThread {
   std::atomic_flag taken;
-  std::atomic<int> what{0};  // as in reason_of(), set last; 0: none
+  std::atomic<int> what{0};  // as in reason_of(), set when the library is; 0: none
   std::array<char, 1024> library{};
 };
 StoppedThread stopped_thread;
@@ -36,7 +36,8 @@ const void* begin_of_object(const void* address) {
                                                                      : nullptr;
 }
 
-/// The file of the plugin whose code is among the callers; nullptr: no plugin's.
+/// The file of the plugin whose code is among the callers; nullptr: no plugin's. For signal
+/// handlers: prepare_for_plugin_threads() has loaded what backtrace() needs.
 const char* plugin_among_callers() {
   std::array<void*, 64> callers{};
   const int depth = ::backtrace(callers.data(), static_cast<int>(callers.size()));
@@ -53,8 +54,8 @@ const char* plugin_among_callers() {
 [[noreturn]] void stop_thread(const char* library, int what) {
   if (!stopped_thread.taken.test_and_set()) {
     std::strncpy(stopped_thread.library.data(), library, stopped_thread.library.size() - 1);
-    start_time_to_save(std::array{"a thread of ", library, " failed"});
     stopped_thread.what = what;
+    start_time_to_save(std::array{"a thread of ", library, " failed"});
     ::sem_post(&thread_was_stopped);
   }
   for (;;) ::pause();
@@ -87,7 +88,7 @@ std::optional<StageError> error_of_stopped_thread() {
                     &reason);
 }
 
-void forget_stopped_thread() {
+void prepare_for_plugin_threads() {
   std::array<void*, 1> caller{};
   ::backtrace(caller.data(), 1);  // loads what later calls need, which a signal handler must not
   stopped_thread.taken.clear();
@@ -95,10 +96,9 @@ void forget_stopped_thread() {
   stopped_thread.library.fill('\0');
 }
 
-void begin_wait_for_threads() {
-  ::sem_init(&thread_was_stopped, 0, 0);
-  waiting_process = ::getpid();
-}
+void prepare_wait_for_threads() { ::sem_init(&thread_was_stopped, 0, 0); }
+
+void begin_wait_for_threads() { waiting_process = ::getpid(); }
 
 void end_wait_for_threads() {
   waiting_process = 0;

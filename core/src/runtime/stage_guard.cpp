@@ -171,7 +171,7 @@ void handle_give_up() {
 }  // namespace
 
 StageGuard::StageGuard() {
-  forget_stopped_thread();
+  prepare_for_plugin_threads();
   for (const int signal : kCrashes) handle_crash(signal);
   handle_give_up();
   watch_time_to_save();

@@ -48,9 +48,10 @@ std::jthread without_signals(std::function<void(const std::stop_token&)> functio
 
 ThreadWatch::ThreadWatch(Ended ended) {
   if (!StageGuard::exists()) return;
-  begin_wait_for_threads();
+  prepare_wait_for_threads();
   watcher_ = without_signals(
       [ended = std::move(ended)](const std::stop_token& stop) { watch_threads(stop, ended); });
+  begin_wait_for_threads();
 }
 
 ThreadWatch::~ThreadWatch() {

@@ -19,11 +19,17 @@ namespace {
               "check the folder's permissions and the free space");
 }
 
-/// A name that nothing else on this machine uses.
+/// A name that nothing else on this machine uses, and no process has left: in containers, many have
+/// the same number.
 std::string temporary_name(const std::filesystem::path& path) {
   static std::atomic<unsigned> number{0};
-  return path.string() + '.' + std::to_string(::getpid()) + '-' + std::to_string(number++) +
-         ".part";
+  std::string name;
+  std::error_code none;
+  do {
+    name =
+        path.string() + '.' + std::to_string(::getpid()) + '-' + std::to_string(number++) + ".part";
+  } while (std::filesystem::exists(std::filesystem::symlink_status(name, none)));
+  return name;
 }
 
 }  // namespace

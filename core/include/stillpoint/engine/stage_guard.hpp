@@ -39,13 +39,15 @@ class STILLPOINT_EXPORT StageGuard {
   /// frame 3".
   static std::vector<std::string> calls_longer_than(double seconds);
   using Time = std::chrono::steady_clock::time_point;
-  /// Ends the calls under way where they are: they fail. Gives their number.
+  /// Ends the calls under way that were begun before that, where they are: they fail. Gives their
+  /// number.
   static std::size_t give_up(Time begun_before = Time::max());
   /// Whether this thread is in a guarded call.
   static bool is_in_call();
   /// Whether it had to end a call, or to stop a thread. Destructors of that plugin may crash or
   /// hang as well.
   static bool has_ended_a_call();
+  /// Whether there is a guard in this process.
   static bool exists();
 };
 

@@ -17,7 +17,7 @@ std::string reason_of(int what);
 
 /// Locks that the code held are not released, so that saving may hang: from now on it has half a
 /// minute, then the process ends with exit code 1 and "error: WORDS; what followed did not return".
-/// For signal handlers, too. WORDS are the parts, joined.
+/// For signal handlers, too. WORDS are the parts, joined; those of the first call count.
 void start_time_to_save(std::span<const char* const> words);
 
 /// Whether that has happened since watch_time_to_save().

@@ -13,14 +13,19 @@ void remember_plugin(const void* address);
 /// For the signal handlers of a StageGuard, on a thread that is in no call; `what` as in
 /// reason_of(). When code of a plugin is among the callers, `may_stop` holds and somebody waits in
 /// this process, the thread is stopped and this never returns; otherwise the plugin is named on
-/// stderr. Returns when the process has to end as usual.
+/// stderr, and after std::exit() the process ends with exit code 1. Returns when it has to end as
+/// usual.
 void end_plugin_thread(int what, bool may_stop);
+
+/// Before the signal handlers are there. No thread counts as stopped.
+void prepare_for_plugin_threads();
 
 /// Of the first thread that was stopped. std::nullopt: none was.
 std::optional<StageError> error_of_stopped_thread();
-void forget_stopped_thread();
 
-/// Until end_wait_for_threads(), threads of this process may be stopped.
+/// Before a thread waits.
+void prepare_wait_for_threads();
+/// Once it does: until end_wait_for_threads(), threads of this process may be stopped.
 void begin_wait_for_threads();
 void end_wait_for_threads();
 /// Returns after a thread was stopped, or the wait has ended.
