@@ -117,7 +117,7 @@ extern "C" void on_exit_of_process() {
 
 [[noreturn]] void fail(const Call& call, int what) {
   if (what == kGivenUp)
-    if (const auto error = error_of_stopped_thread()) throw *error;  // waited for the thread
+    if (const auto error = error_of_stopped_thread()) throw StageError(*error);  // waited for it
   const std::string reason = reason_of(what);
   start_time_to_save(std::array{call.stage.c_str(), ": ", reason.c_str()});
   throw std::runtime_error(reason);
