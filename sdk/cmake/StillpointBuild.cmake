@@ -1,4 +1,5 @@
 # Helpers of the project's own build.
+include(StillpointPlugin)
 
 # Warnings for a target. Designated initialisers may leave out fields that have defaults; -Wrestrict
 # is wrong about std::string in g++ 12 (GCC bug 105651), and so are three more when headers are
@@ -121,10 +122,7 @@ function(stillpoint_add_project_plugin name)
   target_precompile_headers(stillpoint_${name} REUSE_FROM stillpoint_code_headers)
   stillpoint_compile_options(stillpoint_${name})
   target_link_libraries(stillpoint_${name} PRIVATE ${name}_code)
-  # clang++ has the run-time library of a sanitizer in the program.
-  if(NOT (CMAKE_CXX_COMPILER_ID MATCHES "Clang" AND CMAKE_CXX_FLAGS MATCHES "-fsanitize"))
-    target_link_options(stillpoint_${name} PRIVATE -Wl,--no-undefined)
-  endif()
+  stillpoint_refuse_missing_symbols(stillpoint_${name})
   target_link_options(stillpoint_${name} PRIVATE -Wl,--exclude-libs,ALL)
   set_target_properties(stillpoint_${name} PROPERTIES
     LIBRARY_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/lib/stillpoint/plugins

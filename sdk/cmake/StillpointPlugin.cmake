@@ -1,4 +1,12 @@
-# For authors of plugins: find_package(Stillpoint REQUIRED COMPONENTS Sdk) brings this function.
+# For authors of plugins: find_package(Stillpoint REQUIRED COMPONENTS Sdk) brings stillpoint_add_plugin().
+
+# Symbols missing at load time would be found out by the user instead of the author. The run-time library of
+# clang++'s sanitizers is in the program.
+function(stillpoint_refuse_missing_symbols target)
+  if(NOT (CMAKE_CXX_COMPILER_ID MATCHES "Clang" AND CMAKE_CXX_FLAGS MATCHES "-fsanitize"))
+    target_link_options(${target} PRIVATE -Wl,--no-undefined)
+  endif()
+endfunction()
 
 # stillpoint_add_plugin(NAME SOURCES… [CHECK_OPTIONS …]): the target NAME, a library
 # libstillpoint_NAME.so that exports its descriptor and nothing else. Installing puts it where the
@@ -12,11 +20,7 @@ function(stillpoint_add_plugin name)
   add_test(NAME ${name}.KeepsItsContracts
     COMMAND stillpoint::stillpoint plugins check $<TARGET_FILE:${name}> ${ARG_CHECK_OPTIONS})
   target_link_libraries(${name} PRIVATE stillpoint::sdk)
-  # Symbols missing at load time would be found out by the user instead of the author.
-  # clang++ has the run-time library of a sanitizer in the program.
-  if(NOT (CMAKE_CXX_COMPILER_ID MATCHES "Clang" AND CMAKE_CXX_FLAGS MATCHES "-fsanitize"))
-    target_link_options(${name} PRIVATE -Wl,--no-undefined)
-  endif()
+  stillpoint_refuse_missing_symbols(${name})
   set_target_properties(${name} PROPERTIES
     OUTPUT_NAME stillpoint_${name}
     CXX_VISIBILITY_PRESET hidden

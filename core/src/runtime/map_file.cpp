@@ -32,7 +32,7 @@ void flush(const fs::path& file) {
   if (!flushed) throw std::system_error(error, std::generic_category());
 }
 
-// Written beside its place first, under a name that is nobody else's.
+// Written beside its place first, under a name that no other process on this machine has.
 fs::path part_of(const fs::path& file) {
   return file.string() + '.' + std::to_string(::getpid()) + ".part";
 }
