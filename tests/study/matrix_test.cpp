@@ -27,11 +27,21 @@ TEST(Matrix, OnlyAndSkipLeaveCellsOut) {
 }
 
 TEST(Matrix, ARecordingLiesWhereItIsOrBelowTheOutput) {
-  Sequence sequence = two_by_two(1).sequences[0];
-  EXPECT_EQ(recording_of("/out", sequence), "/recordings/walking");
-  sequence.dataset.clear();
-  sequence.scene = "office";
-  EXPECT_EQ(recording_of("/out", sequence), "/out/recordings/walking");
+  Study study = two_by_two(1);
+  EXPECT_EQ(recording_of("/out", study, 0, 0), "/recordings/walking");
+  study.sequences[0].dataset.clear();
+  study.sequences[0].scene = "office";
+  EXPECT_EQ(recording_of("/out", study, 0, 0), "/out/recordings/walking");
+}
+
+TEST(Matrix, SequencesWithTheSameImagesShareTheRecording) {
+  Study study = two_by_two(2);
+  study.new_noise = true;
+  study.sequences = {{.name = "plain", .scene = "office"},
+                     {.name = "other_camera", .scene = "office", .camera = "tum_fr3"},
+                     {.name = "other_noise", .scene = "office", .set = {"depth.noise=0"}}};
+  EXPECT_EQ(recording_of("/out", study, 1, 1), "/out/recordings/plain-8");
+  EXPECT_EQ(recording_of("/out", study, 2, 1), "/out/recordings/other_noise-8");
 }
 
 TEST(Matrix, ScenesHaveNewNoiseInEveryRepeatWhenAskedFor) {
@@ -43,8 +53,9 @@ TEST(Matrix, ScenesHaveNewNoiseInEveryRepeatWhenAskedFor) {
   const Sequence third = at_repeat(study, sequence, 2);
   EXPECT_EQ(third.name, "room-12");
   EXPECT_THAT(third.set, ElementsAre("source.frames=5", "source.seed=12"));
-  EXPECT_EQ(recording_of("/out", third), "/out/recordings/room-12");
-  EXPECT_EQ(at_repeat(study, study.sequences[0], 2).name, study.sequences[0].name)
+  study.sequences[0] = sequence;
+  EXPECT_EQ(recording_of("/out", study, 0, 2), "/out/recordings/room-12");
+  EXPECT_EQ(at_repeat(study, study.sequences[1], 2).name, study.sequences[1].name)
       << "a recording is what it is";
 }
 

@@ -60,9 +60,9 @@ StudyResults results_of(const fs::path& folder, const Study& study) {
 RunData run_of_cell(const fs::path& folder, const StudyResults& results, std::size_t i) {
   const Study& study = results.study;
   const Cell& cell = results.cells[i];
-  const study::Sequence sequence = at_repeat(study, study.sequences[cell.sequence], cell.repeat);
   const fs::path run_path = run_folder(folder, study, cell);
-  RunData run = read_run(run_path, name_of(study, cell), recording_of(folder, sequence));
+  RunData run = read_run(run_path, name_of(study, cell),
+                         recording_of(folder, study, cell.sequence, cell.repeat));
   run.variant = study.variants[cell.variant].name;
   run.recording = study.sequences[cell.sequence].name;
   if (const std::string note = state_note(run_path, results.results[i].has_value()); !note.empty())

@@ -135,13 +135,15 @@ class Ablation {
   /// One after the other: the simulator uses all cores. False: stopped.
   bool record_scenes(const std::stop_token& stop) {
     for (int repeat = 0; repeat < (study().new_noise ? study().repeats : 1); ++repeat)
-      for (const Sequence& sequence : study().sequences)
-        if (!record_scene(at_repeat(study(), sequence, repeat), stop)) return false;
+      for (std::size_t i = 0; i < study().sequences.size(); ++i)
+        if (!record_scene(at_repeat(study(), study().sequences[i], repeat),
+                          recording_of(output_, study(), i, repeat), stop))
+          return false;
     return true;
   }
 
-  bool record_scene(const Sequence& sequence, const std::stop_token& stop) {
-    const fs::path recording = recording_of(output_, sequence);
+  bool record_scene(const Sequence& sequence, const fs::path& recording,
+                    const std::stop_token& stop) {
     if (!sequence.scene.empty()) {
       const std::string description = describe_scene(sequence);
       if (!is_recorded(recording, description)) {

@@ -142,7 +142,8 @@ class StudyChecker {
     const auto sequence = std::ranges::find_if(
         study_.sequences, [&](const Sequence& s) { return study::is_wanted(variant, s.name); });
     if (sequence == study_.sequences.end()) return;
-    const fs::path recording = study::recording_of("recordings", *sequence);
+    const fs::path recording = study::recording_of(
+        "recordings", study_, static_cast<std::size_t>(sequence - study_.sequences.begin()), 0);
     collect("variants", i, "pipeline", [&] {
       PipelineRequest request = request_of(study_, *sequence, variant, recording);
       request.camera.clear();

@@ -55,7 +55,7 @@ class Planner {
 
   PlannedCell plan(const Cell& cell) {
     const Sequence sequence = at_repeat(study_, study_.sequences[cell.sequence], cell.repeat);
-    const fs::path recording = recording_of(output_, sequence);
+    const fs::path recording = recording_of(output_, study_, cell.sequence, cell.repeat);
     const PipelineRequest request =
         request_of(study_, sequence, study_.variants[cell.variant], recording);
     if (cell.repeat == 0 || recording != last_recording_) pipeline_ = pipeline_of(request);

@@ -32,9 +32,13 @@ std::filesystem::path run_folder(const std::filesystem::path& output, const Stud
   return output / "runs" / name_of(study, cell);
 }
 
-std::filesystem::path recording_of(const std::filesystem::path& output, const Sequence& sequence) {
-  return sequence.scene.empty() ? std::filesystem::path(sequence.dataset)
-                                : output / "recordings" / sequence.name;
+std::filesystem::path recording_of(const std::filesystem::path& output, const Study& study,
+                                   std::size_t sequence, int repeat) {
+  const Sequence& wanted = study.sequences[sequence];
+  if (wanted.scene.empty()) return wanted.dataset;
+  const auto first = std::ranges::find_if(
+      study.sequences, [&](const Sequence& other) { return same_images(other, wanted); });
+  return output / "recordings" / at_repeat(study, *first, repeat).name;
 }
 
 }  // namespace stillpoint::study

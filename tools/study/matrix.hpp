@@ -30,7 +30,9 @@ std::string name_of(const Study& study, const Cell& cell);
 std::filesystem::path run_folder(const std::filesystem::path& output, const Study& study,
                                  const Cell& cell);
 
-/// Where the recording of a sequence lies, or will.
-std::filesystem::path recording_of(const std::filesystem::path& output, const Sequence& sequence);
+/// Where the recording of a sequence lies, or will, for one of the repeats. Sequences with the same
+/// images share it.
+std::filesystem::path recording_of(const std::filesystem::path& output, const Study& study,
+                                   std::size_t sequence, int repeat);
 
 }  // namespace stillpoint::study

@@ -28,10 +28,6 @@ std::optional<double> advantage(const CellResult& variant, const CellResult& bas
   return std::log(*baseline.values[kAte] / *variant.values[kAte]);
 }
 
-bool same_images(const Sequence& a, const Sequence& b) {
-  return a.dataset == b.dataset && a.scene == b.scene && a.frames == b.frames && a.set == b.set;
-}
-
 /// Of one recording.
 struct Pair {
   double advantage = 0.0;

@@ -104,6 +104,10 @@ Sequence at_repeat(const Study& study, const Sequence& sequence, int repeat) {
   return result;
 }
 
+bool same_images(const Sequence& a, const Sequence& b) {
+  return a.dataset == b.dataset && a.scene == b.scene && a.frames == b.frames && a.set == b.set;
+}
+
 std::vector<std::string> assignments_of(const Study& study, const Variant& variant) {
   std::vector<std::string> assignments;
   if (study.mode == Study::Mode::kInline) assignments.emplace_back("runtime.mode=inline");

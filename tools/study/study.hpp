@@ -65,6 +65,9 @@ std::vector<const Published*> published_with(const Study& study, std::size_t fir
 /// The sequence as a repeat runs on it: a scene with noise of its own has its own name and seed.
 Sequence at_repeat(const Study& study, const Sequence& sequence, int repeat);
 
+/// Whether two sequences differ in name and camera only.
+bool same_images(const Sequence& a, const Sequence& b);
+
 /// What a run of the variant is told, without the seed; later ones win.
 std::vector<std::string> assignments_of(const Study& study, const Variant& variant);
 
