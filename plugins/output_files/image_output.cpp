@@ -4,11 +4,11 @@
 #include <array>
 #include <cctype>
 #include <cstdio>
-#include <opencv2/imgcodecs.hpp>
 #include <utility>
 
 #include "output_files/panels.hpp"
 #include "stillpoint/support/atomic_file.hpp"
+#include "stillpoint/support/image_codec.hpp"
 
 namespace stillpoint::output_files {
 namespace {
@@ -75,9 +75,8 @@ fs::path ImageOutput::file_of(std::uint32_t frame) const {
 
 void ImageOutput::write(const FrameReport& report) const {
   const fs::path path = file_of(report.frame->index);
-  std::vector<unsigned char> bytes;
-  cv::imencode(path.extension().string(),
-               options_.panels ? panels_of(report) : annotated(report, options_.parts), bytes);
+  const cv::Mat picture = options_.panels ? panels_of(report) : annotated(report, options_.parts);
+  const std::vector<std::uint8_t> bytes = encode_image(path.extension().string(), picture);
   AtomicFile file(path);
   file.stream().write(reinterpret_cast<const char*>(bytes.data()),
                       static_cast<std::streamsize>(bytes.size()));

@@ -3,7 +3,6 @@
 
 #include <fstream>
 #include <nlohmann/json.hpp>
-#include <opencv2/imgcodecs.hpp>
 #include <sstream>
 
 #include "output_files/frames_output.hpp"
@@ -13,6 +12,7 @@
 #include "output_files/summary_output.hpp"
 #include "output_files/timings_output.hpp"
 #include "output_files/trajectory_output.hpp"
+#include "support/image_io.hpp"
 
 namespace stillpoint::output_files {
 namespace {
@@ -227,7 +227,8 @@ TEST_F(OutputFiles, PicturesAreMadeOfEveryNthFrame) {
   report.frame.index = 61;
   output.frame(report());
   EXPECT_THAT(files(), ElementsAre("images", "images/000060.png"));
-  const cv::Mat picture = cv::imread((context.output_directory / "images/000060.png").string());
+  const cv::Mat picture =
+      testing::read_image((context.output_directory / "images/000060.png").string());
   EXPECT_EQ(picture.size(), report.frame.bgr.size());
 }
 

@@ -1,12 +1,12 @@
 #include "output_mcap/mcap_output.hpp"
 
-#include <opencv2/imgcodecs.hpp>
 #include <utility>
 #include <vector>
 
 #include "ros2_messages/cost_map_file.hpp"
 #include "ros2_messages/point_clouds.hpp"
 #include "semantic_octree/octree_reader.hpp"
+#include "stillpoint/support/image_codec.hpp"
 
 namespace stillpoint::output_mcap {
 namespace {
@@ -73,7 +73,7 @@ void McapOutput::write_pose(double time, const TrackResult& result) {
 void McapOutput::write_image(const Frame& frame) {
   const Header header{frame.time, kCameraFrame};
   ros2_messages::CompressedImage image{header, "jpeg"};
-  cv::imencode(".jpg", frame.bgr, image.file, {cv::IMWRITE_JPEG_QUALITY, kJpegQuality});
+  image.file = encode_image(".jpg", frame.bgr, {cv::IMWRITE_JPEG_QUALITY, kJpegQuality});
   writer_.write(image_topics_->image, frame.time, image);
   writer_.write(image_topics_->camera, frame.time,
                 ros2_messages::CameraInfo{header, *frame.camera});

@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 #include <vector>
 
 #include "output_web/message_writer.hpp"
+#include "stillpoint/support/image_codec.hpp"
 
 namespace stillpoint::output_web {
 namespace {
@@ -49,8 +49,8 @@ void write_pixel(const cv::Point2f& point, MessageWriter& writer) {
 }
 
 void write_image(const FrameReport& report, MessageWriter& writer) {
-  std::vector<unsigned char> jpeg;
-  cv::imencode(".jpg", report.frame->bgr, jpeg, {cv::IMWRITE_JPEG_QUALITY, kJpegQuality});
+  const std::vector<std::uint8_t> jpeg =
+      encode_image(".jpg", report.frame->bgr, {cv::IMWRITE_JPEG_QUALITY, kJpegQuality});
   writer.begin(Record::kImage);
   writer.number(report.frame->index);
   writer.text({reinterpret_cast<const char*>(jpeg.data()), jpeg.size()});

@@ -2,10 +2,9 @@
 
 #include <gtest/gtest.h>
 
-#include <opencv2/imgcodecs.hpp>
-
 #include "output_web/test_reports.hpp"
 #include "output_web/test_viewer.hpp"
+#include "stillpoint/support/image_codec.hpp"
 
 namespace stillpoint::output_web {
 namespace {
@@ -39,7 +38,7 @@ TEST(Picture, TellsWhyFeaturesAreNotUsed) {
   const std::string& image = records[Record::kImage].at(0);
   EXPECT_EQ(number_at<std::uint32_t>(image, 0), 1u);
   const std::vector<char> jpeg(image.begin() + 4, image.end());
-  EXPECT_EQ(cv::imdecode(jpeg, cv::IMREAD_COLOR).size(), report.frame->bgr.size());
+  EXPECT_EQ(decode_image(jpeg, cv::IMREAD_COLOR).size(), report.frame->bgr.size());
 
   const std::string& mask = records[Record::kMask].at(0);
   std::size_t pixels = 0, unused = 0;

@@ -4,11 +4,11 @@
 #include <charconv>
 #include <cmath>
 #include <opencv2/core.hpp>
-#include <opencv2/imgcodecs.hpp>
 #include <optional>
 #include <string>
 
 #include "stillpoint/error.hpp"
+#include "stillpoint/support/image_codec.hpp"
 #include "stillpoint/support/image_file.hpp"
 
 namespace stillpoint::segmenter_label_images {
@@ -60,7 +60,7 @@ const LabelFiles::Entry& LabelFiles::nearest(double time) const {
 cv::Mat read_labels(const fs::path& file, std::size_t classes) {
   cv::Mat labels;
   try {
-    labels = cv::imdecode(read_image_file(file), cv::IMREAD_UNCHANGED);
+    labels = decode_image(read_image_file(file), cv::IMREAD_UNCHANGED);
   } catch (const cv::Exception&) {
     labels.release();  // what a damaged file can make the decoder throw
   }

@@ -9,6 +9,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "support/error_text.hpp"
+#include "support/image_io.hpp"
 #include "support/recording_writer.hpp"
 
 namespace stillpoint::segmenter_label_images {
@@ -43,7 +44,7 @@ class LabelImageSegmenterTest : public ::testing::Test {
   std::filesystem::path write(double time, const cv::Mat& image) const {
     const auto file = folder_.path() / "labels" / (stamp_text(time) + ".png");
     std::filesystem::create_directories(file.parent_path());
-    cv::imwrite(file.string(), image);
+    testing::write_image(file.string(), image);
     return file;
   }
   LabelImageSegmenter open(std::uint64_t seed = 1) const {

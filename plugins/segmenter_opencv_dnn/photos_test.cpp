@@ -2,10 +2,10 @@
 // larger ones.
 #include <gtest/gtest.h>
 
-#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
 #include "segmenter_opencv_dnn/test_networks.hpp"
+#include "support/image_io.hpp"
 #include "support/shared_data.hpp"
 
 namespace stillpoint::segmenter_opencv_dnn {
@@ -27,10 +27,10 @@ struct Overlap {
 
 Overlap person_overlap(OpenCvDnnSegmenter& segmenter, const std::string& photo) {
   Frame frame;
-  frame.bgr = cv::imread(shared_data() / "photos" / (photo + ".png"));
+  frame.bgr = testing::read_image(shared_data() / "photos" / (photo + ".png"));
   cv::cvtColor(frame.bgr, frame.gray, cv::COLOR_BGR2GRAY);
   const cv::Mat drawn =
-      cv::imread(shared_data() / "photos" / (photo + "_gt.png"), cv::IMREAD_GRAYSCALE);
+      testing::read_image(shared_data() / "photos" / (photo + "_gt.png"), cv::IMREAD_GRAYSCALE);
   const cv::Mat clear = drawn != kUnclear;
   const cv::Mat person = drawn == 255;
   const cv::Mat found =

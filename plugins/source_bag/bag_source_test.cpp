@@ -3,8 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <opencv2/imgcodecs.hpp>
-
+#include "stillpoint/support/image_codec.hpp"
 #include "support/bag_writer.hpp"
 #include "support/error_text.hpp"
 #include "support/recording_writer.hpp"
@@ -40,7 +39,7 @@ constexpr const char* kUnregistered = "/camera/depth/image_raw";
 
 BagBytes encoded(const cv::Mat& image, const std::string& ending = ".png") {
   BagBytes bytes;
-  cv::imencode(ending, image, bytes);
+  bytes = encode_image(ending, image);
   return bytes;
 }
 

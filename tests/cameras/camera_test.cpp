@@ -7,7 +7,6 @@
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
-#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 #include <string>
 #include <utility>
@@ -15,6 +14,7 @@
 
 #include "evaluation/trajectory.hpp"
 #include "support/absolute_error.hpp"
+#include "support/image_io.hpp"
 #include "support/simulated_recording.hpp"
 
 namespace stillpoint::testing {
@@ -34,9 +34,9 @@ class Dump {
  public:
   explicit Dump(const RecordingCopy& recording) {
     for (int frame = 0; frame < kFrames; ++frame) {
-      cv::Mat color = cv::imread(recording.color(frame).string(), cv::IMREAD_COLOR);
+      cv::Mat color = testing::read_image(recording.color(frame).string(), cv::IMREAD_COLOR);
       cv::cvtColor(color, color, cv::COLOR_BGR2RGB);
-      cv::Mat depth = cv::imread(recording.depth(frame).string(), cv::IMREAD_UNCHANGED);
+      cv::Mat depth = testing::read_image(recording.depth(frame).string(), cv::IMREAD_UNCHANGED);
       depth.convertTo(depth, CV_16U, 0.2);  // 5000 per metre to millimetres
       const double seconds = frame * kPeriod;
       add('r', seconds, "P6 640 480 255\n", color, ".ppm");

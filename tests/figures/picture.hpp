@@ -2,12 +2,12 @@
 #pragma once
 
 #include <opencv2/core.hpp>
-#include <opencv2/imgcodecs.hpp>
 #include <string>
 #include <vector>
 
 #include "figures/figure_file.hpp"
 #include "figures/layout.hpp"
+#include "stillpoint/support/image_codec.hpp"
 
 namespace stillpoint::figures {
 
@@ -15,7 +15,7 @@ class Picture {
  public:
   explicit Picture(const Figure& figure) : layout_(lay_out(figure)) {
     const std::string png = draw(figure, Format::kPng);
-    pixels_ = cv::imdecode(std::vector<unsigned char>(png.begin(), png.end()), cv::IMREAD_COLOR);
+    pixels_ = decode_image(std::vector<unsigned char>(png.begin(), png.end()), cv::IMREAD_COLOR);
   }
 
   const cv::Mat& pixels() const { return pixels_; }

@@ -1,12 +1,12 @@
 // One file of a folder that another program wrote; the others are as they should be.
 #include <memory>
-#include <opencv2/imgcodecs.hpp>
 #include <string>
 
 #include "fuzz/fuzz_target.hpp"
 #include "importing/euroc.hpp"
 #include "importing/icl_nuim_raw.hpp"
 #include "ros2_messages/cost_map_file.hpp"
+#include "stillpoint/support/image_codec.hpp"
 #include "support/recording_writer.hpp"
 
 namespace stillpoint::testing {
@@ -35,7 +35,7 @@ FuzzTarget one_file(const std::string& name, const std::string& seed,
 
 std::string image(int type) {
   std::vector<std::uint8_t> bytes;
-  cv::imencode(".png", cv::Mat(48, 64, type, cv::Scalar::all(80)), bytes);
+  bytes = encode_image(".png", cv::Mat(48, 64, type, cv::Scalar::all(80)));
   return {bytes.begin(), bytes.end()};
 }
 

@@ -3,11 +3,11 @@
 
 #include <algorithm>
 #include <memory>
-#include <opencv2/imgcodecs.hpp>
 #include <span>
 #include <string_view>
 
 #include "fuzz/fuzz_target.hpp"
+#include "stillpoint/support/image_codec.hpp"
 #include "stillpoint/support/image_file.hpp"
 #include "tum_recording/png_decoder.hpp"
 
@@ -30,7 +30,7 @@ Bytes encoded(const std::string& kind, int type) {
   cv::Mat image(6, 9, type);
   cv::RNG(7).fill(image, cv::RNG::UNIFORM, 0, 256);
   Bytes file;
-  cv::imencode(kind, image, file);
+  file = encode_image(kind, image);
   return file;
 }
 

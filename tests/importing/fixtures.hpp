@@ -10,7 +10,6 @@
 #include <functional>
 #include <memory>
 #include <opencv2/core.hpp>
-#include <opencv2/imgcodecs.hpp>
 #include <string>
 
 #include "evaluation/trajectory.hpp"
@@ -18,6 +17,7 @@
 #include "importing/recording_folder.hpp"
 #include "stillpoint/engine/pipeline_config.hpp"
 #include "stillpoint/error.hpp"
+#include "support/image_io.hpp"
 #include "support/recording_writer.hpp"
 #include "tum_recording/image_reader.hpp"
 #include "tum_recording/recording.hpp"
@@ -46,7 +46,7 @@ inline cv::Mat flat_depth(int value, cv::Size size = {640, 480}) {
 
 inline void write_image(const fs::path& file, const cv::Mat& image) {
   fs::create_directories(file.parent_path());
-  cv::imwrite(file.string(), image);
+  testing::write_image(file.string(), image);
 }
 
 inline std::unique_ptr<ForeignRecording> open_foreign(const fs::path& recording,

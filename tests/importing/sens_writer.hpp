@@ -9,12 +9,12 @@
 #include <fstream>
 #include <limits>
 #include <opencv2/core.hpp>
-#include <opencv2/imgcodecs.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "stillpoint/pose_math.hpp"
+#include "stillpoint/support/image_codec.hpp"
 
 namespace stillpoint::testing {
 
@@ -88,7 +88,7 @@ class SensWriter {
     matrix(image.world_from_camera ? image.world_from_camera->matrix()
                                    : Eigen::Matrix4d(Eigen::Matrix4d::Constant(lost)));
     std::vector<std::uint8_t> color;
-    cv::imencode(color_kind == 1 ? ".png" : ".jpg", image.color, color);
+    color = encode_image(color_kind == 1 ? ".png" : ".jpg", image.color);
     const std::vector<std::uint8_t> depth = compressed(image.depth);
     for (const std::uint64_t value : {image.time, image.time + 1000}) number(value);
     number(std::uint64_t{color.size()});

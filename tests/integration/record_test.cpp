@@ -5,13 +5,13 @@
 #include <algorithm>
 #include <csignal>
 #include <filesystem>
-#include <opencv2/imgcodecs.hpp>
 #include <regex>
 #include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "support/image_io.hpp"
 #include "support/simulated_recording.hpp"
 
 namespace stillpoint::testing {
@@ -78,7 +78,7 @@ class Record : public ::testing::Test {
     for (const char* list : {"rgb.txt", "depth.txt"}) {
       count = 0;
       for (const fs::path& file : images(out(), list)) {
-        EXPECT_FALSE(cv::imread(file.string(), cv::IMREAD_UNCHANGED).empty()) << file;
+        EXPECT_FALSE(testing::read_image(file.string(), cv::IMREAD_UNCHANGED).empty()) << file;
         ++count;
       }
     }
@@ -99,8 +99,8 @@ TEST_F(Record, ARecordingOfARecordingIsTheSame) {
   for (const char* list : {"rgb.txt", "depth.txt"})
     for (const fs::path& file : images(original.path(), list)) {
       const fs::path copy = out() / fs::relative(file, original.path());
-      EXPECT_EQ(cv::norm(cv::imread(file.string(), cv::IMREAD_UNCHANGED),
-                         cv::imread(copy.string(), cv::IMREAD_UNCHANGED), cv::NORM_INF),
+      EXPECT_EQ(cv::norm(testing::read_image(file.string(), cv::IMREAD_UNCHANGED),
+                         testing::read_image(copy.string(), cv::IMREAD_UNCHANGED), cv::NORM_INF),
                 0)
           << file;
     }

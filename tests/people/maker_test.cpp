@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "small_base.hpp"
+#include "support/image_io.hpp"
 
 namespace stillpoint::people {
 namespace {
@@ -25,7 +26,7 @@ class MakerTest : public ::testing::Test {
                           threads);
   }
   cv::Mat image(const std::string& name) const {
-    return cv::imread(folder_.path() / name / "1.200000.png", cv::IMREAD_UNCHANGED);
+    return testing::read_image(folder_.path() / name / "1.200000.png", cv::IMREAD_UNCHANGED);
   }
   /// Every file of a recording, by name.
   std::map<std::string, std::string> bytes(const std::string& out) const {

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "small_base.hpp"
+#include "support/image_io.hpp"
 
 namespace stillpoint::people {
 namespace {
@@ -21,13 +22,13 @@ TEST(Photographs, OnlyWholePeopleOfSomeSize) {
   const testing::TemporaryFolder folder;
   const PersonPhoto whole = write_person(folder);
   EXPECT_EQ(held_out_people({folder.path()}).size(), 1U);
-  cv::Mat mask = cv::imread(whole.mask, cv::IMREAD_GRAYSCALE);
+  cv::Mat mask = testing::read_image(whole.mask, cv::IMREAD_GRAYSCALE);
   cv::Mat cut = mask.clone();
   cut.rowRange(0, 200).setTo(0);
-  cv::imwrite(whole.mask, cut);
+  testing::write_image(whole.mask, cut);
   EXPECT_TRUE(held_out_people({folder.path()}).empty()) << "too small";
   mask.rowRange(170, 185).setTo(0);
-  cv::imwrite(whole.mask, mask);
+  testing::write_image(whole.mask, mask);
   EXPECT_TRUE(held_out_people({folder.path()}).empty()) << "two pieces";
 }
 

@@ -3,11 +3,11 @@
 
 #include <filesystem>
 #include <fstream>
-#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 #include <string>
 
 #include "people/maker.hpp"
+#include "support/image_io.hpp"
 #include "support/recording_writer.hpp"
 
 namespace stillpoint::people {
@@ -53,8 +53,8 @@ inline PersonPhoto write_person(const testing::TemporaryFolder& folder,
   photo.setTo(cv::Scalar(20, 20, 200), mask);
   const PersonPhoto result{.image = folder.path() / (name + ".webp"),
                            .mask = folder.path() / (name + ".png")};
-  cv::imwrite(result.image, photo);
-  cv::imwrite(result.mask, mask);
+  testing::write_image(result.image, photo);
+  testing::write_image(result.mask, mask);
   return result;
 }
 

@@ -6,13 +6,13 @@
 #include <array>
 #include <cmath>
 #include <fstream>
-#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 #include <sstream>
 
 #include "evaluation/trajectory.hpp"
 #include "ros2/fast_messages.hpp"
 #include "support/dds_loopback.hpp"
+#include "support/image_io.hpp"
 #include "support/simulated_recording.hpp"
 
 namespace stillpoint::testing {
@@ -52,10 +52,11 @@ std::vector<Images> recorded_images(std::size_t count) {
     const std::size_t point = stamp.find('.');
     std::string fraction = stamp.substr(point + 1);
     fraction.resize(9, '0');
-    images.push_back({{std::stoi(stamp.substr(0, point)),
-                       static_cast<std::uint32_t>(std::stoul(fraction)), "camera_optical"},
-                      cv::imread((recording / color_file).string(), cv::IMREAD_COLOR),
-                      cv::imread((recording / depth_file).string(), cv::IMREAD_UNCHANGED)});
+    images.push_back(
+        {{std::stoi(stamp.substr(0, point)), static_cast<std::uint32_t>(std::stoul(fraction)),
+          "camera_optical"},
+         testing::read_image((recording / color_file).string(), cv::IMREAD_COLOR),
+         testing::read_image((recording / depth_file).string(), cv::IMREAD_UNCHANGED)});
   }
   return images;
 }

@@ -2,11 +2,10 @@
 
 #include <gtest/gtest.h>
 
-#include <opencv2/imgcodecs.hpp>
-
 #include "simulation/simulator.hpp"
 #include "small_camera.hpp"
 #include "stillpoint/error.hpp"
+#include "support/image_io.hpp"
 #include "support/recording_writer.hpp"
 
 namespace stillpoint::simulation {
@@ -15,8 +14,8 @@ namespace {
 class AlbumTest : public ::testing::Test {
  protected:
   AlbumTest() {
-    cv::imwrite(folder_.path() / "a.png", cv::Mat(30, 60, CV_8UC3, cv::Scalar(0, 200, 0)));
-    cv::imwrite(folder_.path() / "b.png", cv::Mat(60, 30, CV_8UC3, cv::Scalar(0, 120, 0)));
+    testing::write_image(folder_.path() / "a.png", cv::Mat(30, 60, CV_8UC3, cv::Scalar(0, 200, 0)));
+    testing::write_image(folder_.path() / "b.png", cv::Mat(60, 30, CV_8UC3, cv::Scalar(0, 120, 0)));
     folder_.write("list.txt", "no image");
   }
   static double green(const cv::Mat& bgr) {

@@ -3,9 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <opencv2/imgcodecs.hpp>
-
 #include "stillpoint/error.hpp"
+#include "support/image_io.hpp"
 
 namespace stillpoint::simulation {
 namespace {
@@ -17,7 +16,7 @@ TEST(PngFile, ReadsAsItWasWritten) {
     cv::Mat image(37, 53, type);
     cv::randu(image, 0, type == CV_16UC1 ? 65536 : 256);
     write_png(file, image);
-    const cv::Mat read = cv::imread(file, cv::IMREAD_UNCHANGED);
+    const cv::Mat read = testing::read_image(file, cv::IMREAD_UNCHANGED);
     ASSERT_EQ(read.type(), type);
     ASSERT_EQ(read.size(), image.size());
     EXPECT_EQ(cv::norm(read.reshape(1), image.reshape(1), cv::NORM_INF), 0) << type;

@@ -7,8 +7,9 @@
 #include <filesystem>
 #include <fstream>
 #include <opencv2/core.hpp>
-#include <opencv2/imgcodecs.hpp>
 #include <string>
+
+#include "support/image_io.hpp"
 
 namespace stillpoint::testing {
 
@@ -80,7 +81,7 @@ class RecordingWriter {
  private:
   std::filesystem::path add(double time, const cv::Mat& image, const std::string& name,
                             std::string& list) {
-    cv::imwrite((folder_ / name).string(), image);
+    write_image((folder_ / name).string(), image);
     list += stamp_text(time) + " " + name + "\n";
     return folder_ / name;
   }

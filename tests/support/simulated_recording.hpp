@@ -16,6 +16,7 @@
 #include <string>
 #include <vector>
 
+#include "support/image_io.hpp"
 #include "support/program.hpp"
 
 namespace stillpoint::testing {
@@ -114,7 +115,7 @@ class RecordingCopy {
   std::string read(const std::string& name) const { return text_of(path() / name); }
   void write(const std::string& name, const std::string& text) const { folder_.write(name, text); }
   void replace(const std::filesystem::path& image, const cv::Mat& pixels) const {
-    cv::imwrite(image.string(), pixels);
+    write_image(image.string(), pixels);
   }
 
  private:

@@ -7,10 +7,10 @@
 #include <array>
 #include <filesystem>
 #include <opencv2/core/mat.hpp>
-#include <opencv2/imgcodecs.hpp>
 #include <string>
 
 #include "stillpoint/error.hpp"
+#include "stillpoint/support/image_codec.hpp"
 #include "support/error_text.hpp"
 #include "support/recording_writer.hpp"
 
@@ -25,7 +25,7 @@ Bytes encoded(const std::string& extension, cv::Size size, const std::vector<int
   cv::Mat image(size, CV_8UC3);
   cv::randu(image, 0, 256);
   Bytes bytes;
-  cv::imencode(extension, image, bytes, options);
+  bytes = encode_image(extension, image, options);
   return bytes;
 }
 
@@ -61,7 +61,7 @@ TEST(ImageFile, PnmCannotHideItsSize) {
                                  "P5 60 40#1 1\n 255 ", "P5\n60 40 255\n"}) {
     Bytes file(text.begin(), text.end());
     file.resize(file.size() + 60 * 1255, 7);
-    const cv::Mat image = cv::imdecode(file, cv::IMREAD_UNCHANGED);
+    const cv::Mat image = decode_image(file, cv::IMREAD_UNCHANGED);
     SCOPED_TRACE(text);
     const auto stated = stated_image_size(file);
     if (image.empty()) continue;  // refused by OpenCV

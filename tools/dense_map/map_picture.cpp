@@ -6,7 +6,6 @@
 #include <cmath>
 #include <functional>
 #include <limits>
-#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 #include <set>
 #include <vector>
@@ -14,6 +13,7 @@
 #include "semantic_octree/cost_map.hpp"
 #include "stillpoint/error.hpp"
 #include "stillpoint/support/atomic_file.hpp"
+#include "stillpoint/support/image_codec.hpp"
 
 namespace stillpoint::dense_map {
 namespace {
@@ -252,9 +252,7 @@ cv::Mat picture_of(const SavedOctree& map, const PictureOptions& options) {
 }
 
 void write_picture(const cv::Mat& picture, const std::filesystem::path& file) {
-  std::vector<std::uint8_t> bytes;
-  if (!cv::imencode(".png", picture, bytes))
-    throw Error(Fault::kUsage, "the picture cannot be encoded", file.string());
+  const std::vector<std::uint8_t> bytes = encode_image(".png", picture);
   AtomicFile out(file);
   out.stream().write(reinterpret_cast<const char*>(bytes.data()),
                      static_cast<std::streamsize>(bytes.size()));

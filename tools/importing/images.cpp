@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <charconv>
-#include <opencv2/imgcodecs.hpp>
 
 #include "stillpoint/error.hpp"
+#include "stillpoint/support/image_codec.hpp"
 #include "stillpoint/support/size_text.hpp"
 #include "tum_recording/image_reader.hpp"
 
@@ -18,7 +18,7 @@ StoredImage kept_image(double time, const std::filesystem::path& file) {
 
 StoredImage new_depth(double time, const cv::Mat& depth) {
   StoredImage image{.time = time};
-  cv::imencode(".png", depth, image.bytes, {cv::IMWRITE_PNG_COMPRESSION, 3});
+  image.bytes = encode_image(".png", depth, {cv::IMWRITE_PNG_COMPRESSION, 3});
   return image;
 }
 

@@ -1,7 +1,6 @@
 #include "importing/scannet.hpp"
 
 #include <algorithm>
-#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 #include <string>
 #include <utility>
@@ -10,6 +9,7 @@
 #include "importing/images.hpp"
 #include "importing/sens_file.hpp"
 #include "stillpoint/error.hpp"
+#include "stillpoint/support/image_codec.hpp"
 #include "stillpoint/support/image_file.hpp"
 #include "stillpoint/support/rectifier.hpp"
 #include "stillpoint/support/size_text.hpp"
@@ -82,7 +82,7 @@ class ScanNet final : public ForeignRecording {
     cv::Mat pixels = decoded(image.bytes, where);
     if (pixels.size() != size_) cv::resize(pixels, pixels, size_, 0, 0, cv::INTER_AREA);
     image.extension = ".jpg";
-    cv::imencode(".jpg", pixels, image.bytes, {cv::IMWRITE_JPEG_QUALITY, kJpegQuality});
+    image.bytes = encode_image(".jpg", pixels, {cv::IMWRITE_JPEG_QUALITY, kJpegQuality});
     return image;
   }
 
@@ -97,7 +97,7 @@ class ScanNet final : public ForeignRecording {
     }
     cv::Mat pixels;
     try {
-      pixels = cv::imdecode(bytes, cv::IMREAD_COLOR | cv::IMREAD_IGNORE_ORIENTATION);
+      pixels = decode_image(bytes, cv::IMREAD_COLOR | cv::IMREAD_IGNORE_ORIENTATION);
     } catch (const cv::Exception&) {
       pixels.release();
     }

@@ -5,6 +5,7 @@
 
 #include "inspection/audit_report.hpp"
 #include "stillpoint/error.hpp"
+#include "support/image_io.hpp"
 #include "support/recording_writer.hpp"
 #include "support/shared_data.hpp"
 
@@ -144,7 +145,7 @@ TEST_F(RecordingAuditTest, ReportsImagesThatCannotBeUsed) {
   write(10);
   truncate_file(color_[3], 0.5);
   std::filesystem::remove(depth_[4]);
-  cv::imwrite(depth_[5].string(), cv::Mat::zeros(48, 64, CV_16UC1));
+  testing::write_image(depth_[5].string(), cv::Mat::zeros(48, 64, CV_16UC1));
   const RecordingAudit result = audit();
   ASSERT_EQ(result.unreadable.size(), 2u);
   EXPECT_THAT(result.warnings,

@@ -3,10 +3,10 @@
 #include <array>
 #include <cstdio>
 #include <fstream>
-#include <opencv2/imgcodecs.hpp>
 
 #include "simulation/mesh.hpp"
 #include "stillpoint/error.hpp"
+#include "stillpoint/support/image_codec.hpp"
 #include "stillpoint/support/image_file.hpp"
 
 namespace stillpoint::people {
@@ -31,7 +31,7 @@ std::vector<BasePair> read_pairs(const fs::path& folder) {
 }
 
 cv::Mat read_image(const fs::path& file, int flags) {
-  cv::Mat image = cv::imdecode(read_image_file(file), flags);
+  cv::Mat image = decode_image(read_image_file(file), flags);
   if (image.empty()) throw Error(Fault::kData, "the image cannot be read", file.string());
   return image;
 }

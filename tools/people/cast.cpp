@@ -1,12 +1,12 @@
 #include "people/cast.hpp"
 
 #include <algorithm>
-#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
 #include "people/relighting.hpp"
 #include "people/smear.hpp"
 #include "stillpoint/error.hpp"
+#include "stillpoint/support/image_codec.hpp"
 #include "stillpoint/support/image_file.hpp"
 
 namespace stillpoint::people {
@@ -41,7 +41,7 @@ std::array<cv::Mat, 3> sides_from(const std::vector<fs::path>& pictures, cv::RNG
                   "name a folder of them");
     const fs::path& file =
         pictures[static_cast<std::size_t>(random.uniform(0, static_cast<int>(pictures.size())))];
-    side = cv::imdecode(read_image_file(file), cv::IMREAD_COLOR);
+    side = decode_image(read_image_file(file), cv::IMREAD_COLOR);
     if (side.empty()) throw Error(Fault::kData, "the image cannot be read", file.string());
   }
   return sides;

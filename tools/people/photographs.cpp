@@ -1,11 +1,11 @@
 #include "people/photographs.hpp"
 
 #include <algorithm>
-#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 #include <optional>
 
 #include "stillpoint/error.hpp"
+#include "stillpoint/support/image_codec.hpp"
 #include "stillpoint/support/image_file.hpp"
 
 namespace stillpoint::people {
@@ -73,8 +73,8 @@ std::vector<fs::path> held_out_images(const fs::path& folder) {
 }
 
 MaskedPhoto read_photo(const fs::path& image, const fs::path& mask) {
-  MaskedPhoto photo{.bgr = cv::imdecode(read_image_file(image), cv::IMREAD_COLOR),
-                    .mask = cv::imdecode(read_image_file(mask), cv::IMREAD_GRAYSCALE)};
+  MaskedPhoto photo{.bgr = decode_image(read_image_file(image), cv::IMREAD_COLOR),
+                    .mask = decode_image(read_image_file(mask), cv::IMREAD_GRAYSCALE)};
   if (photo.bgr.empty() || photo.mask.empty() || photo.bgr.size() != photo.mask.size())
     throw Error(Fault::kData, "cannot be read, or its mask has another size", image.string(),
                 "expected the mask in " + mask.filename().string());

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
-#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
 #include "report/map_voxels.hpp"
@@ -10,6 +9,7 @@
 #include "report/page_json.hpp"
 #include "stillpoint/error.hpp"
 #include "stillpoint/support/base64.hpp"
+#include "stillpoint/support/image_codec.hpp"
 #include "stillpoint/support/image_file.hpp"
 #include "study/text_file.hpp"
 
@@ -36,15 +36,15 @@ std::string jpeg_of(const std::filesystem::path& file) {
   constexpr int kWidth = 960, kQuality = 80;
   cv::Mat picture;
   try {
-    picture = cv::imdecode(read_image_file(file), cv::IMREAD_COLOR);
+    picture = decode_image(read_image_file(file), cv::IMREAD_COLOR);
   } catch (const Error&) {
   }
   if (picture.empty()) return {};
   if (picture.cols > kWidth)
     cv::resize(picture, picture, {kWidth, picture.rows * kWidth / picture.cols}, 0, 0,
                cv::INTER_AREA);
-  std::vector<unsigned char> bytes;
-  cv::imencode(".jpg", picture, bytes, {cv::IMWRITE_JPEG_QUALITY, kQuality});
+  const std::vector<std::uint8_t> bytes =
+      encode_image(".jpg", picture, {cv::IMWRITE_JPEG_QUALITY, kQuality});
   return {bytes.begin(), bytes.end()};
 }
 

@@ -5,11 +5,11 @@
 #include <array>
 #include <cstdint>
 #include <opencv2/core.hpp>
-#include <opencv2/imgcodecs.hpp>
 #include <string>
 #include <vector>
 
 #include "stillpoint/error.hpp"
+#include "stillpoint/support/image_codec.hpp"
 #include "stillpoint/support/image_file.hpp"
 #include "stillpoint/support/input_file.hpp"
 
@@ -45,7 +45,7 @@ OccupancyGrid read(const std::filesystem::path& description) {
   grid.header_from_origin = pose_of(yaml["world_from_map"].as<std::array<double, 7>>()) *
                             Eigen::Translation3d(corner[0], corner[1], 0);
   const auto image = description.parent_path() / yaml["image"].as<std::string>();
-  grid.cells = cells_of(cv::imdecode(read_image_file(image), cv::IMREAD_GRAYSCALE));
+  grid.cells = cells_of(decode_image(read_image_file(image), cv::IMREAD_GRAYSCALE));
   return grid;
 }
 

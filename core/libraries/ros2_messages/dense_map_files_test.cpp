@@ -2,12 +2,12 @@
 #include <gtest/gtest.h>
 
 #include <opencv2/core.hpp>
-#include <opencv2/imgcodecs.hpp>
 
 #include "ros2_messages/cost_map_file.hpp"
 #include "ros2_messages/octree_file.hpp"
 #include "stillpoint/error.hpp"
 #include "support/error_text.hpp"
+#include "support/image_io.hpp"
 #include "support/recording_writer.hpp"
 
 namespace stillpoint::ros2_messages {
@@ -25,7 +25,7 @@ TEST_F(DenseMapFiles, ACostMapIsReadWithItsPlaceInTheWorld) {
   cv::Mat image(2, 3, CV_8UC1, cv::Scalar(205));
   image.at<std::uint8_t>(0, 0) = 0;    // upper left: occupied
   image.at<std::uint8_t>(1, 2) = 254;  // lower right: free
-  cv::imwrite((folder_.path() / "map.pgm").string(), image);
+  testing::write_image((folder_.path() / "map.pgm").string(), image);
   folder_.write("map.yaml",
                 "image: \"map.pgm\"\nmode: trinary\nresolution: 0.05\norigin: [-1, 2, 0]\n"
                 "world_from_map: [0, 1.5, 0, 0.5, -0.5, 0.5, 0.5]\n");

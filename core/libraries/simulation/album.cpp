@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <array>
-#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
 #include "stillpoint/error.hpp"
+#include "stillpoint/support/image_codec.hpp"
 #include "stillpoint/support/image_file.hpp"
 
 namespace stillpoint::simulation {
@@ -36,7 +36,7 @@ std::vector<fs::path> images_in(const fs::path& folder) {
 
 Album::Album(const fs::path& folder) {
   for (const fs::path& file : images_in(folder)) {
-    photographs_.push_back(cv::imdecode(read_image_file(file), cv::IMREAD_COLOR));
+    photographs_.push_back(decode_image(read_image_file(file), cv::IMREAD_COLOR));
     if (photographs_.back().empty())
       throw Error(Fault::kUsage, "the photograph cannot be read", file.string());
   }

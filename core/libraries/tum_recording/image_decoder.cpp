@@ -1,10 +1,10 @@
 #include "tum_recording/image_decoder.hpp"
 
 #include <algorithm>
-#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
 #include "stillpoint/error.hpp"
+#include "stillpoint/support/image_codec.hpp"
 #include "stillpoint/support/image_file.hpp"
 
 namespace stillpoint::tum_recording {
@@ -31,11 +31,6 @@ std::string kind_of(const cv::Mat& image) {
          (image.channels() == 1 ? " channel" : " channels");
 }
 
-/// A view; OpenCV only reads it.
-cv::Mat bytes_of(std::span<const std::uint8_t> file) {
-  return {1, static_cast<int>(file.size()), CV_8UC1, const_cast<std::uint8_t*>(file.data())};
-}
-
 }  // namespace
 
 cv::Mat ImageDecoder::decode(std::span<const std::uint8_t> file, const std::string& where,
@@ -49,7 +44,7 @@ cv::Mat ImageDecoder::decode(std::span<const std::uint8_t> file, const std::stri
   }
   if (is_truncated_jpeg(file)) fail(where, "truncated JPEG");
   try {
-    if (image.empty()) image = cv::imdecode(bytes_of(file), imread_flags);
+    if (image.empty()) image = decode_image(file, imread_flags);
   } catch (const cv::Exception& error) {
     fail(where, "cannot be decoded: " + error.err);
   }

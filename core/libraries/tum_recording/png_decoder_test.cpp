@@ -3,11 +3,12 @@
 #include <gtest/gtest.h>
 #include <libdeflate.h>
 
-#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 #include <stdexcept>
 #include <string>
 #include <utility>
+
+#include "stillpoint/support/image_codec.hpp"
 
 namespace stillpoint::tum_recording {
 namespace {
@@ -64,7 +65,7 @@ std::vector<std::uint8_t> file_with_all_filters(int width, int height, int bits,
 
 std::vector<std::uint8_t> encode(const cv::Mat& image) {
   std::vector<std::uint8_t> bytes;
-  cv::imencode(".png", image, bytes);
+  bytes = encode_image(".png", image);
   return bytes;
 }
 
@@ -86,7 +87,7 @@ TEST(PngDecoder, AgreesWithOpenCvOnEveryFilter) {
   for (const auto& [bits, color] : {std::pair(8, 0), std::pair(8, 2), std::pair(16, 0)})
     for (const int width : {1, 2, 37, 300}) {
       const auto file = file_with_all_filters(width, 25, bits, color);
-      EXPECT_TRUE(equal(decoder.decode(file), cv::imdecode(file, cv::IMREAD_UNCHANGED)))
+      EXPECT_TRUE(equal(decoder.decode(file), decode_image(file, cv::IMREAD_UNCHANGED)))
           << bits << " bits, colour type " << color << ", width " << width;
     }
 }

@@ -19,6 +19,7 @@
 #include "stillpoint/runtime/abnormal_end.hpp"
 #include "stillpoint/runtime/plugin_thread.hpp"
 #include "stillpoint/runtime/read_only_images.hpp"
+#include "stillpoint/support/image_codec.hpp"
 
 namespace stillpoint {
 namespace {
@@ -115,6 +116,11 @@ extern "C" void on_exit_of_process() {
   if (guarded && !current) end_plugin_thread(kExited, !calls_stages);
 }
 
+/// Before anything of a library that was loaded just now is destroyed.
+void notice_exits_first() {
+  if (guarded) std::atexit(on_exit_of_process);
+}
+
 [[noreturn]] void fail(const Call& call, int what) {
   if (what == kGivenUp)
     if (const auto error = error_of_stopped_thread()) throw StageError(*error);  // waited for it
@@ -175,6 +181,7 @@ StageGuard::StageGuard() {
   for (const int signal : kCrashes) handle_crash(signal);
   handle_give_up();
   watch_time_to_save();
+  when_image_codec_is_loaded(notice_exits_first);
   std::atexit(on_exit_of_process);
   guarded = true;
 }
@@ -188,7 +195,7 @@ StageGuard::~StageGuard() {
 
 void StageGuard::library_was_loaded(const void* address) {
   remember_plugin(address);
-  if (guarded) std::atexit(on_exit_of_process);
+  notice_exits_first();
 }
 
 std::vector<std::string> StageGuard::calls_longer_than(double seconds) {

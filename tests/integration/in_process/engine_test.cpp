@@ -5,7 +5,6 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
-#include <opencv2/imgcodecs.hpp>
 #include <optional>
 #include <stop_token>
 #include <string>
@@ -17,6 +16,7 @@
 #include "stillpoint/engine/map_file.hpp"
 #include "stillpoint/support/rectifier.hpp"
 #include "support/absolute_error.hpp"
+#include "support/image_io.hpp"
 #include "support/simulated_recording.hpp"
 
 namespace stillpoint::testing {
@@ -57,8 +57,9 @@ EngineSetup setup_of(const fs::path& folder, const std::string& mode,
 void push_all(Engine& engine, const fs::path& recording) {
   const Rectifier rectifier(load_camera((recording / "camera.yaml").string()));
   for (const ImagePair& pair : pairs_of(recording)) {
-    const FrameReportPtr report = engine.process(rectifier.frame(
-        pair.time, cv::imread(pair.color.string()), cv::imread(pair.depth.string(), -1)));
+    const FrameReportPtr report =
+        engine.process(rectifier.frame(pair.time, testing::read_image(pair.color.string()),
+                                       testing::read_image(pair.depth.string(), -1)));
     ASSERT_EQ(report->result.state, TrackState::kTracking);
     ASSERT_TRUE(report->segmentation->known());
     ASSERT_EQ(report->weights->track.size(), report->frame->bgr.size());
