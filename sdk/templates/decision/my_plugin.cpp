@@ -60,3 +60,8 @@ bool MyPlugin::moves(const cv::Mat& mask, const stillpoint::MovingPoints& moving
 }
 
 }  // namespace plugins::my_plugin
+
+// What the library provides: the type `my_plugin`.
+STILLPOINT_PLUGIN(my_plugin, "0.1.0",
+                  stillpoint::provide<stillpoint::Decision, plugins::my_plugin::MyPlugin>(
+                      "my_plugin", "weight 0 for objects with moving points"));

@@ -81,3 +81,8 @@ stillpoint::SparseMap MyPlugin::refine(stillpoint::SparseMap map, stillpoint::Ke
 }
 
 }  // namespace plugins::my_plugin
+
+// What the library provides: the type `my_plugin`.
+STILLPOINT_PLUGIN(my_plugin, "0.1.0",
+                  stillpoint::provide<stillpoint::LocalMapper, plugins::my_plugin::MyPlugin>(
+                      "my_plugin", "landmarks from depth, culled when they are not found again"));

@@ -128,3 +128,8 @@ std::optional<Pose> MyPlugin::old_from_latest(const KeyFrame& old, const KeyFram
 }
 
 }  // namespace plugins::my_plugin
+
+// What the library provides: the type `my_plugin`.
+STILLPOINT_PLUGIN(my_plugin, "0.1.0",
+                  stillpoint::provide<stillpoint::LoopCloser, plugins::my_plugin::MyPlugin>(
+                      "my_plugin", "matches nearby key frames and distributes the drift linearly"));

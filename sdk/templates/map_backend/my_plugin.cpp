@@ -56,3 +56,8 @@ void MyPlugin::save(const std::filesystem::path& directory) {
 }
 
 }  // namespace plugins::my_plugin
+
+// What the library provides: the type `my_plugin`.
+STILLPOINT_PLUGIN(my_plugin, "0.1.0",
+                  stillpoint::provide<stillpoint::MapBackend, plugins::my_plugin::MyPlugin>(
+                      "my_plugin", "a point cloud, one point per voxel"));

@@ -56,3 +56,8 @@ stillpoint::MapEvidence MyPlugin::check(const stillpoint::Frame& frame,
 }
 
 }  // namespace plugins::my_plugin
+
+// What the library provides: the type `my_plugin`.
+STILLPOINT_PLUGIN(my_plugin, "0.1.0",
+                  stillpoint::provide<stillpoint::MapChecker, plugins::my_plugin::MyPlugin>(
+                      "my_plugin", "depth compared with an earlier frame"));

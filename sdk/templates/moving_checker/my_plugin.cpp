@@ -74,3 +74,8 @@ stillpoint::MovingPoints MyPlugin::check(const stillpoint::Frame& previous,
 }
 
 }  // namespace plugins::my_plugin
+
+// What the library provides: the type `my_plugin`.
+STILLPOINT_PLUGIN(my_plugin, "0.1.0",
+                  stillpoint::provide<stillpoint::MovingChecker, plugins::my_plugin::MyPlugin>(
+                      "my_plugin", "optical flow with depth against the camera's own motion"));

@@ -48,3 +48,8 @@ void MyPlugin::frame(const stillpoint::FrameReport& report) {
 void MyPlugin::finish(const stillpoint::RunSummary&) { file_.commit(); }
 
 }  // namespace plugins::my_plugin
+
+// What the library provides: the type `my_plugin`.
+STILLPOINT_PLUGIN(my_plugin, "0.1.0",
+                  stillpoint::provide<stillpoint::Output, plugins::my_plugin::MyPlugin>(
+                      "my_plugin", "one line of CSV per frame"));

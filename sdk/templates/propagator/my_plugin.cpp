@@ -62,3 +62,8 @@ cv::Point MyPlugin::motion_of(const cv::Mat& mask, const cv::Rect& box,
 }
 
 }  // namespace plugins::my_plugin
+
+// What the library provides: the type `my_plugin`.
+STILLPOINT_PLUGIN(my_plugin, "0.1.0",
+                  stillpoint::provide<stillpoint::Propagator, plugins::my_plugin::MyPlugin>(
+                      "my_plugin", "moves each object by the median optical flow of its points"));

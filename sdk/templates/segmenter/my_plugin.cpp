@@ -43,3 +43,8 @@ stillpoint::Segmentation MyPlugin::segment(const stillpoint::Frame& frame) {
 }
 
 }  // namespace plugins::my_plugin
+
+// What the library provides: the type `my_plugin`.
+STILLPOINT_PLUGIN(my_plugin, "0.1.0",
+                  stillpoint::provide<stillpoint::Segmenter, plugins::my_plugin::MyPlugin>(
+                      "my_plugin", "labels what has a colour"));

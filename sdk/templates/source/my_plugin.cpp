@@ -58,3 +58,8 @@ std::optional<stillpoint::Frame> MyPlugin::next() {
 }
 
 }  // namespace plugins::my_plugin
+
+// What the library provides: the type `my_plugin`.
+STILLPOINT_PLUGIN(my_plugin, "0.1.0",
+                  stillpoint::provide<stillpoint::Source, plugins::my_plugin::MyPlugin>(
+                      "my_plugin", "a textured wall that the camera moves along"));

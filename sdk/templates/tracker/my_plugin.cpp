@@ -185,3 +185,8 @@ Pose MyPlugin::world_from_reference(const stillpoint::SparseMap& map) const {
 }
 
 }  // namespace plugins::my_plugin
+
+// What the library provides: the type `my_plugin`.
+STILLPOINT_PLUGIN(my_plugin, "0.1.0",
+                  stillpoint::provide<stillpoint::Tracker, plugins::my_plugin::MyPlugin>(
+                      "my_plugin", "odometry: ORB features against the last key frame"));
