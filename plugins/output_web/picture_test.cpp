@@ -38,7 +38,8 @@ TEST(Picture, TellsWhyFeaturesAreNotUsed) {
   const std::string& image = records[Record::kImage].at(0);
   EXPECT_EQ(number_at<std::uint32_t>(image, 0), 1u);
   const std::vector<char> jpeg(image.begin() + 4, image.end());
-  EXPECT_EQ(decode_image(jpeg, cv::IMREAD_COLOR).size(), report.frame->bgr.size());
+  EXPECT_EQ(decode_image({reinterpret_cast<const std::uint8_t*>(jpeg.data()), jpeg.size()}).size(),
+            report.frame->bgr.size());
 
   const std::string& mask = records[Record::kMask].at(0);
   std::size_t pixels = 0, unused = 0;
