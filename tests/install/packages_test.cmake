@@ -88,3 +88,14 @@ if(PYTHON)
   run(${CMAKE_COMMAND} -E env PYTHONPATH=${root}/usr/lib/python3/dist-packages
     ${PYTHON} -c "import stillpoint; print(stillpoint.Engine)")
 endif()
+
+# OpenCV's codecs are loaded when the first image needs them.
+file(REMOVE ${root}/usr/lib/stillpoint/libstillpoint_image_codec.so)
+run(${program} run orb_baseline --quiet --dataset ${recording} -o ${work}/packaged_run --set source.limit=3)
+execute_process(
+  COMMAND ${program} run orb_baseline --quiet --dataset ${recording} -o ${work}/packaged_run --set source.limit=3
+    --set "outputs=[{type: trajectory}, {type: images, every: 1}]"
+  RESULT_VARIABLE result ERROR_VARIABLE output)
+if(NOT result EQUAL 1 OR NOT output MATCHES "libstillpoint_image_codec.so: cannot be loaded: [^\n]*install it again")
+  message(FATAL_ERROR "without its codecs, the program says (${result}):\n${output}")
+endif()

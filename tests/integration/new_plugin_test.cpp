@@ -53,10 +53,9 @@ TEST_F(NewPlugin, EveryKindHasAProjectWithTheNamePutIn) {
     const std::string name = "new_" + kind;
     const Outcome made = make(kind, name);
     ASSERT_EQ(made.exit_code, 0) << made.err;
-    EXPECT_EQ(
-        names_in(name),
-        (std::set<std::string>{".gitignore", "CMakeLists.txt", "README.md", name + ".cpp",
-                               name + ".hpp", name + "_test.cpp", "pipeline.yaml"}));
+    EXPECT_EQ(names_in(name),
+              (std::set<std::string>{".gitignore", "CMakeLists.txt", "README.md", name + ".cpp",
+                                     name + ".hpp", name + "_test.cpp", "pipeline.yaml"}));
     for (const std::string& file : names_in(name)) {
       const std::string text = text_of(folder_.path() / name / file);
       EXPECT_NE(text, "") << file;
@@ -64,7 +63,8 @@ TEST_F(NewPlugin, EveryKindHasAProjectWithTheNamePutIn) {
         EXPECT_THAT(text, Not(HasSubstr(left))) << kind << ' ' << file;
       EXPECT_THAT(made.out, HasSubstr(file));
     }
-    EXPECT_THAT(text_of(folder_.path() / name / (name + ".cpp")), HasSubstr("STILLPOINT_PLUGIN(new_"));
+    EXPECT_THAT(text_of(folder_.path() / name / (name + ".cpp")),
+                HasSubstr("STILLPOINT_PLUGIN(new_"));
   }
 }
 

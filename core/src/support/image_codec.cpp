@@ -4,6 +4,7 @@
 
 #include <atomic>
 #include <filesystem>
+#include <string_view>
 
 #include "../image_codec/codec_functions.hpp"
 #include "stillpoint/error.hpp"
@@ -14,6 +15,14 @@ namespace {
 
 std::atomic<void (*)()> when_loaded{nullptr};
 
+/// What dlopen() or dlsym() said, without the file's name before it.
+std::string loader_message(const std::string& file) {
+  const char* said = ::dlerror();
+  std::string_view text = said ? said : "for no known reason";
+  if (text.starts_with(file + ": ")) text.remove_prefix(file.size() + 2);
+  return std::string(text);
+}
+
 CodecFunctions load_codec() {
   const void* own_code = reinterpret_cast<const void*>(&load_codec);
   const std::filesystem::path file = folder_of(own_code) / "stillpoint" / kCodecLibrary;
@@ -21,11 +30,9 @@ CodecFunctions load_codec() {
   const auto functions_of =
       library ? reinterpret_cast<const CodecFunctions* (*)()>(::dlsym(library, kCodecSymbol))
               : nullptr;
-  if (!functions_of) {
-    const char* said = ::dlerror();
-    throw Error(Fault::kUsage, std::string("images cannot be read: ") + (said ? said : "no symbol"),
-                file.string(), "it is a part of Stillpoint: install it again");
-  }
+  if (!functions_of)
+    throw Error(Fault::kUsage, "cannot be loaded: " + loader_message(file.string()), file.string(),
+                "images need it; it is a part of Stillpoint: install it again");
   const CodecFunctions functions = *functions_of();
   if (const auto loaded = when_loaded.load()) loaded();
   return functions;
