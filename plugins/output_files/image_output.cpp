@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <cstdint>
 #include <cstdio>
 #include <utility>
+#include <vector>
 
 #include "output_files/panels.hpp"
 #include "stillpoint/support/atomic_file.hpp"

@@ -227,8 +227,7 @@ TEST_F(OutputFiles, PicturesAreMadeOfEveryNthFrame) {
   report.frame.index = 61;
   output.frame(report());
   EXPECT_THAT(files(), ElementsAre("images", "images/000060.png"));
-  const cv::Mat picture =
-      testing::read_image((context.output_directory / "images/000060.png").string());
+  const cv::Mat picture = testing::read_image((context.output_directory / "images/000060.png"));
   EXPECT_EQ(picture.size(), report.frame.bgr.size());
 }
 

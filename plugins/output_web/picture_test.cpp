@@ -1,6 +1,8 @@
 #include "output_web/picture.hpp"
 
 #include <gtest/gtest.h>
+#include <cstdint>
+#include <vector>
 
 #include "output_web/test_reports.hpp"
 #include "output_web/test_viewer.hpp"

@@ -44,7 +44,7 @@ class LabelImageSegmenterTest : public ::testing::Test {
   std::filesystem::path write(double time, const cv::Mat& image) const {
     const auto file = folder_.path() / "labels" / (stamp_text(time) + ".png");
     std::filesystem::create_directories(file.parent_path());
-    testing::write_image(file.string(), image);
+    testing::write_image(file, image);
     return file;
   }
   LabelImageSegmenter open(std::uint64_t seed = 1) const {

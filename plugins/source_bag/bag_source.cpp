@@ -101,6 +101,7 @@ std::optional<Frame> BagSource::next() {
       frame.index = given_++;
       return frame;
     } catch (const Error& reason) {
+      if (reason.fault() != Fault::kData) throw;
       skipped_.add(reason, given_);
     }
   }

@@ -38,9 +38,7 @@ constexpr const char* kDepth = "/camera/depth_registered/image_raw";
 constexpr const char* kUnregistered = "/camera/depth/image_raw";
 
 BagBytes encoded(const cv::Mat& image, const std::string& ending = ".png") {
-  BagBytes bytes;
-  bytes = encode_image(ending, image);
-  return bytes;
+  return encode_image(ending, image);
 }
 
 class BagSourceTest : public ::testing::TestWithParam<BagStyle> {

@@ -65,6 +65,7 @@ std::optional<Frame> TumSource::next() {
       frame.index = given_++;
       return frame;
     } catch (const Error& reason) {
+      if (reason.fault() != Fault::kData) throw;
       skipped_.add(reason, given_);
     }
   }

@@ -151,8 +151,7 @@ TEST_F(TumSourceTest, SkipsATruncatedJpeg) {
   write(5);
   cv::Mat noise(kImageHeight, kImageWidth, CV_8UC3);
   cv::randu(noise, 0, 256);
-  std::vector<std::uint8_t> bytes;
-  bytes = encode_image(".jpg", noise);
+  std::vector<std::uint8_t> bytes = encode_image(".jpg", noise);
   folder_.write("rgb/1.200000.png", std::string(bytes.begin(), bytes.begin() + bytes.size() / 2));
   expect_skipped("truncated JPEG");
 }
@@ -168,8 +167,7 @@ void expect_too_large(const std::filesystem::path& file) {
 }
 
 TEST_F(TumSourceTest, DecodesNoPngThatIsTooLarge) {
-  std::vector<std::uint8_t> bytes;
-  bytes = encode_image(".png", color_image(7));
+  std::vector<std::uint8_t> bytes = encode_image(".png", color_image(7));
   for (const std::size_t side : {16, 20}) {  // four bytes each
     bytes[side + 2] = 32000 >> 8;
     bytes[side + 3] = 32000 & 255;
@@ -178,8 +176,7 @@ TEST_F(TumSourceTest, DecodesNoPngThatIsTooLarge) {
 }
 
 TEST_F(TumSourceTest, DecodesNoJpegThatIsTooLarge) {
-  std::vector<std::uint8_t> bytes;
-  bytes = encode_image(".jpg", color_image(7));
+  std::vector<std::uint8_t> bytes = encode_image(".jpg", color_image(7));
   constexpr std::uint8_t kFrameHeader[] = {0xff, 0xc0};
   const auto frame =
       std::search(bytes.begin(), bytes.end(), std::begin(kFrameHeader), std::end(kFrameHeader));
@@ -212,27 +209,26 @@ TEST_F(TumSourceTest, SkipsWhatIsNoImage) {
 
 TEST_F(TumSourceTest, SkipsAnEightBitDepthImage) {
   write(5);
-  testing::write_image(depth_files_[2].string(),
-                       cv::Mat(kImageHeight, kImageWidth, CV_8UC1, cv::Scalar(9)));
+  testing::write_image(depth_files_[2], cv::Mat(kImageHeight, kImageWidth, CV_8UC1, cv::Scalar(9)));
   expect_skipped(
       "a depth image must be 16-bit with 1 channel, this is an 8-bit image with 1 channel");
 }
 
 TEST_F(TumSourceTest, SkipsASixteenBitGrayColourImage) {
   write(5);
-  testing::write_image(color_files_[2].string(), depth_image(9));
+  testing::write_image(color_files_[2], depth_image(9));
   expect_skipped("check that colour and depth are not exchanged");
 }
 
 TEST_F(TumSourceTest, SkipsAnImageOfTheWrongSize) {
   write(5);
-  testing::write_image(depth_files_[2].string(), cv::Mat(24, 32, CV_16UC1, cv::Scalar(9)));
+  testing::write_image(depth_files_[2], cv::Mat(24, 32, CV_16UC1, cv::Scalar(9)));
   expect_skipped("the image has 32 x 24 pixels, but camera 'tiny' has 64 x 48");
 }
 
 TEST_F(TumSourceTest, SkipsDepthWithoutMeasurements) {
   write(5);
-  testing::write_image(depth_files_[2].string(), depth_image(0));
+  testing::write_image(depth_files_[2], depth_image(0));
   expect_skipped("the depth image has no measurement");
 }
 

@@ -34,9 +34,9 @@ class Dump {
  public:
   explicit Dump(const RecordingCopy& recording) {
     for (int frame = 0; frame < kFrames; ++frame) {
-      cv::Mat color = testing::read_image(recording.color(frame).string(), cv::IMREAD_COLOR);
+      cv::Mat color = read_image(recording.color(frame), cv::IMREAD_COLOR);
       cv::cvtColor(color, color, cv::COLOR_BGR2RGB);
-      cv::Mat depth = testing::read_image(recording.depth(frame).string(), cv::IMREAD_UNCHANGED);
+      cv::Mat depth = read_image(recording.depth(frame), cv::IMREAD_UNCHANGED);
       depth.convertTo(depth, CV_16U, 0.2);  // 5000 per metre to millimetres
       const double seconds = frame * kPeriod;
       add('r', seconds, "P6 640 480 255\n", color, ".ppm");

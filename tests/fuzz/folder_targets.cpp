@@ -1,6 +1,8 @@
 // One file of a folder that another program wrote; the others are as they should be.
+#include <cstdint>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "fuzz/fuzz_target.hpp"
 #include "importing/euroc.hpp"
@@ -34,8 +36,8 @@ FuzzTarget one_file(const std::string& name, const std::string& seed,
 }
 
 std::string image(int type) {
-  std::vector<std::uint8_t> bytes;
-  bytes = encode_image(".png", cv::Mat(48, 64, type, cv::Scalar::all(80)));
+  const std::vector<std::uint8_t> bytes =
+      encode_image(".png", cv::Mat(48, 64, type, cv::Scalar::all(80)));
   return {bytes.begin(), bytes.end()};
 }
 

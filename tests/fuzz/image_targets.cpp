@@ -29,9 +29,7 @@ std::uint32_t number_at(const Bytes& file, std::size_t at) {
 Bytes encoded(const std::string& kind, int type) {
   cv::Mat image(6, 9, type);
   cv::RNG(7).fill(image, cv::RNG::UNIFORM, 0, 256);
-  Bytes file;
-  file = encode_image(kind, image);
-  return file;
+  return encode_image(kind, image);
 }
 
 constexpr int kMostPixels = 1 << 20;      // ImageReader refuses what is too large

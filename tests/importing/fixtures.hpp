@@ -46,7 +46,7 @@ inline cv::Mat flat_depth(int value, cv::Size size = {640, 480}) {
 
 inline void write_image(const fs::path& file, const cv::Mat& image) {
   fs::create_directories(file.parent_path());
-  testing::write_image(file.string(), image);
+  testing::write_image(file, image);
 }
 
 inline std::unique_ptr<ForeignRecording> open_foreign(const fs::path& recording,

@@ -87,8 +87,8 @@ class SensWriter {
     const double lost = -std::numeric_limits<double>::infinity();
     matrix(image.world_from_camera ? image.world_from_camera->matrix()
                                    : Eigen::Matrix4d(Eigen::Matrix4d::Constant(lost)));
-    std::vector<std::uint8_t> color;
-    color = encode_image(color_kind == 1 ? ".png" : ".jpg", image.color);
+    const std::vector<std::uint8_t> color =
+        encode_image(color_kind == 1 ? ".png" : ".jpg", image.color);
     const std::vector<std::uint8_t> depth = compressed(image.depth);
     for (const std::uint64_t value : {image.time, image.time + 1000}) number(value);
     number(std::uint64_t{color.size()});

@@ -67,7 +67,7 @@ endforeach()
 if(NOT triggers MATCHES "activate-noawait ldconfig")
   message(FATAL_ERROR "the package does not have ldconfig triggered: ${triggers}")
 endif()
-expect_depends(stillpoint libopencv-dnn406 libyaml-cpp0.7 libsqlite3-0 libcairo2)
+expect_depends(stillpoint libopencv-dnn406 libopencv-imgcodecs406 libyaml-cpp0.7 libsqlite3-0 libcairo2)
 if(output MATCHES "libfreenect|libopenni2|libddsc")
   message(FATAL_ERROR "the package stillpoint depends on libraries that are loaded late:\n${output}")
 endif()
@@ -90,11 +90,12 @@ if(PYTHON)
 endif()
 
 # OpenCV's codecs are loaded when the first image needs them.
+set(with_pictures --quiet --dataset ${recording} -o ${work}/packaged_run --set source.limit=3
+  --set "outputs=[{type: trajectory}, {type: images, every: 1}]")
+run(${program} run orb_baseline ${with_pictures})
 file(REMOVE ${root}/usr/lib/stillpoint/libstillpoint_image_codec.so)
 run(${program} run orb_baseline --quiet --dataset ${recording} -o ${work}/packaged_run --set source.limit=3)
-execute_process(
-  COMMAND ${program} run orb_baseline --quiet --dataset ${recording} -o ${work}/packaged_run --set source.limit=3
-    --set "outputs=[{type: trajectory}, {type: images, every: 1}]"
+execute_process(COMMAND ${program} run orb_baseline ${with_pictures}
   RESULT_VARIABLE result ERROR_VARIABLE output)
 if(NOT result EQUAL 1 OR NOT output MATCHES "libstillpoint_image_codec.so: cannot be loaded: [^\n]*install it again")
   message(FATAL_ERROR "without its codecs, the program says (${result}):\n${output}")

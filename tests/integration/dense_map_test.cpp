@@ -125,7 +125,7 @@ TEST_F(MapCommands, RenderDrawsAPicture) {
   const Outcome outcome = map({"render", file("map.ot"), "-o", new_file("map.png"), "--size",
                                "320x200", "--mode", "class", "--azimuth=-40"});
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
-  const cv::Mat picture = testing::read_image(new_file("map.png"));
+  const cv::Mat picture = read_image(new_file("map.png"));
   ASSERT_EQ(picture.size(), cv::Size(320, 200));
   EXPECT_GT(
       cv::norm(picture, cv::Mat(picture.size(), picture.type(), cv::Scalar::all(255)), cv::NORM_L1),

@@ -78,7 +78,7 @@ class Record : public ::testing::Test {
     for (const char* list : {"rgb.txt", "depth.txt"}) {
       count = 0;
       for (const fs::path& file : images(out(), list)) {
-        EXPECT_FALSE(testing::read_image(file.string(), cv::IMREAD_UNCHANGED).empty()) << file;
+        EXPECT_FALSE(read_image(file, cv::IMREAD_UNCHANGED).empty()) << file;
         ++count;
       }
     }
@@ -99,8 +99,8 @@ TEST_F(Record, ARecordingOfARecordingIsTheSame) {
   for (const char* list : {"rgb.txt", "depth.txt"})
     for (const fs::path& file : images(original.path(), list)) {
       const fs::path copy = out() / fs::relative(file, original.path());
-      EXPECT_EQ(cv::norm(testing::read_image(file.string(), cv::IMREAD_UNCHANGED),
-                         testing::read_image(copy.string(), cv::IMREAD_UNCHANGED), cv::NORM_INF),
+      EXPECT_EQ(cv::norm(read_image(file, cv::IMREAD_UNCHANGED),
+                         read_image(copy, cv::IMREAD_UNCHANGED), cv::NORM_INF),
                 0)
           << file;
     }

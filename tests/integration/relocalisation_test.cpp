@@ -36,7 +36,7 @@ class Replay {
     fs::copy_file(original / "camera.yaml", path() / "camera.yaml");
     for (const char* stream : {"rgb", "depth"})
       fs::create_directory_symlink(original / stream, path() / stream);
-    testing::write_image((path() / "black.png").string(), cv::Mat::zeros(480, 640, CV_8UC3));
+    write_image((path() / "black.png").string(), cv::Mat::zeros(480, 640, CV_8UC3));
   }
 
   void show(int first, int count) {

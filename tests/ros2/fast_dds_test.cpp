@@ -52,11 +52,10 @@ std::vector<Images> recorded_images(std::size_t count) {
     const std::size_t point = stamp.find('.');
     std::string fraction = stamp.substr(point + 1);
     fraction.resize(9, '0');
-    images.push_back(
-        {{std::stoi(stamp.substr(0, point)), static_cast<std::uint32_t>(std::stoul(fraction)),
-          "camera_optical"},
-         testing::read_image((recording / color_file).string(), cv::IMREAD_COLOR),
-         testing::read_image((recording / depth_file).string(), cv::IMREAD_UNCHANGED)});
+    images.push_back({{std::stoi(stamp.substr(0, point)),
+                       static_cast<std::uint32_t>(std::stoul(fraction)), "camera_optical"},
+                      read_image((recording / color_file), cv::IMREAD_COLOR),
+                      read_image((recording / depth_file), cv::IMREAD_UNCHANGED)});
   }
   return images;
 }

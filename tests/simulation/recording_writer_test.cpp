@@ -47,10 +47,10 @@ TEST_F(RecordingWriterTest, WritesAFolderOfTheBenchmark) {
             "1000.000000 rgb/1000.000000.png 1000.005000 depth/1000.005000.png\n"
             "1000.033333 rgb/1000.033333.png 1000.038333 depth/1000.038333.png\n");
   const cv::Mat depth =
-      testing::read_image((folder_ / "depth" / "1000.005000.png").string(), cv::IMREAD_UNCHANGED);
+      testing::read_image((folder_ / "depth" / "1000.005000.png"), cv::IMREAD_UNCHANGED);
   ASSERT_EQ(depth.type(), CV_16UC1);
   EXPECT_EQ(cv::norm(depth, frame.depth, cv::NORM_INF), 0);
-  const cv::Mat color = testing::read_image((folder_ / "rgb" / "1000.000000.png").string());
+  const cv::Mat color = testing::read_image((folder_ / "rgb" / "1000.000000.png"));
   EXPECT_EQ(cv::norm(color.reshape(1), frame.bgr.reshape(1), cv::NORM_INF), 0);
   EXPECT_TRUE(std::filesystem::exists(folder_ / "labels" / "1000.033333.png"));
   EXPECT_TRUE(std::filesystem::exists(folder_ / "instances" / "1000.033333.png"));

@@ -81,7 +81,7 @@ class RecordingWriter {
  private:
   std::filesystem::path add(double time, const cv::Mat& image, const std::string& name,
                             std::string& list) {
-    write_image((folder_ / name).string(), image);
+    write_image((folder_ / name), image);
     list += stamp_text(time) + " " + name + "\n";
     return folder_ / name;
   }

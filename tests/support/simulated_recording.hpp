@@ -115,7 +115,7 @@ class RecordingCopy {
   std::string read(const std::string& name) const { return text_of(path() / name); }
   void write(const std::string& name, const std::string& text) const { folder_.write(name, text); }
   void replace(const std::filesystem::path& image, const cv::Mat& pixels) const {
-    write_image(image.string(), pixels);
+    write_image(image, pixels);
   }
 
  private:

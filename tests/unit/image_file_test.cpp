@@ -24,9 +24,7 @@ using Bytes = std::vector<std::uint8_t>;
 Bytes encoded(const std::string& extension, cv::Size size, const std::vector<int>& options = {}) {
   cv::Mat image(size, CV_8UC3);
   cv::randu(image, 0, 256);
-  Bytes bytes;
-  bytes = encode_image(extension, image, options);
-  return bytes;
+  return encode_image(extension, image, options);
 }
 
 std::string refusal_of(const Bytes& file) {

@@ -145,7 +145,7 @@ TEST_F(RecordingAuditTest, ReportsImagesThatCannotBeUsed) {
   write(10);
   truncate_file(color_[3], 0.5);
   std::filesystem::remove(depth_[4]);
-  testing::write_image(depth_[5].string(), cv::Mat::zeros(48, 64, CV_16UC1));
+  testing::write_image(depth_[5], cv::Mat::zeros(48, 64, CV_16UC1));
   const RecordingAudit result = audit();
   ASSERT_EQ(result.unreadable.size(), 2u);
   EXPECT_THAT(result.warnings,

@@ -1,8 +1,10 @@
 #include "report/page.hpp"
 
 #include <algorithm>
+#include <cstdint>
 #include <nlohmann/json.hpp>
 #include <opencv2/imgproc.hpp>
+#include <vector>
 
 #include "report/map_voxels.hpp"
 #include "report/packing.hpp"
@@ -37,7 +39,8 @@ std::string jpeg_of(const std::filesystem::path& file) {
   cv::Mat picture;
   try {
     picture = decode_image(read_image_file(file), cv::IMREAD_COLOR);
-  } catch (const Error&) {
+  } catch (const Error& error) {
+    if (error.fault() != Fault::kData) throw;
   }
   if (picture.empty()) return {};
   if (picture.cols > kWidth)

@@ -65,7 +65,7 @@ std::vector<const Published*> published_with(const Study& study, std::size_t fir
 /// The sequence as a repeat runs on it: a scene with noise of its own has its own name and seed.
 Sequence at_repeat(const Study& study, const Sequence& sequence, int repeat);
 
-/// Whether two sequences differ in name and camera only.
+/// Whether both have the same images; names, cameras and what they are compared with may differ.
 bool same_images(const Sequence& a, const Sequence& b);
 
 /// What a run of the variant is told, without the seed; later ones win.

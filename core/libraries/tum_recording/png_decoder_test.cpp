@@ -63,11 +63,7 @@ std::vector<std::uint8_t> file_with_all_filters(int width, int height, int bits,
   return file;
 }
 
-std::vector<std::uint8_t> encode(const cv::Mat& image) {
-  std::vector<std::uint8_t> bytes;
-  bytes = encode_image(".png", image);
-  return bytes;
-}
+std::vector<std::uint8_t> encode(const cv::Mat& image) { return encode_image(".png", image); }
 
 bool equal(const cv::Mat& a, const cv::Mat& b) {
   return a.type() == b.type() && a.size() == b.size() && cv::norm(a, b, cv::NORM_INF) == 0;

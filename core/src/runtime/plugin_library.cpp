@@ -5,9 +5,9 @@
 #define BOOST_DLL_USE_STD_FS
 #include <boost/dll/shared_library.hpp>
 #include <deque>
-#include <string_view>
 #include <system_error>
 
+#include "../loader_message.hpp"
 #include "stillpoint/engine/stage_guard.hpp"
 #include "stillpoint/error.hpp"
 #include "stillpoint/runtime/plugin_stamp.hpp"
@@ -16,14 +16,6 @@ namespace stillpoint {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// What dlopen() said, "PATH: TEXT", without the path, which is known to the reader.
-std::string loader_message(const std::string& file) {
-  const char* said = ::dlerror();
-  std::string_view text = said ? said : "for no known reason";
-  if (text.starts_with(file + ": ")) text.remove_prefix(file.size() + 2);
-  return std::string(text);
-}
 
 /// Runs the library's static constructors; empty with a reason when it cannot be loaded.
 boost::dll::shared_library load(const fs::path& file, std::string& reason) {

@@ -16,10 +16,10 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "../image_codec/codec_loading.hpp"
 #include "stillpoint/runtime/abnormal_end.hpp"
 #include "stillpoint/runtime/plugin_thread.hpp"
 #include "stillpoint/runtime/read_only_images.hpp"
-#include "stillpoint/support/image_codec.hpp"
 
 namespace stillpoint {
 namespace {
@@ -121,6 +121,19 @@ void notice_exits_first() {
   if (guarded) std::atexit(on_exit_of_process);
 }
 
+/// The loader holds its lock: the call that needs the codecs is not ended meanwhile.
+void load_image_codec(void (*load)()) {
+  struct Bookkeeping {
+    Bookkeeping() { bookkeeping = 1; }
+    ~Bookkeeping() { bookkeeping = 0; }
+  };
+  {
+    const Bookkeeping undisturbed;
+    load();
+  }
+  notice_exits_first();
+}
+
 [[noreturn]] void fail(const Call& call, int what) {
   if (what == kGivenUp)
     if (const auto error = error_of_stopped_thread()) throw StageError(*error);  // waited for it
@@ -181,9 +194,9 @@ StageGuard::StageGuard() {
   for (const int signal : kCrashes) handle_crash(signal);
   handle_give_up();
   watch_time_to_save();
-  when_image_codec_is_loaded(notice_exits_first);
-  std::atexit(on_exit_of_process);
+  load_image_codec_with(load_image_codec);
   guarded = true;
+  notice_exits_first();
 }
 
 StageGuard::~StageGuard() {

@@ -4,42 +4,47 @@
 
 #include <atomic>
 #include <filesystem>
-#include <string_view>
 
 #include "../image_codec/codec_functions.hpp"
+#include "../image_codec/codec_loading.hpp"
+#include "../loader_message.hpp"
 #include "stillpoint/error.hpp"
 #include "stillpoint/support/model_lookup.hpp"
 
 namespace stillpoint {
 namespace {
 
-std::atomic<void (*)()> when_loaded{nullptr};
+void call(void (*load)()) { load(); }
 
-/// What dlopen() or dlsym() said, without the file's name before it.
-std::string loader_message(const std::string& file) {
-  const char* said = ::dlerror();
-  std::string_view text = said ? said : "for no known reason";
-  if (text.starts_with(file + ": ")) text.remove_prefix(file.size() + 2);
-  return std::string(text);
-}
+std::atomic<void (*)(void (*load)())> around_loading{&call};
 
-CodecFunctions load_codec() {
-  const void* own_code = reinterpret_cast<const void*>(&load_codec);
-  const std::filesystem::path file = folder_of(own_code) / "stillpoint" / kCodecLibrary;
-  void* library = ::dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
+const CodecFunctions* loaded_functions = nullptr;
+
+void load_codec();
+
+/// In the folder `stillpoint` beside this library; looked up before files can be exchanged.
+const std::filesystem::path codec_file =
+    folder_of(reinterpret_cast<const void*>(&load_codec)) / "stillpoint" / kCodecLibrary;
+
+void load_codec() {
+  const std::string file = codec_file.string();
+  // A name without a folder would be looked for in other places.
+  void* library =
+      codec_file.is_absolute() ? ::dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL) : nullptr;
   const auto functions_of =
       library ? reinterpret_cast<const CodecFunctions* (*)()>(::dlsym(library, kCodecSymbol))
               : nullptr;
   if (!functions_of)
-    throw Error(Fault::kUsage, "cannot be loaded: " + loader_message(file.string()), file.string(),
+    throw Error(Fault::kUsage, "cannot be loaded: " + loader_message(file), file,
                 "images need it; it is a part of Stillpoint: install it again");
-  const CodecFunctions functions = *functions_of();
-  if (const auto loaded = when_loaded.load()) loaded();
-  return functions;
+  loaded_functions = functions_of();
 }
 
 const CodecFunctions& codec() {
-  static const CodecFunctions functions = load_codec();
+  static const CodecFunctions functions = [] {
+    around_loading.load()(&load_codec);
+    return *loaded_functions;
+  }();
   return functions;
 }
 
@@ -56,6 +61,6 @@ std::vector<std::uint8_t> encode_image(const std::string& extension, const cv::M
   return file;
 }
 
-void when_image_codec_is_loaded(void (*loaded)()) { when_loaded = loaded; }
+void load_image_codec_with(void (*around)(void (*load)())) { around_loading = around; }
 
 }  // namespace stillpoint

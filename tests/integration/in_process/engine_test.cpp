@@ -57,9 +57,8 @@ EngineSetup setup_of(const fs::path& folder, const std::string& mode,
 void push_all(Engine& engine, const fs::path& recording) {
   const Rectifier rectifier(load_camera((recording / "camera.yaml").string()));
   for (const ImagePair& pair : pairs_of(recording)) {
-    const FrameReportPtr report =
-        engine.process(rectifier.frame(pair.time, testing::read_image(pair.color.string()),
-                                       testing::read_image(pair.depth.string(), -1)));
+    const FrameReportPtr report = engine.process(
+        rectifier.frame(pair.time, read_image(pair.color), read_image(pair.depth, -1)));
     ASSERT_EQ(report->result.state, TrackState::kTracking);
     ASSERT_TRUE(report->segmentation->known());
     ASSERT_EQ(report->weights->track.size(), report->frame->bgr.size());

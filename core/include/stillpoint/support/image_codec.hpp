@@ -1,6 +1,6 @@
 // Compressed images. OpenCV's module of image files depends on more than a hundred libraries
-// (GDAL's), which take a tenth of a second to load: it is loaded at the first call, so that a start
-// does not wait for it.
+// (GDAL's), which take a quarter of a second to load: that is done at the first call, so that a
+// start does not wait for it.
 #pragma once
 
 #include <cstdint>
@@ -25,9 +25,5 @@ STILLPOINT_EXPORT cv::Mat decode_image(std::span<const std::uint8_t> file,
 STILLPOINT_EXPORT std::vector<std::uint8_t> encode_image(
     const std::string& extension, const cv::Mat& image,
     const std::vector<int>& imwrite_options = {});
-
-/// `loaded` is called when the module has been loaded, by the thread that needs it: what the
-/// process does at its exit is done in the reverse order of what was loaded.
-STILLPOINT_EXPORT void when_image_codec_is_loaded(void (*loaded)());
 
 }  // namespace stillpoint
