@@ -227,6 +227,31 @@ TEST(ReportProgram, AnIncompleteStudySaysSo) {
   EXPECT_THAT(csv, HasSubstr("walking,plain,0.1,0.1000,0,"));
 }
 
+constexpr int kRooms = 8;
+
+/// On each of the sequences room_0, room_1, … `better` has a fifth of the error of `plain`.
+void write_finished_study(const TemporaryFolder& folder) {
+  std::string sequences;
+  for (int room = 0; room < kRooms; ++room) {
+    const std::string name = "room_" + std::to_string(room);
+    sequences += "  - {name: " + name + ", dataset: /none/" + name + "}\n";
+    for (const auto& [variant, error] : {std::pair{"plain", 0.1}, {"better", 0.02}}) {
+      study::CellResult result{
+          .fingerprint = "f",
+          .program = "p",
+          .origin = {"1.2.3", "0123456789ab", "a machine, 2 cores", "2026-01-30"}};
+      result.values[study::kAte] = error + 0.001 * room;
+      result.values[study::kCoverage] = 100.0;
+      const fs::path run = folder.path() / "runs" / name / variant / "0";
+      fs::create_directories(run);
+      study::write_result(run, result);
+    }
+  }
+  folder.write("study.yaml", "version: 1\nquestion: Is it better?\nsequences:\n" + sequences +
+                                 "variants:\n  - {name: plain, pipeline: orb_baseline}\n"
+                                 "  - {name: better, pipeline: stillpoint}\nbaseline: plain\n");
+}
+
 /// What probe.js has seen in the page.
 nlohmann::json probed(const fs::path& page, const TemporaryFolder& folder) {
   std::string text = text_of(page);
@@ -263,6 +288,32 @@ TEST(ReportPage, DrawsSortsAndTurnsInABrowser) {
   EXPECT_EQ(seen["turned"], true);
   EXPECT_EQ(seen["repainted"], true);
   EXPECT_EQ(seen["replayed"], true);
+}
+
+TEST(ReportPage, ShowsAStudyAndOpensItsRunsInABrowser) {
+  SKIP_WITHOUT_PAGE();
+  SKIP_WITHOUT_BROWSER();
+  const TemporaryFolder folder;
+  write_finished_study(folder);
+  const Outcome outcome = call({"report", folder.path().string()});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  const std::string shown =
+      document_in_browser("file://" + (folder.path() / "report.html").string(), R"((() => {
+        if (document.documentElement.dataset.ready !== 'yes') return false;
+        const wanted = 'room_3/better/0';
+        const names = [...document.querySelectorAll('tbody th a')];
+        names.find(name => name.textContent === wanted).click();
+        return document.getElementById('run').selectedOptions[0].textContent === wanted;
+      })())");
+  EXPECT_THAT(shown, AllOf(HasSubstr("Is it better?"), HasSubstr("commit 0123456789ab"),
+                           HasSubstr("Compared with plain"), HasSubstr("0.0078")));
+  const auto count = [&](const std::string& text) {
+    int found = 0;
+    for (std::size_t at = 0; (at = shown.find(text, at)) != std::string::npos; ++at) ++found;
+    return found;
+  };
+  EXPECT_EQ(count("<td class=\"best\">0.02"), kRooms);
+  EXPECT_GT(count("significant"), 0);
 }
 
 }  // namespace

@@ -14,9 +14,9 @@
 namespace stillpoint {
 namespace {
 
-void call(void (*load)()) { load(); }
+void load_directly(void (*load)()) { load(); }
 
-std::atomic<void (*)(void (*load)())> around_loading{&call};
+std::atomic<void (*)(void (*load)())> around_loading{&load_directly};
 
 const CodecFunctions* loaded_functions = nullptr;
 
