@@ -5,11 +5,13 @@
 
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <opencv2/core.hpp>
 #include <string>
 #include <thread>
 #include <vector>
 
 #include "support/dds_loopback.hpp"
+#include "support/image_io.hpp"
 #include "support/program.hpp"
 #include "support/simulated_recording.hpp"
 
@@ -72,6 +74,19 @@ TEST(PluginsCheck, TheSegNetPasses) {
             "prototxt=segnet_rooms.prototxt", "--set", "model=segnet_rooms.caffemodel", "--set",
             "classes=[background,bottle,chair,diningtable,person,pottedplant,sofa,tvmonitor]"});
   EXPECT_EQ(outcome.exit_code, 0) << outcome.out << outcome.err;
+}
+
+// One image of labels for all frames of the usual recording.
+TEST(PluginsCheck, LabelImagesPass) {
+  const TemporaryFolder folder;
+  cv::Mat labels(240, 320, CV_8UC1, cv::Scalar::all(0));
+  labels(cv::Rect(100, 60, 60, 140)) = 15;  // a person
+  write_image(folder.path() / "0.000000.png", labels);
+  const Outcome outcome =
+      call({"plugins", "check", library(kShipped, "segmenter_label_images"), "--set",
+            "path=" + folder.path().string(), "--set", "max_difference=10"});
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.out << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr("labels in 20 of 20 frames"));
 }
 
 TEST(PluginsCheck, BagsPass) {
