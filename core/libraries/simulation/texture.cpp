@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <opencv2/imgproc.hpp>
+#include <cstdint>
+
+#include "simulation/pyramid.hpp"
 
 namespace stillpoint::simulation {
 namespace {
@@ -40,22 +42,8 @@ float rough_log2(float x) {
 /// Rounds down; std::floor is a function call on processors without SSE4.1, which we build for.
 int floor_to_int(float x) { return static_cast<int>(x) - (x < 0 ? 1 : 0); }
 
-int power_of_two(int size) { return static_cast<int>(std::bit_ceil(static_cast<unsigned>(size))); }
-
-/// As far between two mip levels as half an octave is: bilinear look-ups add to the width of
-/// texels.
-cv::Mat half_octave_coarser(const cv::Mat& image) {
-  const cv::Matx13f kernel(1.0F / 8, 6.0F / 8, 1.0F / 8);
-  cv::Mat padded;
-  cv::copyMakeBorder(image, padded, 1, 1, 1, 1, cv::BORDER_WRAP);
-  cv::Mat smooth;
-  cv::sepFilter2D(padded, smooth, -1, kernel, kernel);
-  return smooth(cv::Rect(1, 1, image.cols, image.rows));
-}
-
 /// Mean of four texels, weighted by where between them (u, v), in 1/256 texels, lies.
-template <class Level>
-Color bilinear(const Level& level, int u, int v) {
+Color bilinear(const PyramidLevel& level, int u, int v) {
   const int x0 = (u >> 8) & (level.width - 1);
   const int x1 = (x0 + 1) & (level.width - 1);
   const int y0 = (v >> 8) & (level.height - 1);
@@ -74,38 +62,19 @@ Color bilinear(const Level& level, int u, int v) {
 }  // namespace
 
 Texture::Texture(const cv::Mat& bgr, Eigen::Vector2f size, float infrared)
-    : size_(size), infrared_(infrared) {
-  cv::Mat image;
-  const cv::Size finest(power_of_two(bgr.cols), power_of_two(bgr.rows));
-  cv::resize(bgr, image, finest, 0, 0, cv::INTER_CUBIC);
-  texels_per_metre_ = std::max(static_cast<float>(finest.width) / size.x(),
-                               static_cast<float>(finest.height) / size.y());
-  for (;;) {
-    add_level(image);
-    if (image.cols == 1 && image.rows == 1) break;
-    add_level(half_octave_coarser(image));
-    const cv::Size half(std::max(1, image.cols / 2), std::max(1, image.rows / 2));
-    cv::resize(image.clone(), image, half, 0, 0, cv::INTER_AREA);
-  }
-}
-
-void Texture::add_level(const cv::Mat& image) {
-  const Eigen::Vector2f texels(static_cast<float>(image.cols), static_cast<float>(image.rows));
-  Level level{image.cols, image.rows, 256 * texels.cwiseQuotient(size_), {}};
-  level.texels.reserve(image.total());
-  for (const cv::Vec3b& c : cv::Mat_<cv::Vec3b>(image))
-    level.texels.push_back(c[0] | std::uint32_t{c[1]} << 8 | std::uint32_t{c[2]} << 16);
-  levels_.push_back(std::move(level));
-}
+    : pyramid_(std::make_shared<Pyramid>(bgr, size)),
+      texels_per_metre_(std::max(static_cast<float>(pyramid_->finest().width) / size.x(),
+                                 static_cast<float>(pyramid_->finest().height) / size.y())),
+      infrared_(infrared) {}
 
 TextureFilter Texture::filter(const Footprint& footprint) const {
   const float major = 2 * footprint.major.norm();
   const float minor = std::max(footprint.minor, major / kMaxTaps);
   const float half_octaves = 2 * rough_log2(std::max(minor * texels_per_metre_, 1.0F));
   // The nearest level is never more than 19 % off, which nobody sees; no need to mix two.
-  TextureFilter filter{.level = std::min(static_cast<int>(half_octaves + 0.5F),
-                                         static_cast<int>(levels_.size()) - 1),
-                       .taps = std::clamp(static_cast<int>(major / minor + 0.3F), 1, kMaxTaps)};
+  TextureFilter filter{
+      .level = std::min(static_cast<int>(half_octaves + 0.5F), pyramid_->level_count() - 1),
+      .taps = std::clamp(static_cast<int>(major / minor + 0.3F), 1, kMaxTaps)};
   const auto taps = static_cast<float>(filter.taps);
   filter.between_uv = footprint.major * (2 / taps);
   filter.first_uv = footprint.major * (1 / taps - 1);
@@ -113,7 +82,7 @@ TextureFilter Texture::filter(const Footprint& footprint) const {
 }
 
 Eigen::Vector3f Texture::sample(const Eigen::Vector2f& uv, const TextureFilter& filter) const {
-  const Level& level = levels_[static_cast<std::size_t>(filter.level)];
+  const PyramidLevel& level = pyramid_->level(filter.level);
   const Eigen::Vector2f at = (uv + filter.first_uv).cwiseProduct(level.from_uv);
   const Eigen::Vector2f step = filter.between_uv.cwiseProduct(level.from_uv);
   // The half texel shift puts sample positions at texel centres.

@@ -3,9 +3,8 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <cstdint>
+#include <memory>
 #include <opencv2/core/mat.hpp>
-#include <vector>
 
 namespace stillpoint::simulation {
 
@@ -23,10 +22,13 @@ struct TextureFilter {
   Eigen::Vector2f between_uv;  ///< metres from one tap to the next
 };
 
+class Pyramid;
+
+/// A copy shares the picture. Safe to use from any thread.
 class Texture {
  public:
-  /// `bgr` CV_8UC3 covers `size` metres and repeats beyond. `infrared` is the share of the depth
-  /// sensor's light that comes back at right angles.
+  /// `bgr` CV_8UC3, not to be changed afterwards, covers `size` metres and repeats beyond.
+  /// `infrared` is the share of the depth sensor's light that comes back at right angles.
   Texture(const cv::Mat& bgr, Eigen::Vector2f size, float infrared = 1.0F);
 
   TextureFilter filter(const Footprint& footprint) const;
@@ -36,17 +38,7 @@ class Texture {
   float infrared() const { return infrared_; }
 
  private:
-  struct Level {
-    int width;                // a power of two
-    int height;               // a power of two
-    Eigen::Vector2f from_uv;  // 1/256 texels per metre
-    std::vector<std::uint32_t> texels;
-  };
-
-  void add_level(const cv::Mat& image);
-
-  std::vector<Level> levels_;
-  Eigen::Vector2f size_;    // metres
+  std::shared_ptr<const Pyramid> pyramid_;
   float texels_per_metre_;  // of the finer axis, finest level
   float infrared_;
 };
