@@ -1,5 +1,6 @@
 // What the contracts define. The destructors anchor each interface's type information in this
-// library, so that every plugin and the program agree on it.
+// library, so that every plugin and the program agree on it. Products of poses are not in headers:
+// each file that includes them would take half a second longer to compile.
 #include "stillpoint/sdk.hpp"
 
 namespace stillpoint {
@@ -10,6 +11,11 @@ Propagator::~Propagator() = default;
 MovingChecker::~MovingChecker() = default;
 std::size_t MovingChecker::wanted_keyframes() const { return 0; }
 MapChecker::~MapChecker() = default;
+Pose TrackedFrame::pose_in(const SparseMap& map) const {
+  return reference < map.keyframe_id_end()
+             ? map.world_from_keyframe(reference) * reference_from_camera
+             : world_from_camera;
+}
 Decision::~Decision() = default;
 PreparedFrame::~PreparedFrame() = default;
 Tracker::~Tracker() = default;

@@ -23,11 +23,7 @@ struct TrackedFrame {
   Pose world_from_camera = Pose::Identity();  ///< at the time of tracking
 
   /// Its present world_from_camera: it moves with its reference, which may not be in the map yet.
-  Pose pose_in(const SparseMap& map) const {
-    return reference < map.keyframe_id_end()
-               ? map.world_from_keyframe(reference) * reference_from_camera
-               : world_from_camera;
-  }
+  STILLPOINT_EXPORT Pose pose_in(const SparseMap& map) const;
 };
 
 /// Compares with what it has been given to remember, or with the landmarks of the map. A
@@ -35,7 +31,7 @@ struct TrackedFrame {
 class STILLPOINT_EXPORT MapChecker {
  public:
   static constexpr const char* kKind = "map_checker";
-  static constexpr std::uint32_t kApi = 1;  ///< see kPluginApi
+  static constexpr std::uint32_t kApi = 2;  ///< see kPluginApi
   virtual ~MapChecker();
 
   /// Before a frame is tracked, when the frame before it was. `guesses` are poses it may have
