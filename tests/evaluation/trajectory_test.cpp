@@ -78,6 +78,16 @@ TEST(Trajectory, NanosecondsOfEurocAreNoSeconds) {
   EXPECT_NEAR(read_trajectory(euroc.path()).duration(), 0.00499968, 1e-6);
 }
 
+TEST(Trajectory, NanosecondsMayBeginWithTheMachine) {
+  const TemporaryFile two_minutes("boot.csv", "120000000000,1,2,3,0.70710678,0,0,0.70710678\n");
+  const TemporaryFile at_once("begin.csv",
+                              "1500000000,1,2,3,0.70710678,0,0,0.70710678,0,0,0,0,0,0,0,0,0\n");
+  EXPECT_DOUBLE_EQ(read_trajectory(two_minutes.path()).start(), 120.0);
+  EXPECT_DOUBLE_EQ(read_trajectory(at_once.path()).start(), 1.5);
+  EXPECT_NEAR(read_trajectory(two_minutes.path()).poses[0].world_from_camera.linear()(1, 0), 1.0,
+              1e-7);
+}
+
 TEST(Trajectory, MatricesOfKittiAreTenPosesASecond) {
   const TemporaryFile file("kitti.txt",
                            "1 0 0 0 0 1 0 0 0 0 1 0\n"

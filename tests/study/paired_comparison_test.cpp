@@ -19,7 +19,7 @@ class Comparison : public ::testing::Test {
     for (std::size_t i = 0; i < recordings; ++i) {
       Sequence sequence;
       sequence.name = std::to_string(i);
-      sequence.scene = "scene " + std::to_string(i / cameras_);
+      (on_disk_ ? sequence.dataset : sequence.scene) = "room " + std::to_string(i / cameras_);
       study_.sequences.push_back(sequence);
     }
     study_.baseline = "plain";
@@ -35,6 +35,7 @@ class Comparison : public ::testing::Test {
   }
   Study study_ = two_by_two(1);
   std::size_t cameras_ = 1;  // that each recording is run with
+  bool on_disk_ = false;     // recordings, not scenes
 };
 
 TEST_F(Comparison, CountsRecordingsAndTheirRatios) {
@@ -56,6 +57,13 @@ TEST_F(Comparison, RepeatsOnOneRecordingAreOnePair) {
   study_.new_noise = true;  // every repeat has a recording of its own
   EXPECT_EQ(compared(2, better).worse, 4u);
   EXPECT_EQ(compared(2, better).better, 2u);
+}
+
+TEST_F(Comparison, RepeatsOnARecordingOnDiskAreOnePairAlsoWithNewNoise) {
+  study_.repeats = 3;
+  study_.new_noise = true;
+  on_disk_ = true;
+  EXPECT_EQ(compared(2, [](std::size_t, int) { return result_with(0.05); }).better, 2u);
 }
 
 TEST_F(Comparison, OneRecordingWithTwoCamerasIsOnePair) {

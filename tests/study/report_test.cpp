@@ -90,10 +90,10 @@ TEST_F(Report, AsMarkdown) {
       "\n"
       "## Improvement of the ATE over plain (%)\n"
       "\n"
-      "| sequence      | plain | better                |\n"
-      "|---------------|-------|-----------------------|\n"
-      "| walking       | –     | 88.0, coverage 90.0 % |\n"
-      "| walking_empty | –     | -100.0                |\n"
+      "| sequence      | plain | better                         |\n"
+      "|---------------|-------|--------------------------------|\n"
+      "| walking       | –     | 88.0, coverage 90.0 % [1 of 2] |\n"
+      "| walking_empty | –     | -100.0 [1 of 2]                |\n"
       "\n"
       "## Dynamic penalty: ATE ÷ ATE on the _empty twin\n"
       "\n"
@@ -257,6 +257,23 @@ TEST_F(Report, TheBestOfASequenceCoversAsMuchAsTheOthers) {
   EXPECT_THAT(best_variants(results_, 1, kAte), ElementsAre(true, false));
   results_.results[6]->values[kAte] = 0.01501;  // 0.0150, as the other
   EXPECT_THAT(best_variants(results_, 1, kAte), ElementsAre(false, false));
+}
+
+TEST_F(Report, TheBestOfASequenceFailsAndGetsLostAsRarelyAsTheOthers) {
+  using ::testing::ElementsAre;
+  Study study = two_by_two(3);
+  study.sequences.resize(1);
+  StudyResults results{.study = study, .cells = cells_of(study), .results = {}, .command = ""};
+  for (const double ate : {0.3, 0.3, 0.3, 0.1, 0.1, 0.1})
+    results.results.emplace_back(result_with(ate));
+  EXPECT_THAT(best_variants(results, 0, kAte), ElementsAre(false, true));
+  results.results[4]->values[kTimesLost] = 1.0;
+  EXPECT_THAT(best_variants(results, 0, kAte), ElementsAre(false, false));
+  results.results[0]->values[kTimesLost] = 2.0;  // so was the other, as often
+  EXPECT_THAT(best_variants(results, 0, kAte), ElementsAre(false, true));
+  results.results[5] = CellResult{};
+  results.results[5]->exit_code = 1;
+  EXPECT_THAT(best_variants(results, 0, kAte), ElementsAre(false, false));
 }
 
 TEST(Published, IsFoundByRecordingAndFigure) {

@@ -25,7 +25,7 @@ constexpr std::size_t kTumColumns = 8;
 constexpr std::size_t kEurocColumns = 17;  // with velocity and biases
 constexpr std::size_t kKittiColumns = 12;
 constexpr double kKittiInterval = 0.1;      // seconds
-constexpr double kFirstNanoseconds = 1e14;  // as seconds, in three million years
+constexpr double kFirstNanoseconds = 1e11;  // as seconds, in three thousand years
 constexpr double kNanosecond = 1e-9;        // seconds
 constexpr double kLeastOrthonormal = 1e-3;  // deviation of a rotation matrix
 
@@ -85,7 +85,7 @@ std::vector<double> parse_numbers(const Line& line) {
 }
 
 StampedPose pose_with_quaternion(const std::vector<double>& v, const Line& line) {
-  const bool nanoseconds = std::abs(v[0]) > kFirstNanoseconds;
+  const bool nanoseconds = v.size() == kEurocColumns || std::abs(v[0]) > kFirstNanoseconds;
   const bool w_first = nanoseconds && line.has_commas;
   const Eigen::Quaterniond rotation = w_first ? Eigen::Quaterniond(v[4], v[5], v[6], v[7])
                                               : Eigen::Quaterniond(v[7], v[4], v[5], v[6]);

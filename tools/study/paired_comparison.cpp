@@ -48,15 +48,21 @@ class Pairs {
   std::vector<Pair> all() const {
     std::vector<Pair> pairs;
     const int repeats = results_.study.repeats;
-    const int at_once = results_.study.new_noise ? 1 : repeats;
-    for (const std::vector<std::size_t>& sequences : recordings())
+    for (const std::vector<std::size_t>& sequences : recordings()) {
+      const int at_once = has_noise_of_its_own(sequences.front()) ? 1 : repeats;
       for (int first = 0; first < repeats; first += at_once)
         if (const auto pair = of_recording(sequences, first, first + at_once))
           pairs.push_back(*pair);
+    }
     return pairs;
   }
 
  private:
+  /// Each of its repeats; a recording on disk is the same for all.
+  bool has_noise_of_its_own(std::size_t sequence) const {
+    return results_.study.new_noise && !results_.study.sequences[sequence].scene.empty();
+  }
+
   /// Sequences that have the same images are one recording.
   std::vector<std::vector<std::size_t>> recordings() const {
     const std::vector<Sequence>& all = results_.study.sequences;

@@ -53,7 +53,8 @@ std::optional<double> dynamic_penalty(const StudyResults& results, std::size_t s
 std::optional<Spread> improvement_percent(const StudyResults& results, std::size_t sequence,
                                           std::size_t variant);
 
-/// Of each variant, whether it has the best median on a sequence, as evaluation::best_of says.
+/// Of each variant, whether it has the best median on a sequence, as evaluation::best_of says. An
+/// error is not the best where more runs failed or lost their way than of another variant.
 std::vector<bool> best_variants(const StudyResults& results, std::size_t sequence, MetricId metric);
 
 }  // namespace stillpoint::study

@@ -87,8 +87,11 @@ void mark_significant(const Study& study, const std::vector<PairedComparison>& c
 
 Table improvement_table(const StudyResults& results) {
   const auto improvement = [&](std::size_t sequence, std::size_t variant) {
-    TableCell cell = spread_cell(improvement_percent(results, sequence, variant), 1);
-    if (cell.value) cell.text += coverage_note(results, sequence, variant);
+    const auto percent = improvement_percent(results, sequence, variant);
+    TableCell cell = spread_cell(percent, 1);
+    if (percent)
+      cell.text +=
+          coverage_note(results, sequence, variant) + count_note(*percent, results.study.repeats);
     return cell;
   };
   const std::string title = "Improvement of the ATE over " + results.study.baseline + " (%)";

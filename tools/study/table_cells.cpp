@@ -37,14 +37,17 @@ std::string coverage_note(const StudyResults& results, std::size_t sequence, std
   return percent == "100.0" ? "" : ", coverage " + percent + " %";
 }
 
+std::string count_note(const Spread& spread, int repeats) {
+  if (spread.count >= static_cast<std::size_t>(repeats)) return "";
+  return " [" + std::to_string(spread.count) + " of " + std::to_string(repeats) + "]";
+}
+
 TableCell metric_cell(const StudyResults& results, std::size_t sequence, std::size_t variant,
                       MetricId metric) {
   const auto spread = results.spread(sequence, variant, metric);
   TableCell cell = spread_cell(spread, metrics()[metric].digits);
   if (metrics()[metric].is_pose_error) cell.text += coverage_note(results, sequence, variant);
-  const auto repeats = static_cast<std::size_t>(results.study.repeats);
-  if (spread && spread->count < repeats)
-    cell.text += " [" + std::to_string(spread->count) + " of " + std::to_string(repeats) + "]";
+  if (spread) cell.text += count_note(*spread, results.study.repeats);
   return cell;
 }
 

@@ -26,6 +26,9 @@ TableCell number_cell(double value, int digits);
 /// the whole.
 std::string coverage_note(const StudyResults& results, std::size_t sequence, std::size_t variant);
 
+/// " [1 of 2]": of so many repeats; empty when all gave the figure.
+std::string count_note(const Spread& spread, int repeats);
+
 /// A figure of a variant on a sequence, an error with its coverage: "0.0600, coverage 90.0 % [1 of
 /// 2]" where only one of two repeats gave it.
 TableCell metric_cell(const StudyResults& results, std::size_t sequence, std::size_t variant,
