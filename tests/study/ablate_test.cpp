@@ -17,7 +17,7 @@ using ::testing::Not;
 
 using Ablate = AblateTest;
 
-TEST_F(Ablate, RunsTheMatrixOnceAndThenWhatIsMissingOrChanged) {
+TEST_F(Ablate, RunsTheMatrixOnceAndThenWhatIsMissing) {
   const Outcome first = ablate(kTiny, {"-j", "2"});
   ASSERT_EQ(first.exit_code, 0) << first.err;
   EXPECT_THAT(first.err, AllOf(HasSubstr("simulating tiny"), HasSubstr("[2/2] tiny/")));
@@ -40,11 +40,42 @@ TEST_F(Ablate, RunsTheMatrixOnceAndThenWhatIsMissingOrChanged) {
 
   std::string changed = kTiny;
   changed.replace(changed.find("=600"), 4, "=700");
-  EXPECT_THAT(ablate(changed).err, HasSubstr("[1/1] tiny/few/0"));
+  EXPECT_THAT(ablate(changed, {"--again"}).err, HasSubstr("[1/1] tiny/few/0"));
 
   std::string longer = kTiny;
   longer.replace(longer.find("frames: 30"), 10, "frames: 8");
-  EXPECT_THAT(ablate(longer).err, AllOf(HasSubstr("simulating tiny"), HasSubstr("[2/2]")));
+  EXPECT_THAT(ablate(longer, {"--again"}).err,
+              AllOf(HasSubstr("simulating tiny"), HasSubstr("[2/2]")));
+}
+
+TEST_F(Ablate, ReplacesNothingThatWasMadeFromSomethingElse) {
+  ASSERT_EQ(ablate(kShort).exit_code, 0);
+  const std::string few = text_of(out() / "runs/tiny/few/0/trajectory.txt");
+  const std::string results = text_of(out() / "results.csv");
+
+  std::string changed = kShort;
+  changed.replace(changed.find("=600"), 4, "=700");
+  const Outcome refused = ablate(changed);
+  EXPECT_EQ(refused.exit_code, 2);
+  EXPECT_THAT(refused.err, HasSubstr("1 of 2 runs there were made from another pipeline"));
+  EXPECT_THAT(refused.err, HasSubstr("add --again to replace them"));
+
+  std::string longer = kShort;
+  longer.replace(longer.find("frames: 5"), 9, "frames: 8");
+  const Outcome other_scene = ablate(longer);
+  EXPECT_EQ(other_scene.exit_code, 2);
+  EXPECT_THAT(other_scene.err, HasSubstr("recordings/tiny: is simulated from a scene that has"));
+
+  // As a later version may write it.
+  folder_.write("out/runs/tiny/many/0/result.json", "{\"version\": 7}");
+  EXPECT_EQ(ablate(kShort).exit_code, 2);
+  EXPECT_EQ(text_of(out() / "runs/tiny/few/0/trajectory.txt"), few);
+  EXPECT_EQ(text_of(out() / "results.csv"), results);
+
+  std::string more = kShort;  // a new variant replaces none
+  more.replace(more.find("mode:"), 5, "  - {name: most, pipeline: orb_baseline}\nmode:");
+  folder_.write("out/runs/tiny/many/0/result.json", "{");
+  EXPECT_EQ(ablate(more).exit_code, 0);
 }
 
 TEST_F(Ablate, AFailedRunIsListedAndTheOthersGoOn) {

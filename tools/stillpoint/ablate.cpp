@@ -38,11 +38,15 @@ namespace fs = std::filesystem;
 using namespace study;
 using evaluation::fixed;
 
+constexpr const char* kReplaceHint =
+    "choose another folder with -o, or add --again to replace them";
+
 struct AblateArguments {
   std::string study;
   fs::path output;
   int jobs = 1;
   std::string executor = "local";
+  bool again = false;
   bool quiet = false;
   bool list = false;
 };
@@ -58,6 +62,7 @@ class Ablation {
                     .lexically_normal()),
         jobs_(arguments.jobs),
         with_slurm_(arguments.executor == "slurm"),
+        again_(arguments.again),
         quiet_(arguments.quiet),
         console_(arguments.quiet) {}
 
@@ -90,6 +95,7 @@ class Ablation {
     const std::vector<PlannedCell> plan = plan_cells(study(), results.cells, output_, registry_);
     for (std::size_t i = 0; i < plan.size(); ++i) results.results[i] = valid_result(plan[i]);
     say_what_is_there(results);
+    if (!again_) refuse_to_replace(plan);
     const CellFinished finished = [this](const Cell& cell, const CellResult& result,
                                          const StudyProgress& progress) {
       report(cell, result, progress);
@@ -147,6 +153,10 @@ class Ablation {
     if (!sequence.scene.empty()) {
       const std::string description = describe_scene(sequence);
       if (!is_recorded(recording, description)) {
+        if (!again_ && is_recorded_otherwise(recording, description))
+          throw Error(Fault::kUsage,
+                      "is simulated from a scene that has changed, and would be replaced",
+                      recording.string(), kReplaceHint);
         console_.note("simulating " + sequence.name);
         if (!record(this_program(), sequence, description, recording, stop)) return false;
       }
@@ -174,6 +184,17 @@ class Ablation {
       console_.line("warning: " + std::to_string(older) +
                     " of them are of another build of the program; remove " +
                     (output_ / "runs").string() + " to run them again");
+  }
+
+  /// Throws Error(kUsage) when runs that have ended would have to make room.
+  void refuse_to_replace(const std::vector<PlannedCell>& plan) const {
+    const auto count = std::ranges::count_if(plan, is_of_something_else);
+    if (count == 0) return;
+    throw Error(Fault::kUsage,
+                std::to_string(count) + " of " + std::to_string(plan.size()) +
+                    " runs there were made from another pipeline, recording or seed, or by another "
+                    "version, and would be replaced",
+                output_.string(), kReplaceHint);
   }
 
   void report(const Cell& cell, const CellResult& result, const StudyProgress& progress) {
@@ -222,6 +243,7 @@ class Ablation {
   const fs::path output_;
   const int jobs_;
   const bool with_slurm_;
+  const bool again_;
   SlurmStudy slurm_;
   std::vector<std::string> queued_jobs_;  // that go on after Ctrl-C
   const bool quiet_;
@@ -253,6 +275,8 @@ void add_ablate(CLI::App& app) {
       ->capture_default_str()
       ->check(CLI::IsMember({"local", "slurm"}))
       ->type_name("NAME");
+  command->add_flag("--again", arguments->again,
+                    "Run anew, and replace, what was made from another pipeline, scene or version");
   command->add_flag("-q,--quiet", arguments->quiet, "Print only warnings and errors");
   command
       ->add_flag("--list", arguments->list,

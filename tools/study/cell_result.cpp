@@ -49,4 +49,8 @@ std::optional<CellResult> read_result(const std::filesystem::path& run) {
   }
 }
 
+bool has_foreign_result(const std::filesystem::path& run) {
+  return Json::parse(read_text(run / kFile), nullptr, false).is_object() && !read_result(run);
+}
+
 }  // namespace stillpoint::study

@@ -27,4 +27,8 @@ void write_result(const std::filesystem::path& run, const CellResult& result);
 /// Nothing when the run has none, or none that can be read.
 std::optional<CellResult> read_result(const std::filesystem::path& run);
 
+/// Whether another version of this program has written a result there, which read_result() does not
+/// know.
+bool has_foreign_result(const std::filesystem::path& run);
+
 }  // namespace stillpoint::study

@@ -112,6 +112,12 @@ std::optional<CellResult> valid_result(const PlannedCell& cell) {
   return result;
 }
 
+bool is_of_something_else(const PlannedCell& cell) {
+  const std::optional<CellResult> result = read_result(cell.run);
+  if (!result) return has_foreign_result(cell.run);
+  return !result->failed() && result->fingerprint != cell.fingerprint;
+}
+
 std::vector<std::size_t> missing_cells(const std::vector<PlannedCell>& cells,
                                        const std::vector<std::optional<CellResult>>& results) {
   std::vector<std::size_t> missing;

@@ -36,6 +36,10 @@ using CellFinished =
 /// The result that a cell already has: nothing when it failed or was made from something else.
 std::optional<CellResult> valid_result(const PlannedCell& cell);
 
+/// Whether a run has ended well there that was made from something else, or by a version with
+/// other results: running the cell replaces it.
+bool is_of_something_else(const PlannedCell& cell);
+
 /// The cells without a result, first repeats first: a study that is stopped half-way has something
 /// to say about everything.
 std::vector<std::size_t> missing_cells(const std::vector<PlannedCell>& cells,

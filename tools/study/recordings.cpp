@@ -59,6 +59,11 @@ bool is_recorded(const fs::path& folder, const std::string& description) {
   return read_text(folder / kDescription) == description;
 }
 
+bool is_recorded_otherwise(const fs::path& folder, const std::string& description) {
+  std::error_code none;
+  return fs::exists(folder / kDescription, none) && !is_recorded(folder, description);
+}
+
 bool record(const fs::path& program, const Sequence& sequence, const std::string& description,
             const fs::path& folder, const std::stop_token& stop) {
   const fs::path part = unfinished(folder);

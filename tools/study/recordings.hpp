@@ -1,4 +1,4 @@
-// Simulated recordings of a study: made once, and again when the scene has changed.
+// Simulated recordings of a study: made once.
 #pragma once
 
 #include <filesystem>
@@ -11,6 +11,9 @@ namespace stillpoint::study {
 
 /// Whether `folder` holds the complete recording of the scene that `description` says all about.
 bool is_recorded(const std::filesystem::path& folder, const std::string& description);
+
+/// Whether it holds that of another scene, or of what the scene was before it changed.
+bool is_recorded_otherwise(const std::filesystem::path& folder, const std::string& description);
 
 /// Simulates it with `program` (see run_process); the folder appears when everything is in it.
 /// False: stopped before that. Throws Error when the simulation fails, with what it said.
