@@ -148,6 +148,7 @@ constexpr Careless kCareless[] = {
     {"index", "large indices and ids", "a negative index"},
     {"background", "everything is a person", "no background"},
     {"black", "black images", "a black image"},
+    {"data", "black images", "nothing to see"},
     {"rest", "a camera at rest", "no motion"},
     {"options", "options", "read back as others"},
     {"thread", "usual recording", "a thread of its own was ended by SIGSEGV"},

@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "plugin_check/drive.hpp"
+#include "stillpoint/runtime/option_describer.hpp"
 #include "stillpoint/runtime/yaml_loader.hpp"
 #include "stillpoint/runtime/yaml_option_reader.hpp"
 #include "stillpoint/support/contract_list.hpp"
@@ -35,6 +36,12 @@ ConfigNode options_of(const CheckedType& checked) {
   }
   faults.throw_if_any();
   return options;
+}
+
+bool reads_files(const PluginType& type) {
+  OptionDescriber describer;
+  describe_options(type, describer);
+  return std::ranges::any_of(describer.rows(), &OptionRow::is_path);
 }
 
 class StageCase {
@@ -228,8 +235,10 @@ CaseResult run_case(const CheckedType& checked, const std::string& name,
     result.outcome = CaseResult::Outcome::kFailed;
     result.finding = failure.finding;
   } catch (const Error& error) {
-    // A stage that wants a file or a recording first is not wrong.
-    const bool wants_options = error.fault() != Fault::kStage;
+    // A stage that wants a file first is not wrong, and files may not fit the frames of a case.
+    const bool in_a_call = dynamic_cast<const StageError*>(&error);
+    const bool wants_options =
+        error.fault() != Fault::kStage && (!in_a_call || reads_files(checked.type));
     result.outcome = wants_options ? CaseResult::Outcome::kNotRun : CaseResult::Outcome::kFailed;
     const Scenario& scenario = scenario_named(name, scenarios);
     result.finding = {error.what(), scenario.why, scenario.remedy};

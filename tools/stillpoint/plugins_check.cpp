@@ -1,4 +1,5 @@
 // stillpoint plugins check: the cases of a library's stages, as a table and as findings.
+#include <algorithm>
 #include <csignal>
 #include <iomanip>
 #include <iostream>
@@ -95,13 +96,28 @@ void print_unusable(const LibraryResult& library) {
     std::cout << "  FAIL  cannot be used: " << indented(reason, 8) << '\n';
 }
 
-/// Exit code 1 when a case failed, 2 when nothing could be checked.
+/// "decision/mine, source/other": of which not one case could be run.
+std::string names_of_unchecked(const LibraryResult& library) {
+  std::string names;
+  for (const TypeResult& type : library.types)
+    if (std::ranges::all_of(type.cases, [](const CaseResult& result) {
+          return result.outcome == CaseResult::Outcome::kNotRun;
+        }))
+      names += (names.empty() ? "" : ", ") + type.kind + "/" + type.type;
+  return names;
+}
+
+/// Exit code 1 when a case failed, 2 when a type could not be checked.
 void judge(const LibraryResult& library) {
   const Counts counts = count(library);
   if (counts.failed > 0)
     throw Error(Fault::kStage, std::to_string(counts.failed) + " of " +
                                    std::to_string(counts.passed + counts.failed) + " cases failed");
+  const std::string unchecked = names_of_unchecked(library);
   if (counts.passed == 0) throw Error(Fault::kUsage, "nothing could be checked");
+  if (!unchecked.empty())
+    throw Error(Fault::kUsage, "could not be checked", unchecked,
+                "check it alone, KIND/TYPE behind the library, with what it needs");
 }
 
 void check(CheckOptions options) {

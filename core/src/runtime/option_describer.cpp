@@ -12,7 +12,7 @@ void OptionDescriber::add(std::string_view name, std::string type, const T& v,
                           const OptionInfo& info) {
   rows_.push_back({prefixes_.back() + std::string(name), std::move(type),
                    info.required ? "required" : yaml_text(v), range_text(info),
-                   std::string(info.unit), std::string(info.help)});
+                   std::string(info.unit), std::string(info.help), info.is_path});
 }
 
 template <class T>
@@ -88,8 +88,12 @@ void OptionDescriber::enter(std::string_view name, std::string_view suffix, std:
   const std::string path = prefixes_.back() + std::string(name);
   // The keys of a map have no help of their own; their fields do.
   if (!info.help.empty())
-    rows_.push_back(
-        {path, std::string(type), info.required ? "required" : "", "", "", std::string(info.help)});
+    rows_.push_back({.name = path,
+                     .type = std::string(type),
+                     .default_value = info.required ? "required" : "",
+                     .range = "",
+                     .unit = "",
+                     .help = std::string(info.help)});
   prefixes_.push_back(path + std::string(suffix));
 }
 

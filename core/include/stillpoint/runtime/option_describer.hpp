@@ -15,6 +15,7 @@ struct OptionRow {
   std::string range;
   std::string unit;
   std::string help;
+  bool is_path = false;
 };
 
 class STILLPOINT_EXPORT OptionDescriber final : public OptionVisitor {
