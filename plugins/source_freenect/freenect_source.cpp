@@ -63,7 +63,7 @@ FreenectSource::FreenectSource(const Options& options, const StageContext& conte
     : kinect_(options.serial),
       frames_(options.live,
               live_camera::live_model(context, kDevice, kWidth, kHeight, kFieldOfView), kDevice,
-              kTicksPerSecond, kCounterBits) {}
+              kTicksPerSecond, kCounterBits, context.log) {}
 
 // The thread ends before the camera is closed.
 FreenectSource::~FreenectSource() {

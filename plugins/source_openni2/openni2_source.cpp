@@ -138,7 +138,7 @@ OpenNi2Source::OpenNi2Source(const Options& options, const StageContext& context
       frames_(options.live,
               live_camera::live_model(context, camera_.name, options.width, options.height,
                                       camera_.color.getHorizontalFieldOfView()),
-              camera_.name, kTicksPerSecond, kCounterBits),
+              camera_.name, kTicksPerSecond, kCounterBits, context.log),
       disconnection_(uri_of(camera_.device), frames_) {
   if (!camera_.registered)
     context.log(LogLevel::kWarning,

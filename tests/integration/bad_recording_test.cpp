@@ -31,7 +31,7 @@ class BadRecording : public ::testing::Test {
     EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
     EXPECT_THAT(outcome.err, HasSubstr("skipped: " + image.string() + ": "));
     EXPECT_THAT(outcome.err, HasSubstr(reason));
-    EXPECT_THAT(outcome.out, HasSubstr("1 image skipped as unusable"));
+    EXPECT_THAT(outcome.out, HasSubstr("1 image left out"));
     const auto summary = json_file(out() / "summary.json");
     EXPECT_TRUE(summary["complete"]);
     EXPECT_EQ(summary["skipped_images"], 1);

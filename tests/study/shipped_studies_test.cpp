@@ -59,8 +59,9 @@ TEST(ShippedStudies, AreListedWithQuestionAndNumberOfRuns) {
     EXPECT_THAT(line, ::testing::MatchesRegex(study.stem().string() + " +[1-9][0-9]*  .+"));
     // Its file may say so, too.
     const std::string text = text_of(study);
-    if (std::smatch said; std::regex_search(text, said, std::regex("([0-9]+) runs")))
+    if (std::smatch said; std::regex_search(text, said, std::regex("([0-9]+) runs"))) {
       EXPECT_THAT(line, HasSubstr(" " + said[1].str() + "  ")) << study;
+    }
   }
   EXPECT_FALSE(std::getline(lines, line)) << line;
   EXPECT_THAT(outcome.out, ::testing::ContainsRegex("\nquick +12  What do people cost"));

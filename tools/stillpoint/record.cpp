@@ -79,7 +79,7 @@ void print(const RecordingTotals& totals, const RecordArguments& arguments) {
   std::snprintf(text.data(), text.size(), "%zu frames of %.1f s, %d dropped", totals.recorded,
                 totals.seconds, totals.dropped);
   std::cout << "recorded  " << text.data();
-  if (totals.skipped > 0) std::cout << ", " << totals.skipped << " unusable";
+  if (totals.skipped > 0) std::cout << ", " << totals.skipped << " images left out";
   const std::string target = arguments.output.string();
   std::cout << "\nfiles     " << target << '\n';
   if (totals.recorded > 0) {

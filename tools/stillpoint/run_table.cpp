@@ -59,7 +59,7 @@ void RunTable::print_run(std::ostream& stream) const {
     stream << format("            %d reports not given to outputs that were too slow\n",
                      dropped_reports_);
   if (source_.skipped > 0)
-    stream << format("            %zu image%s skipped as unusable\n", source_.skipped,
+    stream << format("            %zu image%s left out\n", source_.skipped,
                      source_.skipped == 1 ? "" : "s");
   if (unlabelled_ > 0) stream << format("            %d without labels\n", unlabelled_);
   if (segmentation_failures_ > 0)

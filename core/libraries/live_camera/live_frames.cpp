@@ -63,12 +63,14 @@ CameraModel live_model(const StageContext& context, const std::string& device, i
 }
 
 LiveFrames::LiveFrames(const LiveOptions& options, const CameraModel& model, std::string device,
-                       double ticks_per_second, int counter_bits)
+                       double ticks_per_second, int counter_bits,
+                       std::function<void(LogLevel, std::string_view)> log)
     : options_(options),
       rectifier_(model),
       device_(std::move(device)),
       clock_(ticks_per_second, counter_bits),
-      pairs_(options.max_difference) {}
+      pairs_(options.max_difference),
+      log_(std::move(log)) {}
 
 void LiveFrames::put_color(std::uint64_t ticks, cv::Mat bgr) {
   pairs_.put_color(clock_.seconds(ticks, host_seconds()), std::move(bgr));
@@ -117,6 +119,7 @@ SourceReport LiveFrames::report() const {
   if (clock_jumps > 0)
     report.warnings.push_back(
         text_of(device_, ": the device's clock jumped ", clock_jumps, " times"));
+  for (const std::string& warning : report.warnings) log_(LogLevel::kWarning, warning);
   return report;
 }
 

@@ -1,8 +1,10 @@
 // Frames of a camera that does not wait: what its sources have in common.
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 
 #include "live_camera/live_pairs.hpp"
@@ -30,9 +32,11 @@ CameraModel live_model(const StageContext& context, const std::string& device, i
 /// Pairs from the driver's thread become frames of the pipeline's.
 class LiveFrames {
  public:
-  /// `device` names the camera in messages; its counter has this rate and number of bits.
+  /// `device` names the camera in messages; its counter has this rate and number of bits. `log` is
+  /// that of the source's StageContext.
   LiveFrames(const LiveOptions& options, const CameraModel& model, std::string device,
-             double ticks_per_second, int counter_bits);
+             double ticks_per_second, int counter_bits,
+             std::function<void(LogLevel, std::string_view)> log = StageContext().log);
 
   /// On the driver's thread: an image has arrived, with the device's counter at its exposure.
   /// Images as Rectifier::frame takes them; their pixels must not change any more.
@@ -45,7 +49,8 @@ class LiveFrames {
   /// camera sends nothing any more.
   std::optional<Frame> next();
 
-  /// Dropped pairs, images without partner, and jumps of the device's clock.
+  /// Dropped pairs, images without partner, and jumps of the device's clock; the log gets them,
+  /// too.
   SourceReport report() const;
 
  private:
@@ -57,6 +62,7 @@ class LiveFrames {
   std::uint32_t given_ = 0;    // frames
   double last_seconds_ = 0.0;  // of the last frame
   std::size_t late_ = 0;       // pairs that were older than the frame before
+  std::function<void(LogLevel, std::string_view)> log_;
 };
 
 }  // namespace stillpoint::live_camera

@@ -84,7 +84,9 @@ TEST(LiveFrames, TimesOnlyGrow) {
 }
 
 TEST(LiveFrames, ReportsWhatWasLeftOut) {
-  LiveFrames frames({}, kTiny, "camera", kTicksPerSecond, 64);
+  std::vector<std::string> logged;
+  LiveFrames frames({}, kTiny, "camera", kTicksPerSecond, 64,
+                    [&](LogLevel, std::string_view text) { logged.emplace_back(text); });
   for (int i = 0; i < 5; ++i) put(frames, 100 * i);
   frames.put_color(600, color_image());
   frames.put_color(700, color_image());
@@ -96,6 +98,7 @@ TEST(LiveFrames, ReportsWhatWasLeftOut) {
               ElementsAre(HasSubstr("4 pairs of images came while two were waiting"),
                           HasSubstr("1 images had no partner within 20 ms"),
                           HasSubstr("the device's clock jumped 1 times")));
+  EXPECT_EQ(logged, report.warnings);
 }
 
 TEST(LiveModel, IsTheCalibrationWithDepthInMillimetres) {

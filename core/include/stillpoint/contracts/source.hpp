@@ -15,7 +15,7 @@ namespace stillpoint {
 
 /// What a source left out, for the summary.
 struct SourceReport {
-  std::size_t skipped = 0;            ///< images that could not be used
+  std::size_t skipped = 0;            ///< images that could not be used, or came too fast
   std::vector<std::string> warnings;  ///< one line each
 };
 
