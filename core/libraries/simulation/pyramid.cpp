@@ -49,8 +49,8 @@ const PyramidLevel& Pyramid::make_level(int number) const {
     const cv::Mat& image = octave(number / 2);
     const Eigen::Vector2f texels(static_cast<float>(image.cols), static_cast<float>(image.rows));
     levels_[place] = std::make_unique<PyramidLevel>(
-        image.cols, image.rows, 256 * texels.cwiseQuotient(size_),
-        packed(number % 2 == 0 ? image : half_octave_coarser(image)));
+        PyramidLevel{image.cols, image.rows, 256 * texels.cwiseQuotient(size_),
+                     packed(number % 2 == 0 ? image : half_octave_coarser(image))});
     made_[place].store(levels_[place].get(), std::memory_order_release);
   }
   return *levels_[place];
