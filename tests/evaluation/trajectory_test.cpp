@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include "fixtures.hpp"
 #include "stillpoint/error.hpp"
@@ -76,6 +77,14 @@ TEST(Trajectory, NanosecondsOfEurocAreNoSeconds) {
                     .isApprox(Eigen::Vector3d::UnitY(), 1e-7));
   }
   EXPECT_NEAR(read_trajectory(euroc.path()).duration(), 0.00499968, 1e-6);
+}
+
+TEST(Trajectory, PipesAreNotWaitedFor) {
+  const TemporaryFile file("pipe", "");
+  std::filesystem::remove(file.path());
+  ASSERT_EQ(::mkfifo(file.path().c_str(), 0600), 0);
+  EXPECT_THROW(read_trajectory(file.path()), Error);
+  EXPECT_THROW(read_trajectory("/dev/zero"), Error);
 }
 
 TEST(Trajectory, NanosecondsMayBeginWithTheMachine) {

@@ -188,6 +188,35 @@ TEST_F(Run, FilesOfTheUserAreNotReplaced) {
   EXPECT_EQ(text_of(mine / "pipeline.yaml"), text);
 }
 
+TEST_F(Run, MapsAndPicturesOfTheUserStay) {
+  const fs::path mine = out() / "mine";
+  const auto files = {mine / "map/map.yaml", mine / "map/map.pgm", mine / "images/000001.jpg",
+                      mine / "images/123456789.png"};
+  for (const fs::path& file : files) {
+    fs::create_directories(file.parent_path());
+    std::ofstream(file) << "the user's";
+  }
+  const Outcome outcome =
+      run("mine", "orb_baseline",
+          {"--dataset", simulated_recording().string(), "--set", "source.limit=2"});
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  for (const fs::path& file : files) EXPECT_EQ(text_of(file), "the user's") << file;
+}
+
+TEST_F(Run, ALogOfTheUserIsNoneOfARun) {
+  const fs::path mine = out() / "mine";
+  fs::create_directories(mine);
+  std::ofstream(mine / "log.txt") << "Monday: rain\n";
+  std::ofstream(mine / "trajectory.txt") << "of the user\n";
+  const Outcome outcome =
+      run("mine", "orb_baseline",
+          {"--dataset", simulated_recording().string(), "--set", "source.limit=2"});
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_THAT(outcome.err, HasSubstr("log.txt: is no file of an earlier run"));
+  EXPECT_EQ(text_of(mine / "log.txt"), "Monday: rain\n");
+  EXPECT_EQ(text_of(mine / "trajectory.txt"), "of the user\n");
+}
+
 TEST_F(Run, NothingTrackedIsSaid) {
   const auto run_with = [&](const std::string& points) {
     return run("run", "orb_baseline",

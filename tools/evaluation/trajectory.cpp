@@ -50,9 +50,11 @@ std::vector<std::string> split(const std::string& line) {
 void for_each_line(const std::filesystem::path& file, const std::function<void(Line)>& handle) {
   if (!std::filesystem::exists(file))
     throw Error(Fault::kData, "no such file", file.string(), "check the path");
+  if (!std::filesystem::is_regular_file(file))
+    throw Error(Fault::kData, "is a folder, a device or a pipe, and no file", file.string(),
+                "write the poses into a file first");
   std::ifstream stream(file);
-  if (!stream || std::filesystem::is_directory(file))
-    throw Error(Fault::kData, "cannot be read as a file", file.string());
+  if (!stream) throw Error(Fault::kData, "cannot be read", file.string());
   std::string text(kLongestLine, '\0');
   for (int number = 1; stream.getline(text.data(), kLongestLine); ++number) {
     const std::string where = file.string() + ":" + std::to_string(number);

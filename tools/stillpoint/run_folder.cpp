@@ -9,6 +9,7 @@
 #include <cstring>
 #include <fstream>
 #include <iterator>
+#include <regex>
 #include <string>
 #include <string_view>
 #include <system_error>
@@ -53,6 +54,19 @@ bool is_unfinished(const fs::path& file) {
   const auto is_name = [&](const char* known) { return name == known; };
   return std::ranges::any_of(kResults, is_name) || std::ranges::any_of(kMaps, is_name) ||
          is_picture(name);
+}
+
+/// Whether the file is a log that a run has begun, by its first line: "2026-01-30 12:00:00.000 info
+/// …". An empty one is: of a run that was killed at once.
+bool is_log_of_a_run(const fs::path& file) {
+  std::error_code none;
+  if (!fs::is_regular_file(file, none)) return false;
+  std::ifstream stream(file);
+  std::string line;
+  if (!std::getline(stream, line)) return true;
+  static const std::regex kBegin(
+      R"(\d{4}-\d{2}-\d{2} \d{2}:\d{2}:\d{2}\.\d{3}  (debug|info|warning|error)  .*)");
+  return line.size() < 4096 && std::regex_match(line, kBegin);
 }
 
 std::vector<fs::path> unfinished_in(const fs::path& run) {
@@ -110,9 +124,11 @@ RunFolder::~RunFolder() {
 }
 
 void RunFolder::begin(const std::string& effective_yaml) {
-  require_results_of_a_run();
+  if (is_log_of_a_run(path_ / "log.txt"))
+    note_earlier_files();
+  else
+    require_no_results();
   remove_earlier_results();
-  note_earlier_files();
   std::ofstream yaml(path_ / "pipeline.yaml");
   if (!(yaml << effective_yaml << std::flush)) fail(path_ / "pipeline.yaml", std::strerror(errno));
   const std::lock_guard lock(mutex_);
@@ -165,10 +181,10 @@ std::vector<std::string> RunFolder::contents() const {
   return names;
 }
 
-// Every run has a log. A pipeline.yaml without one is the user's, who runs it where it lies.
-void RunFolder::require_results_of_a_run() const {
+// Every run has a log. A pipeline.yaml without one is the user's, who runs it where it lies; so are
+// maps and pictures, which stay unless an output writes a file of the same name.
+void RunFolder::require_no_results() const {
   std::error_code none;
-  if (fs::exists(path_ / "log.txt", none)) return;
   for (const char* name : kResults)
     if (fs::exists(path_ / name, none))
       throw Error(Fault::kUsage, "is no file of an earlier run, and would be replaced",

@@ -45,7 +45,7 @@ class RunFolder {
   std::vector<std::string> contents() const;
 
  private:
-  void require_results_of_a_run() const;
+  void require_no_results() const;
   void remove_earlier_results() const;
   void note_earlier_files();
 

@@ -148,6 +148,9 @@ PngDecoder::Header PngDecoder::collect_chunks(std::span<const std::uint8_t> file
     if (libdeflate_crc32(0, type, length + 4) != big_endian(data + length))
       throw std::runtime_error("damaged PNG: a checksum does not fit");
     const std::string_view name(reinterpret_cast<const char*>(type), 4);
+    // The size of an image is looked at where its first chunk says it, before anything is decoded.
+    if ((name == "IHDR") != (at == sizeof kSignature))
+      throw std::runtime_error("damaged PNG: IHDR is not its first chunk, or not the only one");
     if (name == "IHDR" && length == 13) {
       if (std::max(big_endian(data), big_endian(data + 4)) > kMaxSide)
         throw std::runtime_error("damaged PNG: impossible size");

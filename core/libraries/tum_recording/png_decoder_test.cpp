@@ -93,6 +93,19 @@ TEST(PngDecoder, LeavesOtherKindsToOpenCv) {
   EXPECT_TRUE(decoder.decode(encode(picture(20, 10, CV_8UC4))).empty());
 }
 
+TEST(PngDecoder, HasOneSizeAtItsBeginning) {
+  PngDecoder decoder;
+  const auto large = encode(picture(40, 30, CV_8UC3));
+  auto two_sizes = encode(picture(4, 3, CV_8UC3));
+  const auto header_end = two_sizes.begin() + 33;  // signature, and IHDR with its 13 bytes
+  two_sizes.insert(header_end, large.begin() + 8, large.begin() + 33);
+  EXPECT_THROW(decoder.decode(two_sizes), std::runtime_error);
+  std::vector<std::uint8_t> late(large.begin(), large.begin() + 8);
+  append_chunk(late, "tEXt", {'a'});
+  late.insert(late.end(), large.begin() + 8, large.end());
+  EXPECT_THROW(decoder.decode(late), std::runtime_error);
+}
+
 TEST(PngDecoder, RefusesTruncatedAndDamagedFilesWhereverTheyAreHit) {
   PngDecoder decoder;
   const auto sound = encode(picture(40, 30, CV_8UC3));

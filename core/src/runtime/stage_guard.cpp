@@ -147,9 +147,10 @@ double seconds_since(Clock::time_point start) {
 }
 
 std::string text_of(const Call& call) {
+  const double seconds = seconds_since(call.start);
   std::ostringstream text;
-  text << call.stage << " has not returned for " << std::setprecision(2)
-       << seconds_since(call.start) << " s";
+  text << call.stage << " has not returned for " << std::fixed
+       << std::setprecision(seconds < 9.95 ? 1 : 0) << seconds << " s";
   if (call.frame) text << ", frame " << *call.frame;
   return text.str();
 }
