@@ -169,7 +169,7 @@ void add_run(CLI::App& app) {
       ->type_name("TYPE[.OPTION=VALUE]")
       ->allow_extra_args(false);
   command->add_flag("--images", arguments->images,
-                    "Draw every frame with labels and features: --with images");
+                    "Draw one frame in 30 with labels and features: --with images");
   command->add_flag(
       "--view{8080}", arguments->view_port,
       "Show the run in a browser, at this port of this machine; 0 takes any that is free");
