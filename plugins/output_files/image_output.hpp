@@ -46,8 +46,8 @@ class ImageOutput final : public Output {
         {.help = "four pictures in one, whatever the parts: features, moving points, labels with "
                  "what was decided, and what tracking uses"});
       v("folder", folder, {.help = "name of the folder in the run folder"});
-      v.require(std::filesystem::path(folder).is_relative() && !folder.starts_with(".") &&
-                    folder.find("..") == std::string::npos,
+      v.require(!folder.empty() && std::filesystem::path(folder).is_relative() &&
+                    !folder.starts_with(".") && folder.find("..") == std::string::npos,
                 "folder must be a name below the run folder, as pictures in it are replaced");
     }
   };

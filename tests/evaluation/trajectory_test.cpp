@@ -93,6 +93,10 @@ TEST(Trajectory, NanosecondsMayBeginWithTheMachine) {
                               "1500000000,1,2,3,0.70710678,0,0,0.70710678,0,0,0,0,0,0,0,0,0\n");
   EXPECT_DOUBLE_EQ(read_trajectory(two_minutes.path()).start(), 120.0);
   EXPECT_DOUBLE_EQ(read_trajectory(at_once.path()).start(), 1.5);
+  const TemporaryFile both("both.csv",
+                           "95000000000,1,2,3,0.70710678,0,0,0.70710678\n"
+                           "105000000000,1,2,3,0.70710678,0,0,0.70710678\n");
+  EXPECT_DOUBLE_EQ(read_trajectory(both.path()).start(), 95.0);
   EXPECT_NEAR(read_trajectory(two_minutes.path()).poses[0].world_from_camera.linear()(1, 0), 1.0,
               1e-7);
 }

@@ -199,7 +199,8 @@ TEST_F(Run, MapsAndPicturesOfTheUserStay) {
   const Outcome outcome =
       run("mine", "orb_baseline",
           {"--dataset", simulated_recording().string(), "--set", "source.limit=2"});
-  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_THAT(outcome.err, HasSubstr("map.pgm: is no file of an earlier run"));
   for (const fs::path& file : files) EXPECT_EQ(text_of(file), "the user's") << file;
 }
 

@@ -271,6 +271,9 @@ TEST_F(Report, TheBestOfASequenceFailsAndGetsLostAsRarelyAsTheOthers) {
   EXPECT_THAT(best_variants(results, 0, kAte), ElementsAre(false, false));
   results.results[0]->values[kTimesLost] = 2.0;  // so was the other, as often
   EXPECT_THAT(best_variants(results, 0, kAte), ElementsAre(false, true));
+  results.results[0]->values[kCoverage] = results.results[1]->values[kCoverage] = 50.0;
+  EXPECT_THAT(best_variants(results, 0, kAte), ElementsAre(false, false)) << "covers less";
+  results.results[0]->values[kCoverage] = results.results[1]->values[kCoverage] = 100.0;
   results.results[5] = CellResult{};
   results.results[5]->exit_code = 1;
   EXPECT_THAT(best_variants(results, 0, kAte), ElementsAre(false, false));

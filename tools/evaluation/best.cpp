@@ -14,7 +14,7 @@ std::vector<bool> best_of(std::span<const std::optional<RatedFigure>> figures, B
   for (const auto& figure : figures)
     if (figure) most = std::max(most, figure->coverage_percent);
   const auto can_be_compared = [&](const std::optional<RatedFigure>& figure) {
-    return figure && most - figure->coverage_percent <= kSameCoveragePercent;
+    return figure && figure->can_win && most - figure->coverage_percent <= kSameCoveragePercent;
   };
   std::vector<double> values;
   for (const auto& figure : figures)

@@ -14,6 +14,7 @@ enum class Better { kSmaller, kLarger, kNeither };
 struct RatedFigure {
   double value = 0.0;
   double coverage_percent = 100.0;
+  bool can_win = true;  ///< otherwise it counts as what others are to cover only
 };
 
 /// Percentage points. The error of a run that covers less of a recording than others, by more than

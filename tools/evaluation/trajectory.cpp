@@ -24,10 +24,11 @@ constexpr const char* kPoseFormat = "a line reads 'time tx ty tz qx qy qz qw'";
 constexpr std::size_t kTumColumns = 8;
 constexpr std::size_t kEurocColumns = 17;  // with velocity and biases
 constexpr std::size_t kKittiColumns = 12;
-constexpr double kKittiInterval = 0.1;      // seconds
-constexpr double kFirstNanoseconds = 1e11;  // as seconds, in three thousand years
-constexpr double kNanosecond = 1e-9;        // seconds
-constexpr double kLeastOrthonormal = 1e-3;  // deviation of a rotation matrix
+constexpr double kKittiInterval = 0.1;           // seconds
+constexpr double kFirstNanoseconds = 1e11;       // as seconds, in three thousand years
+constexpr double kFirstWholeNanoseconds = 1e10;  // with commas; as seconds, in three hundred years
+constexpr double kNanosecond = 1e-9;             // seconds
+constexpr double kLeastOrthonormal = 1e-3;       // deviation of a rotation matrix
 
 struct Line {
   std::string where;  // file:line
@@ -52,7 +53,7 @@ void for_each_line(const std::filesystem::path& file, const std::function<void(L
     throw Error(Fault::kData, "no such file", file.string(), "check the path");
   if (!std::filesystem::is_regular_file(file))
     throw Error(Fault::kData, "is a folder, a device or a pipe, and no file", file.string(),
-                "write the poses into a file first");
+                "write it into a file first");
   std::ifstream stream(file);
   if (!stream) throw Error(Fault::kData, "cannot be read", file.string());
   std::string text(kLongestLine, '\0');
@@ -86,8 +87,14 @@ std::vector<double> parse_numbers(const Line& line) {
   return numbers;
 }
 
+bool is_in_nanoseconds(const std::vector<double>& v, const Line& line) {
+  if (v.size() == kEurocColumns || std::abs(v[0]) > kFirstNanoseconds) return true;
+  const bool is_whole = line.fields[0].find_first_of(".eE") == std::string::npos;
+  return line.has_commas && is_whole && v[0] > kFirstWholeNanoseconds;
+}
+
 StampedPose pose_with_quaternion(const std::vector<double>& v, const Line& line) {
-  const bool nanoseconds = v.size() == kEurocColumns || std::abs(v[0]) > kFirstNanoseconds;
+  const bool nanoseconds = is_in_nanoseconds(v, line);
   const bool w_first = nanoseconds && line.has_commas;
   const Eigen::Quaterniond rotation = w_first ? Eigen::Quaterniond(v[4], v[5], v[6], v[7])
                                               : Eigen::Quaterniond(v[7], v[4], v[5], v[6]);

@@ -235,10 +235,12 @@ CaseResult run_case(const CheckedType& checked, const std::string& name,
     result.outcome = CaseResult::Outcome::kFailed;
     result.finding = failure.finding;
   } catch (const Error& error) {
-    // A stage that wants a file first is not wrong, and files may not fit the frames of a case.
+    // A stage that wants a file first is not wrong, and files may not fit the frames of a case. A
+    // source may have no images, as without a camera.
     const bool in_a_call = dynamic_cast<const StageError*>(&error);
     const bool wants_options =
-        error.fault() != Fault::kStage && (!in_a_call || reads_files(checked.type));
+        error.fault() != Fault::kStage &&
+        (!in_a_call || checked.type.kind == Source::kKind || reads_files(checked.type));
     result.outcome = wants_options ? CaseResult::Outcome::kNotRun : CaseResult::Outcome::kFailed;
     const Scenario& scenario = scenario_named(name, scenarios);
     result.finding = {error.what(), scenario.why, scenario.remedy};

@@ -138,9 +138,25 @@ class Ablation {
                     "' cancels it");
   }
 
+  int recorded_repeats() const { return study().new_noise ? study().repeats : 1; }
+
+  /// Throws Error(kUsage) when a recording would have to make room.
+  void refuse_to_record_over() {
+    for (int repeat = 0; repeat < recorded_repeats(); ++repeat)
+      for (std::size_t i = 0; i < study().sequences.size(); ++i) {
+        const Sequence sequence = at_repeat(study(), study().sequences[i], repeat);
+        const fs::path recording = recording_of(output_, study(), i, repeat);
+        if (!sequence.scene.empty() && is_recorded_otherwise(recording, describe_scene(sequence)))
+          throw Error(Fault::kUsage,
+                      "is simulated from a scene that has changed, and would be replaced",
+                      recording.string(), kReplaceHint);
+      }
+  }
+
   /// One after the other: the simulator uses all cores. False: stopped.
   bool record_scenes(const std::stop_token& stop) {
-    for (int repeat = 0; repeat < (study().new_noise ? study().repeats : 1); ++repeat)
+    if (!again_) refuse_to_record_over();
+    for (int repeat = 0; repeat < recorded_repeats(); ++repeat)
       for (std::size_t i = 0; i < study().sequences.size(); ++i)
         if (!record_scene(at_repeat(study(), study().sequences[i], repeat),
                           recording_of(output_, study(), i, repeat), stop))
@@ -153,10 +169,6 @@ class Ablation {
     if (!sequence.scene.empty()) {
       const std::string description = describe_scene(sequence);
       if (!is_recorded(recording, description)) {
-        if (!again_ && is_recorded_otherwise(recording, description))
-          throw Error(Fault::kUsage,
-                      "is simulated from a scene that has changed, and would be replaced",
-                      recording.string(), kReplaceHint);
         console_.note("simulating " + sequence.name);
         if (!record(this_program(), sequence, description, recording, stop)) return false;
       }

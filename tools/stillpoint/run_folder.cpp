@@ -62,11 +62,12 @@ bool is_log_of_a_run(const fs::path& file) {
   std::error_code none;
   if (!fs::is_regular_file(file, none)) return false;
   std::ifstream stream(file);
+  if (!stream) return false;
   std::string line;
   if (!std::getline(stream, line)) return true;
   static const std::regex kBegin(
-      R"(\d{4}-\d{2}-\d{2} \d{2}:\d{2}:\d{2}\.\d{3}  (debug|info|warning|error)  .*)");
-  return line.size() < 4096 && std::regex_match(line, kBegin);
+      R"(\d{4}-\d{2}-\d{2} \d{2}:\d{2}:\d{2}\.\d{3}  (debug|info|warning|error)  )");
+  return std::regex_search(line, kBegin, std::regex_constants::match_continuous);
 }
 
 std::vector<fs::path> unfinished_in(const fs::path& run) {
@@ -182,13 +183,15 @@ std::vector<std::string> RunFolder::contents() const {
 }
 
 // Every run has a log. A pipeline.yaml without one is the user's, who runs it where it lies; so are
-// maps and pictures, which stay unless an output writes a file of the same name.
+// maps and numbered pictures.
 void RunFolder::require_no_results() const {
+  std::vector<fs::path> names = files_of_a_run(path_);
+  for (const char* name : kResults) names.push_back(path_ / name);
   std::error_code none;
-  for (const char* name : kResults)
-    if (fs::exists(path_ / name, none))
+  for (const fs::path& file : names)
+    if (fs::exists(file, none))
       throw Error(Fault::kUsage, "is no file of an earlier run, and would be replaced",
-                  (path_ / name).string(), "choose another folder with -o, or move it");
+                  file.string(), "choose another folder with -o, or move it");
 }
 
 void RunFolder::remove_earlier_results() const {

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 #include "evaluation/best.hpp"
@@ -120,29 +119,29 @@ std::optional<Spread> improvement_percent(const StudyResults& results, std::size
 
 namespace {
 
-/// Runs of the variant that failed, or lost their way.
-std::size_t runs_in_trouble(const StudyResults& results, std::size_t sequence,
-                            std::size_t variant) {
+/// Of the runs of the variant, the share that failed, lost their way or have no error.
+double share_in_trouble(const StudyResults& results, std::size_t sequence, std::size_t variant) {
   const auto [first, last] = results.cells_of(sequence, variant);
-  std::size_t count = 0;
-  for (std::size_t i = first; i < last; ++i)
-    if (const auto& result = results.results[i])
-      count += result->failed() || result->values[kTimesLost].value_or(0.0) > 0.0;
-  return count;
+  int runs = 0, troubles = 0;
+  for (std::size_t i = first; i < last; ++i) {
+    const std::optional<CellResult>& result = results.results[i];
+    if (!result) continue;
+    ++runs;
+    troubles +=
+        result->failed() || !result->values[kAte] || result->values[kTimesLost].value_or(0.0) > 0.0;
+  }
+  return runs > 0 ? static_cast<double>(troubles) / runs : 0.0;
 }
 
 /// Where others have fewer, the median of the runs that went well is not comparable with theirs.
 void leave_out_those_in_trouble(const StudyResults& results, std::size_t sequence,
                                 std::vector<std::optional<evaluation::RatedFigure>>& figures) {
-  std::vector<std::size_t> troubles(figures.size(), 0);
-  auto fewest = std::numeric_limits<std::size_t>::max();
-  for (std::size_t variant = 0; variant < figures.size(); ++variant) {
-    if (!figures[variant]) continue;
-    troubles[variant] = runs_in_trouble(results, sequence, variant);
-    fewest = std::min(fewest, troubles[variant]);
-  }
+  std::vector<double> shares(figures.size(), 1.0);
   for (std::size_t variant = 0; variant < figures.size(); ++variant)
-    if (troubles[variant] > fewest) figures[variant].reset();
+    if (figures[variant]) shares[variant] = share_in_trouble(results, sequence, variant);
+  const double least = std::ranges::min(shares);
+  for (std::size_t variant = 0; variant < figures.size(); ++variant)
+    if (figures[variant]) figures[variant]->can_win = shares[variant] <= least;
 }
 
 }  // namespace
@@ -158,7 +157,7 @@ std::vector<bool> best_variants(const StudyResults& results, std::size_t sequenc
     const auto coverage = results.spread(sequence, variant, kCoverage);
     if (m.is_pose_error) figures[variant]->coverage_percent = coverage ? coverage->median : 0.0;
   }
-  if (m.is_pose_error) leave_out_those_in_trouble(results, sequence, figures);
+  if (m.is_pose_error && !figures.empty()) leave_out_those_in_trouble(results, sequence, figures);
   return best_of(figures, m.better, m.digits);
 }
 

@@ -54,7 +54,8 @@ std::optional<Spread> improvement_percent(const StudyResults& results, std::size
                                           std::size_t variant);
 
 /// Of each variant, whether it has the best median on a sequence, as evaluation::best_of says. An
-/// error is not the best where more runs failed or lost their way than of another variant.
+/// error is not the best where a larger share of the runs failed, lost their way or have no error
+/// than of another variant.
 std::vector<bool> best_variants(const StudyResults& results, std::size_t sequence, MetricId metric);
 
 }  // namespace stillpoint::study

@@ -116,6 +116,9 @@ SourceReport LiveFrames::report() const {
     report.warnings.push_back(text_of(device_, ": ", unpaired, " images had no partner within ",
                                       1000 * options_.max_difference,
                                       " ms (source.max_difference)"));
+  if (late_ > 0)
+    report.warnings.push_back(
+        text_of(device_, ": ", late_, " pairs of images were older than the frame before"));
   if (clock_jumps > 0)
     report.warnings.push_back(
         text_of(device_, ": the device's clock jumped ", clock_jumps, " times"));
