@@ -11,13 +11,23 @@ namespace {
 
 constexpr std::size_t kImageStep = 3;  // frames
 
+namespace fs = std::filesystem;
+
+/// Leaves what is there as it is.
+void require_writable(const fs::path& file) {
+  std::error_code none;
+  const bool was_there = fs::exists(file, none);
+  if (!std::ofstream(file, std::ios::binary | std::ios::app))
+    throw Error(Fault::kUsage, file.string() + " cannot be written: " + std::strerror(errno),
+                "record", "give another name");
+  if (!was_there) fs::remove(file, none);
+}
+
 }  // namespace
 
-Recorder::Recorder(std::filesystem::path file, std::string_view page)
-    : file_(std::move(file)), stream_(file_, std::ios::binary) {
-  if (!(stream_ << page << '\n' << std::flush))
-    throw Error(Fault::kUsage, file_.string() + " cannot be written: " + std::strerror(errno),
-                "record", "give another name");
+Recorder::Recorder(fs::path file, std::string_view page)
+    : file_(std::move(file)), unwritten_(std::string(page) + '\n') {
+  require_writable(file_);
 }
 
 void Recorder::take(EventLog& events) {
@@ -33,8 +43,11 @@ void Recorder::finish(EventLog& events) {
 
 void Recorder::write(std::string_view message) {
   if (message.empty()) return;
-  stream_ << "<script type=\"text/plain\" class=\"message\">" << base64(message) << "</script>\n"
-          << std::flush;
+  unwritten_ += "<script type=\"text/plain\" class=\"message\">" + base64(message) + "</script>\n";
+  if (seen_.frames == 0) return;
+  if (!stream_.is_open()) stream_.open(file_, std::ios::binary);
+  stream_ << unwritten_ << std::flush;
+  unwritten_.clear();
   if (!stream_)
     throw Error(Fault::kUsage, "no room for the recording of the live view", file_.string());
 }

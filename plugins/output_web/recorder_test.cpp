@@ -54,6 +54,20 @@ TEST_F(Recording, IsThePageAndWhatAViewerGets) {
   EXPECT_EQ(text().substr(0, expected.size()), expected);
 }
 
+TEST_F(Recording, OfAnEarlierRunStaysUntilTheFirstFrame) {
+  std::ofstream(folder / "live.html") << "<earlier>";
+  EventLog events({.name = "walk", .classes = testing::TestRecording::classes(), .truth = {}});
+  Recorder recorder(folder / "live.html", "<page>");
+  const Recorder other(folder / "other.html", "<page>");
+  EXPECT_FALSE(fs::exists(folder / "other.html"));
+  events.set_steering("{}");
+  recorder.take(events);
+  EXPECT_EQ(text(), "<earlier>");
+  events.add(report_of(0));
+  recorder.take(events);
+  EXPECT_THAT(text(), ::testing::StartsWith("<page>\n<script"));
+}
+
 TEST_F(Recording, IsWholeWithoutAnybodyLooking) {
   auto live = output("live.html");
   for (std::size_t i = 0; i < recording().size(); ++i) live->frame(report_of(i));

@@ -218,6 +218,44 @@ TEST_P(ThreadOfPlugin, IsNamedAndResultsAreSaved) {
   EXPECT_EQ(summary["failure"], message);
 }
 
+struct Crashing {
+  const char* kind;
+  const char* setting;
+  const char* message;
+};
+
+/// A stage that would hang in the call that saves, after it has crashed.
+class StageThatCrashes : public BadPlugins,
+                         public ::testing::WithParamInterface<std::tuple<const char*, Crashing>> {};
+
+INSTANTIATE_TEST_SUITE_P(
+    Modes, StageThatCrashes,
+    ::testing::Combine(
+        ::testing::Values("inline", "threaded"),
+        ::testing::Values(Crashing{"output",
+                                   "outputs=[{type: crashes_then_hangs}, {type: trajectory}, "
+                                   "{type: summary}]",
+                                   "output (crashes_then_hangs) failed on frame 3: it crashed"},
+                          Crashing{"map_backend", "map_backend.type=crashes_then_hangs",
+                                   "dense mapping (crashes_then_hangs) failed on frame "})),
+    [](const auto& test) {
+      return std::string(std::get<0>(test.param)) + "_" + std::get<1>(test.param).kind;
+    });
+
+TEST_P(StageThatCrashes, IsNotCalledAgain) {
+  const auto& [mode, crashing] = GetParam();
+  const Outcome outcome =
+      run("orb_baseline",
+          on_recording({"--set", crashing.setting, "--set", std::string("runtime.mode=") + mode,
+                        "--set", "source.limit=30"}),
+          with_plugins());
+  EXPECT_EQ(outcome.exit_code, kStageFailed) << outcome.signal;
+  EXPECT_THAT(outcome.err, HasSubstr(std::string("error: ") + crashing.message));
+  EXPECT_GE(count_poses(out() / "trajectory.txt"), 3u);
+  EXPECT_THAT(json_file(out() / "summary.json")["failure"].get<std::string>(),
+              ::testing::StartsWith(crashing.message));
+}
+
 using StageThatWritesToImages = StageThatMisbehaves;
 INSTANTIATE_TEST_SUITE_P(
     Modes, StageThatWritesToImages,

@@ -175,6 +175,40 @@ TEST_F(Run, EarlierRunInTheFolderStaysWhenThisOneCannotBegin) {
   }
 }
 
+// Known with the first frame only: a camera whose images have another size, Ctrl-C before it.
+TEST_F(Run, EarlierRunInTheFolderStaysWhenTheFirstFrameIsBad) {
+  const std::string recording = simulated_recording().string();
+  const std::vector<std::string> good = {
+      "--dataset",
+      recording,
+      "--set",
+      "source.limit=2",
+      "--set",
+      "outputs=[{type: trajectory}, "
+      "{type: images, every: 1}, {type: web, port: 0, record: live.html}]",
+      "--set",
+      "map_backend.type=octomap"};
+  ASSERT_EQ(run("same", "orb_baseline", good).exit_code, 0);
+  const auto files = {out() / "same/trajectory.txt", out() / "same/log.txt",
+                      out() / "same/images/000001.jpg", out() / "same/map/map.ot",
+                      out() / "same/live.html"};
+  std::vector<std::string> texts;
+  for (const fs::path& file : files) texts.push_back(text_of(file));
+  std::vector<std::string> bad = good;
+  bad.insert(bad.end(), {"--camera", "tum_fr1"});
+  for (const char* mode : {"inline", "threaded"}) {
+    bad.insert(bad.end(), {"--set", std::string("runtime.mode=") + mode});
+    const Outcome outcome = run("same", "orb_baseline", bad);
+    EXPECT_EQ(outcome.exit_code, 3) << outcome.err;
+    EXPECT_THAT(outcome.err, HasSubstr("tum_fr1"));
+    std::vector<std::string> after;
+    for (const fs::path& file : files) after.push_back(text_of(file));
+    EXPECT_EQ(after, texts) << mode;
+    EXPECT_NE(run("new", "orb_baseline", bad).exit_code, 0);
+    EXPECT_FALSE(fs::exists(out() / "new")) << mode;
+  }
+}
+
 TEST_F(Run, FilesOfTheUserAreNotReplaced) {
   const std::string text = "version: 1\nextends: orb_baseline\n";
   const fs::path mine = out() / "mine";

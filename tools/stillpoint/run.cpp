@@ -48,6 +48,24 @@ void print_files(const RunFolder& folder, const fs::path& ground_truth) {
               << " --estimate " << trajectory.string() << '\n';
 }
 
+/// Begins the run's folder with the first frame: a camera that does not fit, or a network that
+/// cannot be used, must not cost the results of an earlier run.
+class FolderBegin final : public Output {
+ public:
+  FolderBegin(RunFolder& folder, std::string effective_yaml)
+      : folder_(folder), effective_yaml_(std::move(effective_yaml)) {}
+  void frame(const FrameReport&) override { begin(); }
+  void finish(const RunSummary&) override { begin(); }  // of a source without a frame
+
+ private:
+  void begin() {
+    if (!folder_.has_begun()) folder_.begin(effective_yaml_);
+  }
+
+  RunFolder& folder_;
+  const std::string effective_yaml_;
+};
+
 template <class Function>
 auto in_source(const Stages& stages, Function function) {
   return in_stage("source (" + stages.source.type + ")", {},
@@ -62,8 +80,7 @@ bool run_and_print(Stages stages, const PipelineConfig& config, const RunFolder&
   const auto table = std::make_shared<RunTable>();
   stages.outputs.push_back({{table, "table"}});
   const auto end = [&] {
-    folder.remove_earlier_files();
-    if (quiet) return;
+    if (quiet || !folder.has_begun()) return;
     table->print(std::cout);
     print_files(folder, ground_truth);
     std::cout << std::flush;
@@ -131,7 +148,9 @@ void run(const RunArguments& arguments) {
     folder.log(level, text);
     if (level == LogLevel::kInfo) console.note(std::string(text));
   });
-  folder.begin(config.effective_yaml);
+  stages.outputs.insert(
+      stages.outputs.begin(),
+      {{std::make_shared<FolderBegin>(folder, config.effective_yaml), "run folder"}});
   if (!arguments.quiet)
     stages.outputs.push_back(
         {{std::make_shared<Progress>(console, in_source(stages, &Source::size)), "progress"}});
@@ -147,7 +166,9 @@ void run(const RunArguments& arguments) {
     signal = Interrupt::signal();
   }
   if (complete && signal == 0) return folder.log(LogLevel::kInfo, "done");
-  folder.log(LogLevel::kWarning, "stopped; what was computed until then is saved");
+  folder.log(LogLevel::kWarning, folder.has_begun()
+                                     ? "stopped; what was computed until then is saved"
+                                     : "stopped before the first frame; nothing was written");
   if (signal != 0) std::raise(signal);  // so that a calling script sees that it was interrupted
 }
 

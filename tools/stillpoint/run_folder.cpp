@@ -117,19 +117,23 @@ RunFolder::RunFolder(fs::path path, Console& console) : path_(std::move(path)), 
   lock_.emplace(path_);
   if (::access(path_.c_str(), W_OK) != 0) fail(path_, std::strerror(errno));
   unfinished_ = unfinished_in(path_);
-}
-
-RunFolder::~RunFolder() {
-  std::error_code ignored;
-  if (made_ && !log_) fs::remove(path_, ignored);
-}
-
-void RunFolder::begin(const std::string& effective_yaml) {
   if (is_log_of_a_run(path_ / "log.txt"))
     note_earlier_files();
   else
     require_no_results();
+}
+
+RunFolder::~RunFolder() {
+  std::error_code ignored;
+  if (!made_ || begun_) return;
+  fs::remove(path_ / "images", ignored);  // of an output, empty
+  fs::remove(path_, ignored);
+}
+
+void RunFolder::begin(const std::string& effective_yaml) {
+  begun_ = true;
   remove_earlier_results();
+  remove_earlier_files();
   std::ofstream yaml(path_ / "pipeline.yaml");
   if (!(yaml << effective_yaml << std::flush)) fail(path_ / "pipeline.yaml", std::strerror(errno));
   const std::lock_guard lock(mutex_);
@@ -166,6 +170,7 @@ void RunFolder::note_earlier_files() {
   }
 }
 
+// What has another time now is this run's already.
 void RunFolder::remove_earlier_files() const {
   std::error_code ignored;
   for (const auto& [file, written] : earlier_files_) {

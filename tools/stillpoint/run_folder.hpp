@@ -1,6 +1,7 @@
 // The folder a run writes into.
 #pragma once
 
+#include <atomic>
 #include <filesystem>
 #include <memory>
 #include <mutex>
@@ -24,23 +25,22 @@ namespace stillpoint {
 /// left in it stays until begin().
 class RunFolder {
  public:
-  /// Throws Error(kUsage) when the folder cannot be written or another run is writing into it.
+  /// Throws Error(kUsage) when the folder cannot be written, another run is writing into it, or it
+  /// holds files with the names of results that are not those of a run.
   RunFolder(std::filesystem::path path, Console& console);
   /// Leaves no empty folder of its own behind where no run began.
   ~RunFolder();
   RunFolder(const RunFolder&) = delete;
   RunFolder& operator=(const RunFolder&) = delete;
 
-  /// Once all that the run needs is there: removes results of an earlier run, but for its dense
-  /// map and pictures, and writes pipeline.yaml and log.txt. Throws Error(kUsage) when that is not
-  /// possible, or files of these names are not those of a run.
+  /// Once a frame is through, and so all that the run needs is good: removes results of an earlier
+  /// run and writes pipeline.yaml and log.txt. Throws Error(kUsage) when that is not possible.
   void begin(const std::string& effective_yaml);
+  bool has_begun() const { return begun_; }
 
   const std::filesystem::path& path() const { return path_; }
   /// Into log.txt; warnings and errors also to the console. May be called from any thread.
   void log(LogLevel level, std::string_view text) const;
-  /// Maps and pictures of an earlier run that this one has not replaced. At the end of a run.
-  void remove_earlier_files() const;
   /// Names of what is in it, sorted; folders end with '/'.
   std::vector<std::string> contents() const;
 
@@ -48,15 +48,18 @@ class RunFolder {
   void require_no_results() const;
   void remove_earlier_results() const;
   void note_earlier_files();
+  void remove_earlier_files() const;
 
   std::filesystem::path path_;
   Console& console_;
   bool made_ = false;  // by this run
+  std::atomic<bool> begun_ = false;
   std::optional<FolderLock> lock_;
   std::vector<std::filesystem::path> unfinished_;  // by runs that were killed
   mutable std::mutex mutex_;
   std::shared_ptr<spdlog::logger> log_;                          // guarded, like early_
   mutable std::vector<std::pair<LogLevel, std::string>> early_;  // lines before begin()
+  // Maps and pictures of an earlier run, and when they were written.
   std::vector<std::pair<std::filesystem::path, std::filesystem::file_time_type>> earlier_files_;
 };
 

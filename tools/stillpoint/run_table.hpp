@@ -31,7 +31,7 @@ class RunTable final : public Output {
   SourceReport source_;
   std::size_t keyframes_ = 0;
   std::size_t landmarks_ = 0;
-  bool complete_ = true;
+  bool complete_ = false;  // until it is finished
   int dropped_ = 0;
   int dropped_reports_ = 0;
   int loops_ = 0;

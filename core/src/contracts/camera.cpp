@@ -22,7 +22,8 @@ void CameraModel::visit(OptionVisitor& v) {
      .unit = "px",
      .help = "principal point, from the centre of the top row",
      .required = true});
-  v("distortion", distortion, {.help = "Brown–Conrady k1, k2, p1, p2[, k3]; empty for none"});
+  v("distortion", distortion,
+    {.min = -1e6, .max = 1e6, .help = "Brown–Conrady k1, k2, p1, p2[, k3]; empty for none"});
   v("depth_factor", depth_factor,
     {.min = 1e-6, .max = 1e9, .help = "depth image value of one metre"});
   v("min_depth", min_depth,
@@ -31,10 +32,14 @@ void CameraModel::visit(OptionVisitor& v) {
     {.min = 0.01, .max = 1e6, .unit = "m", .help = "farther ones are dropped"});
   v("depth_noise", depth_noise,
     {.min = 1e-6,
+     .max = 100,
      .unit = "m",
      .help = "standard deviation of a point feature's depth at 1 m; grows with the square"});
   v("surface_noise", surface_noise,
-    {.min = 1e-6, .unit = "m", .help = "the same on a smooth surface: the sensor's own"});
+    {.min = 1e-6,
+     .max = 100,
+     .unit = "m",
+     .help = "the same on a smooth surface: the sensor's own"});
   v("crop", crop, {.unit = "px", .help = "x, y, width, height of the part to use; empty for all"});
   v.require(distortion.empty() || distortion.size() == 4 || distortion.size() == 5,
             "distortion takes 4 or 5 numbers: k1, k2, p1, p2[, k3]");

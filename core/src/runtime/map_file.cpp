@@ -12,6 +12,7 @@
 #include "stillpoint/error.hpp"
 #include "stillpoint/runtime/map_reader.hpp"
 #include "stillpoint/runtime/map_writer.hpp"
+#include "stillpoint/support/atomic_file.hpp"
 
 namespace stillpoint {
 namespace {
@@ -32,38 +33,19 @@ void flush(const fs::path& file) {
   if (!flushed) throw std::system_error(error, std::generic_category());
 }
 
-// Written beside its place first, under a name that no other process on this machine has.
-fs::path part_of(const fs::path& file) {
-  return file.string() + '.' + std::to_string(::getpid()) + ".part";
-}
-
 }  // namespace
 
-void require_writable(const fs::path& file) {
-  std::error_code failed;
-  if (file.has_parent_path()) fs::create_directories(file.parent_path(), failed);
-  if (failed) cannot_write(file, failed.message());
-  if (fs::exists(file, failed) && !fs::is_regular_file(file, failed))
-    throw Error(Fault::kUsage, "the map cannot be written: this is a folder, a device or a pipe",
-                file.string(), "choose another name");
-  const int descriptor = ::open(part_of(file).c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0644);
-  if (descriptor < 0) cannot_write(file, std::strerror(errno));
-  ::close(descriptor);
-  fs::remove(part_of(file), failed);
-}
+void require_writable(const fs::path& file) { const AtomicFile tried(file); }
 
 void save_map(const SparseMap& map, const fs::path& file) {
-  const fs::path part = part_of(file);
-  require_writable(file);
+  AtomicFile whole(file);
   try {
-    write_map(map, part);
-    flush(part);
-    fs::rename(part, file);
+    write_map(map, whole.temporary());
+    flush(whole.temporary());
   } catch (const std::exception& fault) {
-    std::error_code ignored;
-    fs::remove(part, ignored);
     cannot_write(file, fault.what());
   }
+  whole.commit();
 }
 
 SparseMap load_map(const fs::path& file) {

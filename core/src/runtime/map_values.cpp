@@ -11,6 +11,8 @@ namespace {
 constexpr int kMaxImageSide = 16384;         // px
 constexpr double kLongestFocal = 1e6;        // px
 constexpr double kFarthest = 1e7;            // m
+constexpr double kLeastNoise = 1e-6;         // m, as in CameraModel
+constexpr double kMostNoise = 100;           // m
 constexpr double kRotationTolerance = 1e-6;  // from R Rᵀ = 1, det R = 1
 constexpr double kMostScale = 4;             // between two levels
 constexpr int kMostLevels = 64;
@@ -45,14 +47,16 @@ bool possible(const Pose& pose) {
 
 }  // namespace
 
-void check_values(const Camera& camera) {
-  require(within(camera.width, 1, kMaxImageSide) && within(camera.height, 1, kMaxImageSide) &&
-              within(camera.fx, 1, kLongestFocal) && within(camera.fy, 1, kLongestFocal) &&
-              within(camera.cx, -kLongestFocal, kLongestFocal) &&
-              within(camera.cy, -kLongestFocal, kLongestFocal) &&
-              within(camera.depth_noise, 0, kFarthest),
-          "a camera");
+bool possible(const Camera& camera) {
+  return within(camera.width, 1, kMaxImageSide) && within(camera.height, 1, kMaxImageSide) &&
+         within(camera.fx, 1, kLongestFocal) && within(camera.fy, 1, kLongestFocal) &&
+         within(camera.cx, -kLongestFocal, kLongestFocal) &&
+         within(camera.cy, -kLongestFocal, kLongestFocal) &&
+         within(camera.depth_noise, kLeastNoise, kMostNoise) &&
+         within(camera.surface_noise, kLeastNoise, kMostNoise);
 }
+
+void check_values(const Camera& camera) { require(possible(camera), "a camera"); }
 
 void check_values(const Landmark& landmark) {
   require(landmark.position_in_world.norm() <= kFarthest && landmark.mean_view.norm() <= 1.001 &&

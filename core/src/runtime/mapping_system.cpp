@@ -116,12 +116,13 @@ void MappingSystem::end() {
 
 std::vector<LabelledPoint> MappingSystem::dense_points() {
   const std::lock_guard lock(dense_mutex_);
+  if (!map_backend_.usable()) return {};
   return map_backend_.call_unmeasured({}, &MapBackend::occupied);
 }
 
 std::optional<std::vector<LabelledPoint>> MappingSystem::dense_points_if_idle() {
   const std::unique_lock lock(dense_mutex_, std::try_to_lock);
-  if (!lock || !map_backend_.present()) return std::nullopt;
+  if (!lock || !map_backend_.present() || !map_backend_.usable()) return std::nullopt;
   try {
     return map_backend_.call_unmeasured({}, &MapBackend::occupied);
   } catch (...) {  // whoever asked may go on without it; a run cannot
@@ -131,15 +132,15 @@ std::optional<std::vector<LabelledPoint>> MappingSystem::dense_points_if_idle() 
 }
 
 bool MappingSystem::save(const std::filesystem::path& directory) {
-  if (!map_backend_.present()) return false;
   const std::lock_guard lock(dense_mutex_);
+  if (!map_backend_.present() || !map_backend_.usable()) return false;
   save_locked(directory);
   return true;
 }
 
 bool MappingSystem::save_if_idle(const std::filesystem::path& directory) {
   const std::unique_lock lock(dense_mutex_, std::try_to_lock);
-  if (!lock || !has_integrated_) return false;
+  if (!lock || !has_integrated_ || !map_backend_.usable()) return false;
   try {
     save_locked(directory);
   } catch (...) {  // without room for files a run can go on, but not after a crash

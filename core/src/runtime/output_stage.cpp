@@ -41,6 +41,7 @@ void OutputStage::end() {
 
 void OutputStage::finish(const std::function<RunSummary()>& summary) {
   for (StageCaller<Output>& output : outputs_) {
+    if (!output.usable()) continue;
     try {
       output.call_unmeasured({}, &Output::finish, summary());
     } catch (...) {

@@ -230,7 +230,9 @@ void Pipeline::end_threads() {
   for (OutputStage& output : outputs_) output.end();
 }
 
+// What failed or was stopped before its first frame leaves what is there, of an earlier run.
 void Pipeline::finish_outputs() {
+  if (poses_.empty() && stop_.requested()) return;
   const MapStore::Snapshot map = mapping_.snapshot();
   const SourceReport source = feed_ ? feed_->report() : SourceReport();
   const std::vector<StageTime> times = times_.take();

@@ -10,7 +10,6 @@
 #include <atomic>
 #include <cstring>
 #include <span>
-#include <stdexcept>
 
 #include "stillpoint/runtime/abnormal_end.hpp"
 
@@ -83,7 +82,7 @@ void end_plugin_thread(int what, bool may_stop) {
 
 std::optional<StageError> error_of_stopped_thread() {
   if (stopped_thread.what == 0) return std::nullopt;
-  const std::runtime_error reason(reason_of(stopped_thread.what));
+  const EndedCall reason(reason_of(stopped_thread.what));
   return StageError(std::string("a thread of ") + stopped_thread.library.data(), std::nullopt,
                     &reason);
 }

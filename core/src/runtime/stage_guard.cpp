@@ -14,7 +14,6 @@
 #include <memory>
 #include <mutex>
 #include <sstream>
-#include <stdexcept>
 
 #include "../image_codec/codec_loading.hpp"
 #include "stillpoint/runtime/abnormal_end.hpp"
@@ -139,7 +138,7 @@ void load_image_codec(void (*load)()) {
     if (const auto error = error_of_stopped_thread()) throw StageError(*error);  // waited for it
   const std::string reason = reason_of(what);
   start_time_to_save(std::array{call.stage.c_str(), ": ", reason.c_str()});
-  throw std::runtime_error(reason);
+  throw EndedCall(reason);
 }
 
 double seconds_since(Clock::time_point start) {

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "stillpoint/error.hpp"
+#include "stillpoint/runtime/map_values.hpp"
 #include "stillpoint/runtime/stage_requirement.hpp"
 #include "stillpoint/support/size_text.hpp"
 
@@ -166,6 +167,9 @@ void check_frame(const Frame& frame, std::uint32_t index, const Frame* previous)
   check_type(frame.gray, CV_8UC1, "the grey image");
   check_type(frame.depth, CV_32FC1, "the depth image");
   require_of_stage(frame.camera != nullptr, "the frame has no camera", "set Frame::camera");
+  require_of_stage(
+      possible(*frame.camera), "the camera of the frame has impossible values",
+      "focal lengths are at least 1 px, the noise of depth lies between 1e-6 and 100 m");
   require_of_stage(frame.gray.size() == cv::Size(frame.camera->width, frame.camera->height),
                    "the images have " + size_text(frame.gray.size()) + " pixels, the camera " +
                        size_text({frame.camera->width, frame.camera->height}),

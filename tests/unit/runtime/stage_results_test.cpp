@@ -57,6 +57,17 @@ INSTANTIATE_TEST_SUITE_P(
     StageResults, WrongFrame,
     ::testing::Values(
         FrameFault{"Index", [](Frame& f) { f.index = 9; }, "has index 9; indices count from 0"},
+        FrameFault{"NanFocalLength",
+                   [](Frame& f) {
+                     f.camera = std::make_shared<Camera>(Camera{4, 3, kNan});
+                   },
+                   "the camera of the frame has impossible values; focal lengths are"},
+        FrameFault{"NoNoise",
+                   [](Frame& f) {
+                     f.camera = std::make_shared<Camera>(
+                         Camera{.width = 4, .height = 3, .surface_noise = 0});
+                   },
+                   "the camera of the frame has impossible values; focal lengths are"},
         FrameFault{"NanTime", [](Frame& f) { f.time = kNan; }, "time of the frame is not finite"},
         FrameFault{"Backwards", [](Frame& f) { f.time = 10.5; }, "0.500000 s older than the one"},
         FrameFault{"NoImage", [](Frame& f) { f.gray.release(); }, "the frame has no image"},

@@ -26,7 +26,8 @@ class STILLPOINT_EXPORT MapBackend {
   /// have left the sparse map meanwhile, and those of a loaded map, which were never integrated.
   virtual void move(std::span<const MovedKeyFrame> moved) = 0;
   /// Writes the map's files into an existing folder; may bring the map up to date before. Called on
-  /// any thread, at the end of a run, also of one that failed or was stopped, and in between.
+  /// any thread, at the end of a run, also of one that failed or was stopped, and in between. Not
+  /// after this back end itself crashed or hung.
   virtual void save(const std::filesystem::path& directory) = 0;
   /// One point per occupied cell of the map so far. Empty for a map that is not made of points.
   /// Called on any thread, but never during another call.

@@ -99,8 +99,9 @@ class STILLPOINT_EXPORT Output {
   /// In order of the frames. Threaded, tracking is up to eight frames ahead and then waits, or
   /// frames are left out.
   virtual void frame(const FrameReport&) {}
-  /// Always called, also after a failure or Ctrl-C: what was computed is saved. After the last
-  /// frame(), on thread 1; references are valid during the call only.
+  /// Also called after a failure or Ctrl-C, once there was a frame: what was computed is saved. Not
+  /// after this output itself crashed or hung. After the last frame(), on thread 1; references are
+  /// valid during the call only.
   virtual void finish(const RunSummary&) {}
 };
 

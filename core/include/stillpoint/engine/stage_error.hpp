@@ -17,6 +17,11 @@ class STILLPOINT_EXPORT StageError final : public Error {
  public:
   StageError(const std::string& stage, std::optional<std::uint32_t> frame,
              const std::exception* cause);
+  /// Whether a guard had to end the call: see EndedCall.
+  bool ended_the_call() const { return ended_the_call_; }
+
+ private:
+  bool ended_the_call_;
 };
 
 /// Calls `function`; whatever it throws leaves as StageError, and where there is a StageGuard also

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <thread>
 #include <type_traits>
@@ -63,8 +64,14 @@ class STILLPOINT_EXPORT LateCalls {
   std::jthread watcher_;
 };
 
-/// Calls `function(argument)`, which is the plugin's. Throws std::runtime_error with a reason when
-/// a guard had to end it.
+/// That a guard had to end a call, and why. The object that was called is in an unknown state, and
+/// its locks may be held: it must not be called again.
+class STILLPOINT_EXPORT EndedCall final : public std::runtime_error {
+ public:
+  using runtime_error::runtime_error;
+};
+
+/// Calls `function(argument)`, which is the plugin's. Throws EndedCall when a guard had to end it.
 STILLPOINT_EXPORT void call_guarded(const std::string& stage, std::optional<std::uint32_t> frame,
                                     void (*function)(void*), void* argument);
 

@@ -7,9 +7,10 @@
 
 namespace stillpoint {
 
-/// Each throws DamagedMap when a value is not finite or not valid: images larger than 16,384 px,
-/// positions beyond 10,000 km, matrices that are no rotations, features outside the image or the
-/// pyramid.
+/// check_values() throws DamagedMap when a value is not finite or not valid: images larger than
+/// 16,384 px, positions beyond 10,000 km, matrices that are no rotations, features outside the
+/// image or the pyramid.
+bool possible(const Camera& camera);
 void check_values(const Camera& camera);
 void check_values(const Landmark& landmark);
 void check_values(const KeyFrame& keyframe);

@@ -1,6 +1,7 @@
 // Outputs beside thread 1: slow ones do not delay tracking.
 #pragma once
 
+#include <deque>
 #include <functional>
 #include <memory>
 #include <string>
@@ -30,8 +31,8 @@ class OutputStage {
   void frame(FrameReportPtr report);
   /// Hands over what waits and ends the thread. No frame() may follow.
   void end();
-  /// After end(). Every output is finished, with `summary` as it is then; the first failure stops
-  /// the run.
+  /// After end(). Every output that is usable is finished, with `summary` as it is then; the first
+  /// failure stops the run.
   void finish(const std::function<RunSummary()>& summary);
   /// Reports left out. After end().
   int dropped() const { return dropped_; }
@@ -44,7 +45,7 @@ class OutputStage {
   const std::string label_;  // of its times
   StopSignal& stop_;
   TimeLog& times_;
-  std::vector<StageCaller<Output>> outputs_;
+  std::deque<StageCaller<Output>> outputs_;
   int dropped_ = 0;  // of thread 1
   BoundedQueue<FrameReportPtr> queue_;
   std::jthread thread_;  // last: it uses all the others

@@ -1,6 +1,7 @@
 // How the runtime calls a stage.
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -37,16 +38,24 @@ class StageCaller {
   template <class Function, class... Arguments>
   auto call_unmeasured(std::optional<std::uint32_t> frame, Function function,
                        Arguments&&... arguments) {
-    return in_stage(name_, frame, [&] {
-      return std::invoke(function, *object_, std::forward<Arguments>(arguments)...);
-    });
+    try {
+      return in_stage(name_, frame, [&] {
+        return std::invoke(function, *object_, std::forward<Arguments>(arguments)...);
+      });
+    } catch (const StageError& error) {
+      if (error.ended_the_call()) usable_ = false;
+      throw;
+    }
   }
 
   bool present() const { return present_; }
+  /// False once a guard had to end a call: another one could hang on locks that are still held.
+  bool usable() const { return usable_; }
   Interface& object() const { return *object_; }
 
  private:
   bool present_;
+  std::atomic<bool> usable_{true};  // calls may come from several threads
   std::shared_ptr<Interface> object_;
   std::string name_;
   TimeLog& times_;

@@ -19,6 +19,8 @@ class STILLPOINT_EXPORT AtomicFile {
   AtomicFile& operator=(const AtomicFile&) = delete;
 
   std::ostream& stream() { return stream_; }
+  /// Where it is meanwhile, for what writes to a file by its name.
+  const std::filesystem::path& temporary() const { return temporary_; }
   /// Throws Error when what was written so far finds no room: before the commit() of the first of
   /// several files that belong together.
   void flush();
