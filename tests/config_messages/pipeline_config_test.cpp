@@ -243,6 +243,16 @@ TEST_F(PipelineConfigTest, NamesAreFoundInTheConfigFolders) {
   unsetenv("STILLPOINT_CONFIG_PATH");
 }
 
+TEST_F(PipelineConfigTest, OutputsSayWhatHappensWhenTheyAreTooSlow) {
+  write("p.yaml", std::string(kSource) +
+                      "outputs: [{type: trajectory}, {type: trajectory, when_full: drop}, "
+                      "{type: trajectory, when_full: wait}]\n");
+  const PipelineConfig config = load({.pipeline = "p.yaml"});
+  EXPECT_EQ(config.outputs[0].options.when_full, WhenFull::kAuto);
+  EXPECT_EQ(config.outputs[1].options.when_full, WhenFull::kDrop);
+  EXPECT_EQ(config.outputs[2].options.when_full, WhenFull::kWait);
+}
+
 TEST_F(PipelineConfigTest, CameraFilesAreWrittenAndRead) {
   CameraModel camera;
   camera.name = "made";

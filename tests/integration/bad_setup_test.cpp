@@ -70,6 +70,13 @@ TEST_F(BadSetup, KeysThatAreNestedTooDeeply) {
   expect_refused(run("orb_baseline", on_recording({"--set", key + "=1"})), "nested too deeply");
 }
 
+TEST_F(BadSetup, PicturesOutsideTheRunFolder) {
+  for (const char* folder : {"/tmp", "..", "a/../..", ".", "''"})
+    expect_refused(run("orb_baseline", on_recording({"--with", "images", "--with",
+                                                     std::string("images.folder=") + folder})),
+                   "folder must be a name below the run folder");
+}
+
 TEST_F(BadSetup, RunFolderThatCannotBeWritten) {
   const fs::path file = folder_.write("file", "");
   const Outcome outcome = call({"run", "orb_baseline", "--dataset", simulated_recording().string(),

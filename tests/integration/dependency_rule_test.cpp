@@ -150,5 +150,33 @@ TEST(DependencyRule, LibrariesOfTheToolsDoNotKnowTheRuntime) {
       expect_none_begins(kRoot / "tools" / tool, {"stillpoint/engine", "stillpoint/runtime"});
 }
 
+// "stillpoint::orb_slam" of "namespace stillpoint::orb_slam {", of all such lines of a file.
+std::set<std::string> namespaces_in(const fs::path& file) {
+  static const std::regex kBegin(R"(namespace (stillpoint[a-z0-9_:]*) \{.*)");
+  std::set<std::string> names;
+  std::ifstream stream(file);
+  for (std::string line; std::getline(stream, line);) {
+    std::smatch match;
+    if (std::regex_match(line, match, kBegin)) names.insert(match[1]);
+  }
+  return names;
+}
+
+TEST(DependencyRule, NamespacesAreThoseOfTheirFolders) {
+  for (const char* parent : {"plugins", "core/libraries", "tools"})
+    for (const std::string& folder : folders_in(kRoot / parent)) {
+      const std::string name = folder == "stillpoint" ? folder : "stillpoint::" + folder;
+      for (const fs::directory_entry& entry : fs::directory_iterator(kRoot / parent / folder)) {
+        if (!is_source(entry.path())) continue;
+        std::set<std::string> found = namespaces_in(entry.path());
+        found.erase("stillpoint::testing");
+        EXPECT_TRUE(found.empty() || found == std::set{name}) << entry.path();
+        if (entry.path().extension() == ".hpp") {
+          EXPECT_FALSE(found.empty()) << entry.path();
+        }
+      }
+    }
+}
+
 }  // namespace
 }  // namespace stillpoint

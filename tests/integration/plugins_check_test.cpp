@@ -68,6 +68,14 @@ TEST(PluginsCheck, StagesThatReadARecordingAreCheckedWithOne) {
   EXPECT_THAT(outcome.err, HasSubstr("nothing could be checked"));
 }
 
+TEST(PluginsCheck, ATypeThatCannotBeMadeIsNotPassedOver) {
+  const Outcome outcome = call({"plugins", "check", library(kBad, "second_good")});
+  EXPECT_EQ(outcome.exit_code, 2) << outcome.out;
+  EXPECT_THAT(outcome.out, HasSubstr("not checked: moving_checker (needs_model): no model"));
+  EXPECT_THAT(outcome.out, HasSubstr("0 failed"));
+  EXPECT_THAT(outcome.err, HasSubstr("moving_checker/needs_model: could not be checked"));
+}
+
 TEST(PluginsCheck, TheSegNetPasses) {
   const Outcome outcome =
       call({"plugins", "check", library(kShipped, "segmenter_segnet"), "--set",
