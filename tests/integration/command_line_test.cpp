@@ -80,6 +80,33 @@ TEST(Completion, OfValues) {
               Each(AnyOf(StartsWith("fr3_walking_x"), StartsWith("<"))));
 }
 
+/// What bash offers after `stillpoint LINE`, whose words it cuts at '='.
+std::vector<std::string> offered_by_bash(const std::string& line) {
+  const std::string script =
+      std::string(STILLPOINT_SOURCE_DIR) + "/tools/stillpoint/completion/stillpoint.bash";
+  const Outcome outcome =
+      call({"-c",
+            "source \"$1\"; COMP_LINE=\"stillpoint $2\"; COMP_POINT=${#COMP_LINE}\n"
+            "COMP_WORDS=(\"$0\" ${2//=/ = }); [[ $2 == *' ' ]] && COMP_WORDS+=('')\n"
+            "COMP_CWORD=$((${#COMP_WORDS[@]} - 1)); compopt() { :; }\n"
+            "_stillpoint; printf '%s\\n' \"${COMPREPLY[@]}\"",
+            program_file(), script, line},
+           {.program = "/bin/bash"});
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  std::vector<std::string> words;
+  std::istringstream lines(outcome.out);
+  for (std::string word; std::getline(lines, word);) words.push_back(word);
+  return words;
+}
+
+TEST(Completion, InBash) {
+  EXPECT_THAT(offered_by_bash("r"), ElementsAre("record", "report", "run"));
+  EXPECT_THAT(offered_by_bash("plugins "), Contains("describe"));
+  EXPECT_THAT(offered_by_bash("run --set a=b orb_b"), Contains("orb_baseline"));
+  EXPECT_THAT(offered_by_bash("map render " STILLPOINT_SOURCE_DIR "/READ"),
+              ElementsAre(STILLPOINT_SOURCE_DIR "/README.md"));
+}
+
 class CommandLineRun : public ::testing::Test {
  protected:
   Outcome run(std::vector<std::string> arguments) const {
