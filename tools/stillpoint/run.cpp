@@ -54,11 +54,11 @@ class FolderBegin final : public Output {
  public:
   FolderBegin(RunFolder& folder, std::string effective_yaml)
       : folder_(folder), effective_yaml_(std::move(effective_yaml)) {}
-  void frame(const FrameReport&) override { begin(); }
-  void finish(const RunSummary&) override { begin(); }  // of a source without a frame
+  void frame(const FrameReport&) override { begin_once(); }
+  void finish(const RunSummary&) override { begin_once(); }  // of a source without a frame
 
  private:
-  void begin() {
+  void begin_once() {
     if (!folder_.has_begun()) folder_.begin(effective_yaml_);
   }
 
