@@ -251,7 +251,7 @@ TEST_P(StageThatCrashes, IsNotCalledAgain) {
           with_plugins());
   EXPECT_EQ(outcome.exit_code, kStageFailed) << outcome.signal;
   EXPECT_THAT(outcome.err, HasSubstr(std::string("error: ") + crashing.message));
-  EXPECT_GE(count_poses(out() / "trajectory.txt"), 3u);
+  EXPECT_GE(count_poses(out() / "trajectory.txt"), 1u);
   EXPECT_THAT(json_file(out() / "summary.json")["failure"].get<std::string>(),
               ::testing::StartsWith(crashing.message));
 }
