@@ -26,7 +26,8 @@ bool is_output_picture(const fs::path& file) {
 // Otherwise pictures of an earlier run would remain among those of this one.
 void remove_pictures(const fs::path& folder) {
   std::vector<fs::path> pictures;
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder))
+  std::error_code none;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder, none))
     if (is_output_picture(entry.path())) pictures.push_back(entry.path());
   for (const fs::path& picture : pictures) fs::remove(picture);
 }
@@ -35,10 +36,10 @@ void remove_pictures(const fs::path& folder) {
 
 ImageOutput::ImageOutput(const Options& options, const StageContext& context)
     : options_(options), folder_(context.output_directory / options.folder) {
-  std::error_code error;
-  std::filesystem::create_directories(folder_, error);
-  if (error)
-    throw Error(Fault::kUsage, "cannot make the folder: " + error.message(), folder_.string());
+  std::error_code none;
+  if (fs::exists(folder_, none) && !fs::is_directory(folder_, none))
+    throw Error(Fault::kUsage, "is no folder: pictures cannot be written into it", folder_.string(),
+                "choose another one with its option folder");
   if (options.worst == 0) return;
   for (const Badness& badness : {Badness(exclusion), Badness(lack_of_inliers), loss()})
     worst_.emplace_back(static_cast<std::size_t>(options.worst), badness);

@@ -16,7 +16,7 @@ namespace fs = std::filesystem;
 /// Leaves what is there as it is.
 void require_writable(const fs::path& file) {
   std::error_code none;
-  const bool was_there = fs::exists(file, none);
+  const bool was_there = fs::exists(fs::symlink_status(file, none));
   if (!std::ofstream(file, std::ios::binary | std::ios::app))
     throw Error(Fault::kUsage, file.string() + " cannot be written: " + std::strerror(errno),
                 "record", "give another name");
@@ -49,7 +49,10 @@ void Recorder::write(std::string_view message) {
   stream_ << unwritten_ << std::flush;
   unwritten_.clear();
   if (!stream_)
-    throw Error(Fault::kUsage, "no room for the recording of the live view", file_.string());
+    throw Error(
+        Fault::kUsage,
+        std::string("the recording of the live view cannot be written: ") + std::strerror(errno),
+        file_.string());
 }
 
 }  // namespace stillpoint::output_web

@@ -42,6 +42,7 @@ class WebOutput final : public Output {
   void begin(const std::shared_ptr<LiveRun>& run) override;
   void frame(const FrameReport& report) override;
   void finish(const RunSummary& summary) override;
+  void ended_before_first_frame(const RunSummary& summary) override { finish(summary); }
 
   /// What a browser is to open, token included.
   const std::string& url() const { return url_; }

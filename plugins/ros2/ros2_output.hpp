@@ -43,6 +43,7 @@ class Ros2Output final : public Output {
   bool may_miss_frames() const override { return true; }
   void frame(const FrameReport& report) override;
   void finish(const RunSummary& summary) override;
+  void ended_before_first_frame(const RunSummary& summary) override { finish(summary); }
 
  private:
   struct Topics {

@@ -146,6 +146,7 @@ std::optional<Frame> Ros2Source::frame_of_waiting() {
                         [&] { return rectifier_->frame(color.time, color.pixels, depth.pixels); });
   frame.index = given_++;
   last_time_ = frame.time;
+  missing_.add(frame.time);
   return frame;
 }
 
@@ -164,7 +165,13 @@ void Ros2Source::fail(const Reader& missing) const {
 
 SourceReport Ros2Source::report() const {
   SourceReport report;
-  report.skipped = unpaired_ + backwards_;
+  const std::size_t missing = missing_.count();
+  report.skipped = unpaired_ + backwards_ + missing;
+  if (missing > 0)
+    report.warnings.push_back(
+        text_of("about ", missing,
+                " frames are missing, by the times of the others: lost on the way, or newer ones "
+                "came before they could be used (queue_size, reliable)"));
   if (unpaired_ > 0)
     report.warnings.push_back(text_of(unpaired_, " images had no partner of the same time"));
   if (backwards_ > 0)

@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 
+#include "ros2/missing_frames.hpp"
 #include "ros2/participant.hpp"
 #include "stillpoint/sdk.hpp"
 #include "stillpoint/support/rectifier.hpp"
@@ -66,6 +67,7 @@ class Ros2Source final : public Source {
   double last_time_ = 0.0;     // of the last frame, seconds
   std::size_t unpaired_ = 0;   // images
   std::size_t backwards_ = 0;  // pairs that are not later than the one before
+  MissingFrames missing_;
 };
 
 }  // namespace stillpoint::ros2

@@ -128,6 +128,34 @@ TEST_F(Ros2SourceTest, DropsImagesWithoutPartner) {
   EXPECT_THAT(source().report().warnings, ElementsAre(HasSubstr("2 images had no partner")));
 }
 
+// The queue keeps the newest: 6 to 9 are given, 5 has no partner.
+TEST_F(Ros2SourceTest, CountsFramesThatCameTooFast) {
+  options_.queue_size = 12;
+  info();
+  for (int i = 0; i < 30; ++i) {
+    if (i == 17 || i == 18) continue;  // lost on the way
+    color(i);
+    depth(i);
+    if (i == 11) {
+      for (int k = 0; k < 12; ++k) ASSERT_TRUE(source().next());
+    }
+  }
+  std::size_t given = 12;
+  while (source().next()) ++given;
+  EXPECT_EQ(given, 24U);  // 16 to 29 are waiting then, without 17 and 18
+  EXPECT_EQ(source().report().skipped, 6U);
+  EXPECT_THAT(source().report().warnings, ElementsAre(HasSubstr("about 6 frames are missing")));
+}
+
+TEST(MissingFrames, AreCountedByTheShorterIntervals) {
+  MissingFrames frames;
+  for (const int i : {0, 2, 4, 5, 7, 9, 10, 12, 14, 16}) frames.add(7.0 + i / 30.0);
+  EXPECT_EQ(frames.count(), 7U);
+  MissingFrames few;
+  for (const int i : {0, 1, 20}) few.add(i / 30.0);
+  EXPECT_EQ(few.count(), 0U);
+}
+
 TEST_F(Ros2SourceTest, PairsStampsThatDiffer) {
   options_.approximate = true;
   info();

@@ -256,6 +256,34 @@ TEST_P(StageThatCrashes, IsNotCalledAgain) {
               ::testing::StartsWith(crashing.message));
 }
 
+TEST_F(BadPlugins, AnOutputInWhoseCallAnotherStageCrashesIsFinished) {
+  const Outcome outcome = run("orb_baseline",
+                              on_recording({"--set", "map_backend.type=crashes_then_hangs", "--set",
+                                            "outputs=[{type: dense_map_reader}, {type: summary}]",
+                                            "--set", "runtime.mode=inline"}),
+                              with_plugins());
+  EXPECT_EQ(outcome.exit_code, kStageFailed) << outcome.signal;
+  EXPECT_THAT(outcome.err, HasSubstr("dense mapping (crashes_then_hangs) failed: it crashed"));
+  EXPECT_TRUE(fs::exists(out() / "finished.txt"));
+  EXPECT_FALSE(json_file(out() / "summary.json")["complete"]);
+}
+
+TEST_F(BadPlugins, CtrlCBeforeTheFirstFrameLeavesEarlierResults) {
+  for (const char* mode : {"inline", "threaded"}) {
+    ASSERT_EQ(run("orb_baseline", on_recording()).exit_code, 0);
+    const std::string summary = text_of(out() / "summary.json");
+    Program program(command("orb_baseline", {"--set", "source={type: slow_camera}", "--set",
+                                             std::string("runtime.mode=") + mode}),
+                    with_plugins());
+    ASSERT_TRUE(program.wait_for("the camera begins"));
+    program.send(SIGINT);
+    const Outcome outcome = program.finish();
+    EXPECT_EQ(outcome.signal, SIGINT);
+    EXPECT_THAT(outcome.err, HasSubstr("stopped before the first frame; nothing was written"));
+    EXPECT_EQ(text_of(out() / "summary.json"), summary);
+  }
+}
+
 using StageThatWritesToImages = StageThatMisbehaves;
 INSTANTIATE_TEST_SUITE_P(
     Modes, StageThatWritesToImages,

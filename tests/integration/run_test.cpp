@@ -180,19 +180,20 @@ TEST_F(Run, EarlierRunInTheFolderStaysWhenNoFrameIsUsable) {
   const TemporaryFolder folder;
   const fs::path camera = folder.write(
       "small.yaml", "camera: {width: 320, height: 240, fx: 262, fy: 262, cx: 160, cy: 120}\n");
-  std::vector<std::string> arguments = {"--dataset",
-                                        simulated_recording().string(),
-                                        "--set",
-                                        "source.limit=2",
-                                        "--set",
-                                        "map_backend.type=octomap",
-                                        "--set",
-                                        "outputs=[{type: trajectory}, {type: images, every: 1}, "
-                                        "{type: web, port: 0, record: w.html}]"};
+  std::vector<std::string> arguments = {
+      "--dataset",
+      simulated_recording().string(),
+      "--set",
+      "source.limit=2",
+      "--set",
+      "map_backend.type=octomap",
+      "--set",
+      "outputs=[{type: trajectory}, {type: timings}, {type: mcap}, {type: images, every: 1}, "
+      "{type: web, port: 0, record: w.html}]"};
   ASSERT_EQ(run("same", "orb_baseline", arguments).exit_code, 0);
   std::vector<fs::path> files;
-  for (const char* name :
-       {"trajectory.txt", "log.txt", "pipeline.yaml", "images/000001.jpg", "map/map.ot", "w.html"})
+  for (const char* name : {"trajectory.txt", "run.mcap", "log.txt", "pipeline.yaml",
+                           "images/000001.jpg", "map/map.ot", "w.html"})
     files.push_back(out() / "same" / name);
   std::vector<std::string> texts;
   for (const fs::path& file : files) texts.push_back(text_of(file));
@@ -204,8 +205,10 @@ TEST_F(Run, EarlierRunInTheFolderStaysWhenNoFrameIsUsable) {
     EXPECT_THAT(outcome.err, HasSubstr("source (tum_rgbd) failed on frame 0"));
     for (std::size_t i = 0; i < files.size(); ++i)
       EXPECT_TRUE(text_of(files[i]) == texts[i]) << files[i] << ", " << mode;
-    EXPECT_EQ(run("new", "orb_baseline", arguments).exit_code, 3);
-    EXPECT_FALSE(fs::exists(out() / "new")) << mode;
+    EXPECT_THAT(outcome.err, HasSubstr("same still holds an earlier run"));
+    EXPECT_EQ(run(mode, "orb_baseline", arguments).exit_code, 3);
+    EXPECT_THAT(text_of(out() / mode / "log.txt"), HasSubstr("failed: source (tum_rgbd) failed"));
+    EXPECT_EQ(std::distance(fs::directory_iterator(out() / mode), {}), 2) << "and pipeline.yaml";
   }
 }
 
@@ -301,6 +304,9 @@ TEST_F(Run, EarlierPicturesDoNotOutliveTheirRun) {
   EXPECT_TRUE(fs::exists(images / "mine.jpg"));
   fs::remove(images / "mine.jpg");
   run_with({"--set", every_frame});
+  run_with({"--set", "outputs=[{type: images, every: 2}]"});
+  EXPECT_FALSE(fs::exists(images / "000001.jpg"));
+  EXPECT_TRUE(fs::exists(images / "000002.jpg"));
   run_with({});
   EXPECT_FALSE(fs::exists(images));
 }

@@ -1,6 +1,7 @@
 // stillpoint run: a recording through a pipeline, and what comes out into a run folder.
 #include <csignal>
 #include <cstdlib>
+#include <exception>
 #include <filesystem>
 #include <functional>
 #include <iostream>
@@ -57,13 +58,23 @@ class FolderBegin final : public Output {
   void frame(const FrameReport&) override { begin_once(); }
   void finish(const RunSummary&) override { begin_once(); }  // of a source without a frame
 
+  /// What is wrong with the folder; null: nothing.
+  std::exception_ptr failure() const { return failure_; }
+
  private:
   void begin_once() {
-    if (!folder_.has_begun()) folder_.begin(effective_yaml_);
+    if (folder_.has_begun() || failure_) return;
+    try {
+      folder_.begin(effective_yaml_);
+    } catch (...) {
+      failure_ = std::current_exception();
+      throw;
+    }
   }
 
   RunFolder& folder_;
   const std::string effective_yaml_;
+  std::exception_ptr failure_;
 };
 
 template <class Function>
@@ -74,9 +85,11 @@ auto in_source(const Stages& stages, Function function) {
 
 // Runs, and prints the table also when a stage has failed: what was computed is saved. Whether the
 // run came to its end.
-bool run_and_print(Stages stages, const PipelineConfig& config, const RunFolder& folder, bool quiet,
+bool run_and_print(Stages stages, const PipelineConfig& config, RunFolder& folder, bool quiet,
                    std::stop_token stop) {
   const fs::path ground_truth = in_source(stages, &Source::ground_truth);
+  const auto begin = std::make_shared<FolderBegin>(folder, config.effective_yaml);
+  stages.outputs.insert(stages.outputs.begin(), {{begin, "run folder"}});
   const auto table = std::make_shared<RunTable>();
   stages.outputs.push_back({{table, "table"}});
   const auto end = [&] {
@@ -90,7 +103,11 @@ bool run_and_print(Stages stages, const PipelineConfig& config, const RunFolder&
     engine.run(std::move(stop));
   } catch (const Error& error) {
     end();
+    if (begin->failure()) std::rethrow_exception(begin->failure());
+    if (!folder.has_begun() && !folder.holds_earlier_run()) folder.begin(config.effective_yaml);
     folder.log(LogLevel::kInfo, std::string("failed: ") + error.what());
+    if (!folder.has_begun())
+      folder.log(LogLevel::kWarning, folder.path().string() + " still holds an earlier run");
     if (StageGuard::has_ended_a_call()) {  // nothing more of its plugin is to be run
       std::cerr << "error: " << error.what() << std::endl;
       std::_Exit(error.exit_code());
@@ -122,7 +139,8 @@ void warn_of_labels(const PipelineConfig& config, const RunFolder& folder) {
         "segmentation.interval means nothing with schedule 'wait': every frame is segmented");
 }
 
-void run(const RunArguments& arguments) {
+/// Gives the signal that has stopped it, or 0.
+int run(const RunArguments& arguments) {
   std::optional<LateCalls> loading(watch_loading());
   Registry registry;
   PipelineRequest request = arguments.request;
@@ -148,9 +166,6 @@ void run(const RunArguments& arguments) {
     folder.log(level, text);
     if (level == LogLevel::kInfo) console.note(std::string(text));
   });
-  stages.outputs.insert(
-      stages.outputs.begin(),
-      {{std::make_shared<FolderBegin>(folder, config.effective_yaml), "run folder"}});
   if (!arguments.quiet)
     stages.outputs.push_back(
         {{std::make_shared<Progress>(console, in_source(stages, &Source::size)), "progress"}});
@@ -165,11 +180,13 @@ void run(const RunArguments& arguments) {
     complete = run_and_print(std::move(stages), config, folder, arguments.quiet, interrupt.token());
     signal = Interrupt::signal();
   }
-  if (complete && signal == 0) return folder.log(LogLevel::kInfo, "done");
-  folder.log(LogLevel::kWarning, folder.has_begun()
-                                     ? "stopped; what was computed until then is saved"
-                                     : "stopped before the first frame; nothing was written");
-  if (signal != 0) std::raise(signal);  // so that a calling script sees that it was interrupted
+  if (complete && signal == 0)
+    folder.log(LogLevel::kInfo, "done");
+  else if (folder.has_begun())
+    folder.log(LogLevel::kWarning, "stopped; what was computed until then is saved");
+  else
+    folder.log(LogLevel::kWarning, "stopped before the first frame; nothing was written");
+  return signal;
 }
 
 }  // namespace
@@ -205,7 +222,10 @@ void add_run(CLI::App& app) {
       ->add_flag("--localise-only", arguments->localise_only,
                  "Only localise in the loaded map, without changing it")
       ->needs(load);
-  command->callback([arguments] { run(*arguments); });
+  command->callback([arguments] {
+    // A calling script sees that it was interrupted.
+    if (const int signal = run(*arguments)) std::raise(signal);
+  });
 }
 
 }  // namespace stillpoint

@@ -23,9 +23,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kResults[] = {"pipeline.yaml", "log.txt",     "trajectory.txt",
-                                    "keyframes.txt", "timings.csv", "frames.csv",
-                                    "summary.json",  "run.mcap",    "sparse.map"};
+constexpr const char* kLog = "log.txt";
+constexpr const char* kResults[] = {"pipeline.yaml", "trajectory.txt", "keyframes.txt",
+                                    "timings.csv",   "frames.csv",     "summary.json",
+                                    "run.mcap",      "sparse.map"};
 constexpr const char* kMaps[] = {"map.ot", "map.bt", "map.ply", "map.pgm", "map.yaml", "cloud.ply"};
 
 bool is_number(std::string_view text) {
@@ -70,6 +71,7 @@ bool is_log_of_a_run(const fs::path& file) {
   return std::regex_search(line, kBegin, std::regex_constants::match_continuous);
 }
 
+/// Files that a killed run has left.
 std::vector<fs::path> unfinished_in(const fs::path& run) {
   std::vector<fs::path> files;
   std::error_code none;
@@ -79,9 +81,10 @@ std::vector<fs::path> unfinished_in(const fs::path& run) {
   return files;
 }
 
-/// Maps and pictures, by their names: nothing else in these folders is the program's.
+/// All but the log, by their names: nothing else in these folders is the program's.
 std::vector<fs::path> files_of_a_run(const fs::path& folder) {
   std::vector<fs::path> files;
+  for (const char* name : kResults) files.push_back(folder / name);
   for (const char* name : kMaps) files.push_back(folder / "map" / name);
   std::error_code none;
   for (const auto& entry : fs::directory_iterator(folder / "images", none))
@@ -116,33 +119,34 @@ RunFolder::RunFolder(fs::path path, Console& console) : path_(std::move(path)), 
   if (error) fail(path_, error.message());
   lock_.emplace(path_);
   if (::access(path_.c_str(), W_OK) != 0) fail(path_, std::strerror(errno));
-  unfinished_ = unfinished_in(path_);
-  if (is_log_of_a_run(path_ / "log.txt"))
-    note_earlier_files();
-  else
-    require_no_results();
+  holds_earlier_run_ = is_log_of_a_run(path_ / kLog);
+  if (!holds_earlier_run_) require_no_results();
+  for (const auto& files : {files_of_a_run(path_), unfinished_in(path_)})
+    for (const fs::path& file : files)
+      if (const auto written = fs::last_write_time(file, error); !error)
+        earlier_files_.emplace_back(file, written);
 }
 
 RunFolder::~RunFolder() {
   std::error_code ignored;
-  if (!made_ || begun_) return;
-  fs::remove(path_ / "images", ignored);  // of an output, empty
-  fs::remove(path_, ignored);
+  if (made_ && !begun_) fs::remove(path_, ignored);
 }
 
 void RunFolder::begin(const std::string& effective_yaml) {
+  begin_log();
   begun_ = true;
-  remove_earlier_results();
   remove_earlier_files();
   std::ofstream yaml(path_ / "pipeline.yaml");
   if (!(yaml << effective_yaml << std::flush)) fail(path_ / "pipeline.yaml", std::strerror(errno));
+}
+
+void RunFolder::begin_log() {
   const std::lock_guard lock(mutex_);
   try {
-    auto sink =
-        std::make_shared<spdlog::sinks::basic_file_sink_mt>((path_ / "log.txt").string(), true);
+    auto sink = std::make_shared<spdlog::sinks::basic_file_sink_mt>((path_ / kLog).string(), true);
     log_ = std::make_shared<spdlog::logger>("run", std::move(sink));
   } catch (const spdlog::spdlog_ex& exception) {
-    fail(path_ / "log.txt", exception.what());
+    fail(path_ / kLog, exception.what());
   }
   log_->set_pattern("%Y-%m-%d %H:%M:%S.%e  %l  %v");
   log_->set_level(spdlog::level::debug);
@@ -162,20 +166,16 @@ void RunFolder::log(LogLevel level, std::string_view text) const {
   if (level == LogLevel::kError) console_.line("error: " + std::string(text));
 }
 
-void RunFolder::note_earlier_files() {
-  for (const fs::path& file : files_of_a_run(path_)) {
-    std::error_code missing;
-    const fs::file_time_type written = fs::last_write_time(file, missing);
-    if (!missing) earlier_files_.emplace_back(file, written);
-  }
-}
-
 // What has another time now is this run's already.
 void RunFolder::remove_earlier_files() const {
-  std::error_code ignored;
+  if (holds_earlier_run_)
+    console_.note("note: " + path_.string() + " holds an earlier run, which is overwritten");
   for (const auto& [file, written] : earlier_files_) {
-    if (fs::last_write_time(file, ignored) == written && !ignored) fs::remove(file, ignored);
-    fs::remove(file.parent_path(), ignored);  // if nothing is left in it
+    std::error_code error;
+    if (fs::last_write_time(file, error) != written || error) continue;
+    fs::remove(file, error);
+    if (error) fail(file, error.message());
+    if (file.parent_path() != path_) fs::remove(file.parent_path(), error);  // once it is empty
   }
 }
 
@@ -191,25 +191,12 @@ std::vector<std::string> RunFolder::contents() const {
 // maps and numbered pictures.
 void RunFolder::require_no_results() const {
   std::vector<fs::path> names = files_of_a_run(path_);
-  for (const char* name : kResults) names.push_back(path_ / name);
+  names.push_back(path_ / kLog);
   std::error_code none;
   for (const fs::path& file : names)
     if (fs::exists(file, none))
       throw Error(Fault::kUsage, "is no file of an earlier run, and would be replaced",
                   file.string(), "choose another folder with -o, or move it");
-}
-
-void RunFolder::remove_earlier_results() const {
-  std::error_code error;
-  bool found = false;
-  for (const fs::path& file : unfinished_) fs::remove(file, error);
-  error.clear();
-  for (const char* name : kResults) {
-    found = fs::remove(path_ / name, error) || found;
-    if (error) fail(path_ / name, error.message());
-  }
-  if (found)
-    console_.note("note: " + path_.string() + " holds an earlier run, which is overwritten");
 }
 
 }  // namespace stillpoint

@@ -21,8 +21,8 @@ class logger;
 
 namespace stillpoint {
 
-/// Made with its parents, and nobody else's until the end of the process. What an earlier run has
-/// left in it stays until begin().
+/// Made with its parents, and nobody else's until the end of the process. Results of an earlier run
+/// stay as they are until begin().
 class RunFolder {
  public:
   /// Throws Error(kUsage) when the folder cannot be written, another run is writing into it, or it
@@ -33,8 +33,11 @@ class RunFolder {
   RunFolder(const RunFolder&) = delete;
   RunFolder& operator=(const RunFolder&) = delete;
 
-  /// Once a frame is through, and so all that the run needs is good: removes results of an earlier
-  /// run and writes pipeline.yaml and log.txt. Throws Error(kUsage) when that is not possible.
+  /// Whether an earlier run has left its log.
+  bool holds_earlier_run() const { return holds_earlier_run_; }
+  /// Once a frame is through, and so all that the run needs is good: begins the log, removes
+  /// results of an earlier run and writes pipeline.yaml. Throws Error(kUsage) when that is not
+  /// possible.
   void begin(const std::string& effective_yaml);
   bool has_begun() const { return begun_; }
 
@@ -46,20 +49,19 @@ class RunFolder {
 
  private:
   void require_no_results() const;
-  void remove_earlier_results() const;
-  void note_earlier_files();
+  void begin_log();
   void remove_earlier_files() const;
 
   std::filesystem::path path_;
   Console& console_;
   bool made_ = false;  // by this run
+  bool holds_earlier_run_ = false;
   std::atomic<bool> begun_ = false;
   std::optional<FolderLock> lock_;
-  std::vector<std::filesystem::path> unfinished_;  // by runs that were killed
   mutable std::mutex mutex_;
   std::shared_ptr<spdlog::logger> log_;                          // guarded, like early_
   mutable std::vector<std::pair<LogLevel, std::string>> early_;  // lines before begin()
-  // Maps and pictures of an earlier run, and when they were written.
+  // Of earlier runs, and when they were written.
   std::vector<std::pair<std::filesystem::path, std::filesystem::file_time_type>> earlier_files_;
 };
 

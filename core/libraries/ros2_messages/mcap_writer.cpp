@@ -114,7 +114,7 @@ McapWriter::McapWriter(std::filesystem::path file, Compression compression)
 
 McapWriter::~McapWriter() {
   try {
-    finish();
+    if (messages_ > 0) finish();
   } catch (const std::exception&) {  // of interest to those who call finish()
   }
 }

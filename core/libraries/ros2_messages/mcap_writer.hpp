@@ -29,7 +29,8 @@ class McapWriter {
  public:
   /// Replaces a file of that name, once there is something to write.
   explicit McapWriter(std::filesystem::path file, Compression compression = Compression::kZstd);
-  /// Finishes the file where finish() was not called; what then goes wrong stays unsaid.
+  /// Finishes a file with messages where finish() was not called; what then goes wrong stays
+  /// unsaid.
   ~McapWriter();
   McapWriter(const McapWriter&) = delete;
   McapWriter& operator=(const McapWriter&) = delete;

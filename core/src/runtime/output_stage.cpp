@@ -39,11 +39,12 @@ void OutputStage::end() {
   if (thread_.joinable()) thread_.join();
 }
 
-void OutputStage::finish(const std::function<RunSummary()>& summary) {
+void OutputStage::finish(void (Output::*last)(const RunSummary&),
+                         const std::function<RunSummary()>& summary) {
   for (StageCaller<Output>& output : outputs_) {
     if (!output.usable()) continue;
     try {
-      output.call_unmeasured({}, &Output::finish, summary());
+      output.call_unmeasured({}, last, summary());
     } catch (...) {
       stop_.fail(std::current_exception());
     }

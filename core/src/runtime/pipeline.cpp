@@ -230,15 +230,16 @@ void Pipeline::end_threads() {
   for (OutputStage& output : outputs_) output.end();
 }
 
-// What failed or was stopped before its first frame leaves what is there, of an earlier run.
 void Pipeline::finish_outputs() {
-  if (poses_.empty() && stop_.requested()) return;
+  const bool begun = !poses_.empty() || !stop_.requested();
   const MapStore::Snapshot map = mapping_.snapshot();
   const SourceReport source = feed_ ? feed_->report() : SourceReport();
   const std::vector<StageTime> times = times_.take();
-  if (!map_directory_.empty())
+  if (!map_directory_.empty() && begun)
     keep_failure_of([&] { map_is_saved_ = mapping_.save(map_directory_); });
-  for (OutputStage& output : outputs_) output.finish([&] { return summary(*map, source, times); });
+  const auto last = begun ? &Output::finish : &Output::ended_before_first_frame;
+  for (OutputStage& output : outputs_)
+    output.finish(last, [&] { return summary(*map, source, times); });
 }
 
 RunSummary Pipeline::summary(const SparseMap& map, const SourceReport& source,

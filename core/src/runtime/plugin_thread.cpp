@@ -80,11 +80,10 @@ void end_plugin_thread(int what, bool may_stop) {
   if (what == kExited) ::_exit(1);
 }
 
-std::optional<StageError> error_of_stopped_thread() {
+std::optional<EndedCall> end_of_stopped_thread() {
   if (stopped_thread.what == 0) return std::nullopt;
-  const EndedCall reason(reason_of(stopped_thread.what));
-  return StageError(std::string("a thread of ") + stopped_thread.library.data(), std::nullopt,
-                    &reason);
+  return EndedCall(reason_of(stopped_thread.what),
+                   std::string("a thread of ") + stopped_thread.library.data());
 }
 
 void prepare_for_plugin_threads() {

@@ -17,7 +17,6 @@ std::string place(const std::string& stage, std::optional<std::uint32_t> frame) 
 StageError::StageError(const std::string& stage, std::optional<std::uint32_t> frame,
                        const std::exception* cause)
     : Error(fault_of(cause), cause ? cause->what() : "an exception of unknown type",
-            place(stage, frame)),
-      ended_the_call_(dynamic_cast<const EndedCall*>(cause) != nullptr) {}
+            place(stage, frame)) {}
 
 }  // namespace stillpoint

@@ -14,6 +14,7 @@
 #include <memory>
 #include <mutex>
 #include <sstream>
+#include <utility>
 
 #include "../image_codec/codec_loading.hpp"
 #include "stillpoint/runtime/abnormal_end.hpp"
@@ -135,7 +136,7 @@ void load_image_codec(void (*load)()) {
 
 [[noreturn]] void fail(const Call& call, int what) {
   if (what == kGivenUp)
-    if (const auto error = error_of_stopped_thread()) throw StageError(*error);  // waited for it
+    if (auto ended = end_of_stopped_thread()) throw EndedCall(*ended);  // waited for it
   const std::string reason = reason_of(what);
   start_time_to_save(std::array{call.stage.c_str(), ": ", reason.c_str()});
   throw EndedCall(reason);
@@ -239,6 +240,9 @@ LateCalls::LateCalls(double patience_seconds, Late late) {
           watch(stop, patience_seconds, late);
         });
 }
+
+EndedCall::EndedCall(const std::string& reason, std::string thread)
+    : std::runtime_error(reason), thread_(std::move(thread)) {}
 
 void call_guarded(const std::string& stage, std::optional<std::uint32_t> frame,
                   void (*function)(void*), void* argument) {

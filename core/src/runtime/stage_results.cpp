@@ -167,13 +167,13 @@ void check_frame(const Frame& frame, std::uint32_t index, const Frame* previous)
   check_type(frame.gray, CV_8UC1, "the grey image");
   check_type(frame.depth, CV_32FC1, "the depth image");
   require_of_stage(frame.camera != nullptr, "the frame has no camera", "set Frame::camera");
-  require_of_stage(
-      possible(*frame.camera), "the camera of the frame has impossible values",
-      "focal lengths are at least 1 px, the noise of depth lies between 1e-6 and 100 m");
   require_of_stage(frame.gray.size() == cv::Size(frame.camera->width, frame.camera->height),
                    "the images have " + size_text(frame.gray.size()) + " pixels, the camera " +
                        size_text({frame.camera->width, frame.camera->height}),
                    "give images of the camera's size");
+  require_of_stage(possible(*frame.camera), "the camera of the frame has impossible values",
+                   "focal lengths lie between 1 and 1e6 px, the principal point within 1e6 px, the "
+                   "noise of depth between 1e-6 and 100 m");
   require_of_stage(!previous || previous->gray.size() == frame.gray.size(),
                    "the images have another size than those before",
                    "all images of a run have one size");

@@ -5,8 +5,10 @@
 #include <chrono>
 #include <condition_variable>
 #include <mutex>
+#include <optional>
 #include <utility>
 
+#include "stillpoint/engine/stage_error.hpp"
 #include "stillpoint/engine/stage_guard.hpp"
 #include "stillpoint/runtime/plugin_thread.hpp"
 
@@ -17,6 +19,12 @@ namespace {
 // ended leaves its locks behind, hence some patience.
 constexpr std::chrono::seconds kTimeToReturn{2};
 constexpr std::chrono::seconds kTimeToSave{10};
+
+std::optional<StageError> error_of_stopped_thread() {
+  const auto ended = end_of_stopped_thread();
+  if (!ended) return std::nullopt;
+  return StageError(ended->thread(), std::nullopt, &*ended);
+}
 
 void watch_threads(const std::stop_token& stop, const ThreadWatch::Ended& ended) {
   wait_for_stopped_thread();

@@ -46,7 +46,10 @@ TEST(MapValues, OfCameras) {
   refused(&Camera::fy, 0.0);
   refused(&Camera::cx, kNaN);
   refused(&Camera::cy, kInfinity);
-  refused(&Camera::depth_noise, -1.0);
+  refused(&Camera::depth_noise, 0.0);
+  refused(&Camera::depth_noise, 1e300);
+  refused(&Camera::surface_noise, -1.0);
+  refused(&Camera::surface_noise, kNaN);
 }
 
 TEST(MapValues, OfLandmarks) {

@@ -61,13 +61,13 @@ INSTANTIATE_TEST_SUITE_P(
                    [](Frame& f) {
                      f.camera = std::make_shared<Camera>(Camera{4, 3, kNan});
                    },
-                   "the camera of the frame has impossible values; focal lengths are"},
+                   "the camera of the frame has impossible values; focal lengths lie"},
         FrameFault{"NoNoise",
                    [](Frame& f) {
                      f.camera = std::make_shared<Camera>(
                          Camera{.width = 4, .height = 3, .surface_noise = 0});
                    },
-                   "the camera of the frame has impossible values; focal lengths are"},
+                   "the camera of the frame has impossible values; focal lengths lie"},
         FrameFault{"NanTime", [](Frame& f) { f.time = kNan; }, "time of the frame is not finite"},
         FrameFault{"Backwards", [](Frame& f) { f.time = 10.5; }, "0.500000 s older than the one"},
         FrameFault{"NoImage", [](Frame& f) { f.gray.release(); }, "the frame has no image"},

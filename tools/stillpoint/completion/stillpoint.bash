@@ -1,9 +1,16 @@
 # Completion of `stillpoint` for bash: the program itself says what can follow.
 _stillpoint() {
-  local word help current=${COMP_WORDS[COMP_CWORD]} line=${COMP_LINE:0:COMP_POINT}
-  local -a words  # COMP_WORDS are cut at '=' and ':'
-  read -ra words <<<"$line"
-  [[ $line == *[[:space:]] ]] && words+=("")
+  local word help joins=false current=${COMP_WORDS[COMP_CWORD]}
+  local -a words=("")
+  for word in "${COMP_WORDS[@]:1:COMP_CWORD}"; do  # cut at '=' and ':'
+    if [[ $word == [=:]* ]]; then
+      words[-1]+=$word joins=true
+    elif $joins; then
+      words[-1]+=$word joins=false
+    else
+      words+=("$word")
+    fi
+  done
   COMPREPLY=()
   while IFS=$'\t' read -r word help; do
     case $word in

@@ -87,7 +87,7 @@ struct RunSummary {
 class STILLPOINT_EXPORT Output {
  public:
   static constexpr const char* kKind = "output";
-  static constexpr std::uint32_t kApi = 6;  ///< see kPluginApi
+  static constexpr std::uint32_t kApi = 7;  ///< see kPluginApi
   virtual ~Output();
 
   /// Before the first frame of a run that its source drives; a program that gives the frames itself
@@ -99,10 +99,13 @@ class STILLPOINT_EXPORT Output {
   /// In order of the frames. Threaded, tracking is up to eight frames ahead and then waits, or
   /// frames are left out.
   virtual void frame(const FrameReport&) {}
-  /// Also called after a failure or Ctrl-C, once there was a frame: what was computed is saved. Not
-  /// after this output itself crashed or hung. After the last frame(), on thread 1; references are
-  /// valid during the call only.
+  /// Also called after a failure or Ctrl-C: what was computed is saved. Not after this output
+  /// itself crashed or hung. After the last frame(), on thread 1; references are valid during the
+  /// call only.
   virtual void finish(const RunSummary&) {}
+  /// Instead of finish(), when a run has failed or was stopped before its first frame: for outputs
+  /// that show or tell it. Files of an earlier run are to stay as they are.
+  virtual void ended_before_first_frame(const RunSummary&) {}
 };
 
 }  // namespace stillpoint

@@ -68,7 +68,12 @@ class STILLPOINT_EXPORT LateCalls {
 /// its locks may be held: it must not be called again.
 class STILLPOINT_EXPORT EndedCall final : public std::runtime_error {
  public:
-  using runtime_error::runtime_error;
+  /// `thread`: "a thread of FILE", if that was stopped and the call waited for it.
+  explicit EndedCall(const std::string& reason, std::string thread = {});
+  const std::string& thread() const { return thread_; }
+
+ private:
+  std::string thread_;
 };
 
 /// Calls `function(argument)`, which is the plugin's. Throws EndedCall when a guard had to end it.

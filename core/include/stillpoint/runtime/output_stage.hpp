@@ -31,9 +31,9 @@ class OutputStage {
   void frame(FrameReportPtr report);
   /// Hands over what waits and ends the thread. No frame() may follow.
   void end();
-  /// After end(). Every output that is usable is finished, with `summary` as it is then; the first
-  /// failure stops the run.
-  void finish(const std::function<RunSummary()>& summary);
+  /// After end(): `last` (Output::finish, or what is called instead) of every output that is
+  /// usable, with `summary` as it is then. The first failure stops the run.
+  void finish(void (Output::*last)(const RunSummary&), const std::function<RunSummary()>& summary);
   /// Reports left out. After end().
   int dropped() const { return dropped_; }
 

@@ -3,7 +3,7 @@
 
 #include <optional>
 
-#include "stillpoint/engine/stage_error.hpp"
+#include "stillpoint/engine/stage_guard.hpp"
 
 namespace stillpoint {
 
@@ -21,7 +21,7 @@ void end_plugin_thread(int what, bool may_stop);
 void prepare_for_plugin_threads();
 
 /// Of the first thread that was stopped. std::nullopt: none was.
-std::optional<StageError> error_of_stopped_thread();
+std::optional<EndedCall> end_of_stopped_thread();
 
 /// Before a thread waits.
 void prepare_wait_for_threads();

@@ -38,14 +38,10 @@ class StageCaller {
   template <class Function, class... Arguments>
   auto call_unmeasured(std::optional<std::uint32_t> frame, Function function,
                        Arguments&&... arguments) {
-    try {
-      return in_stage(name_, frame, [&] {
-        return std::invoke(function, *object_, std::forward<Arguments>(arguments)...);
-      });
-    } catch (const StageError& error) {
-      if (error.ended_the_call()) usable_ = false;
-      throw;
-    }
+    return in_stage(
+        name_, frame,
+        [&] { return std::invoke(function, *object_, std::forward<Arguments>(arguments)...); },
+        &usable_);
   }
 
   bool present() const { return present_; }

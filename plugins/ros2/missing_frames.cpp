@@ -1,0 +1,30 @@
+#include "ros2/missing_frames.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace stillpoint::ros2 {
+namespace {
+
+constexpr std::size_t kFewest = 9;  // intervals
+
+}  // namespace
+
+void MissingFrames::add(double time) {
+  if (std::exchange(any_, true)) intervals_.push_back(time - last_);
+  last_ = time;
+}
+
+std::size_t MissingFrames::count() const {
+  if (intervals_.size() < kFewest) return 0;
+  std::vector<double> sorted = intervals_;
+  const auto short_one = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 10);
+  std::ranges::nth_element(sorted, short_one);
+  std::size_t missing = 0;
+  for (const double interval : intervals_)
+    missing += static_cast<std::size_t>(std::max(std::lround(interval / *short_one) - 1, 0L));
+  return missing;
+}
+
+}  // namespace stillpoint::ros2

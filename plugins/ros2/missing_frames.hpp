@@ -1,0 +1,26 @@
+// How many frames did not come, by the times of those that did.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+namespace stillpoint::ros2 {
+
+/// Images are numbered nowhere: neither their messages nor DDS say how many were lost on the way or
+/// overwritten before they were taken.
+class MissingFrames {
+ public:
+  /// Time of a frame in seconds, later than that of the one before.
+  void add(double time);
+  /// An estimate, for a camera of constant rate; 0 with fewer than ten frames. A gap of n periods
+  /// counts as n - 1. The period is that of the shorter intervals: the median would be twice as
+  /// long if every other frame were missing.
+  std::size_t count() const;
+
+ private:
+  double last_ = 0.0;              // s
+  std::vector<double> intervals_;  // s
+  bool any_ = false;
+};
+
+}  // namespace stillpoint::ros2
