@@ -128,7 +128,7 @@ TEST_F(Ros2SourceTest, DropsImagesWithoutPartner) {
   EXPECT_THAT(source().report().warnings, ElementsAre(HasSubstr("2 images had no partner")));
 }
 
-// The queue keeps the newest: 6 to 9 are given, 5 has no partner.
+// After the first twelve, the queue keeps the newest twelve: 16 and 19 to 29.
 TEST_F(Ros2SourceTest, CountsFramesThatCameTooFast) {
   options_.queue_size = 12;
   info();
@@ -142,7 +142,7 @@ TEST_F(Ros2SourceTest, CountsFramesThatCameTooFast) {
   }
   std::size_t given = 12;
   while (source().next()) ++given;
-  EXPECT_EQ(given, 24U);  // 16 to 29 are waiting then, without 17 and 18
+  EXPECT_EQ(given, 24U);
   EXPECT_EQ(source().report().skipped, 6U);
   EXPECT_THAT(source().report().warnings, ElementsAre(HasSubstr("about 6 frames are missing")));
 }
