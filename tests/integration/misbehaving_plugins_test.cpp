@@ -272,8 +272,8 @@ TEST_F(BadPlugins, CtrlCBeforeTheFirstFrameLeavesEarlierResults) {
   for (const char* mode : {"inline", "threaded"}) {
     ASSERT_EQ(run("orb_baseline", on_recording()).exit_code, 0);
     const std::string summary = text_of(out() / "summary.json");
-    Program program(command("orb_baseline", {"--set", "source={type: slow_camera}", "--set",
-                                             std::string("runtime.mode=") + mode}),
+    Program program({"run", "orb_baseline", "-o", out().string(), "--set",
+                     "source={type: slow_camera}", "--set", std::string("runtime.mode=") + mode},
                     with_plugins());
     ASSERT_TRUE(program.wait_for("the camera begins"));
     program.send(SIGINT);

@@ -191,7 +191,7 @@ std::vector<std::string> RunFolder::contents() const {
 // maps and numbered pictures.
 void RunFolder::require_no_results() const {
   std::vector<fs::path> names = files_of_a_run(path_);
-  names.push_back(path_ / kLog);
+  names.insert(names.begin(), path_ / kLog);
   std::error_code none;
   for (const fs::path& file : names)
     if (fs::exists(file, none))

@@ -59,8 +59,17 @@ TEST_F(McapWriterTest, LargeMessagesEndAChunk) {
 }
 
 TEST_F(McapWriterTest, FinishesWhenDestroyed) {
-  McapWriter(file()).add_channel<Text>("/words");
+  {
+    McapWriter writer(file());
+    writer.write(writer.add_channel<Text>("/words"), 1, Text{"the last"});
+  }
   EXPECT_THAT(text(), AllOf(StartsWith(kMagic), EndsWith(kMagic)));
+}
+
+TEST_F(McapWriterTest, LeavesWhatIsThereWithoutMessages) {
+  std::ofstream(file()) << "of an earlier run";
+  McapWriter(file()).add_channel<Text>("/words");
+  EXPECT_EQ(text(), "of an earlier run");
 }
 
 std::string message_of_failure(const fs::path& file) {

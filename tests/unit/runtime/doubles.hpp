@@ -295,8 +295,13 @@ class FakeOutput final : public Output {
     ++finished;
     calls_.write("finish", 0);
   }
+  void ended_before_first_frame(const RunSummary& summary) override {
+    before_first_frame = true;
+    finish(summary);
+  }
 
   bool is_viewer = false;
+  bool before_first_frame = false;  // it ended then
   std::vector<StageTime> times;
   SparseMap map;
   std::vector<TrackedPose> poses;

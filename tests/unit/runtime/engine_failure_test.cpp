@@ -85,6 +85,7 @@ class FaultOfAStage : public ::testing::TestWithParam<Mode> {
       message = error.what();
     }
     EXPECT_EQ(f.output->finished, 1);
+    EXPECT_EQ(f.output->before_first_frame, f.output->poses.empty());
     return message;
   }
 };

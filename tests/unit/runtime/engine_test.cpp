@@ -208,6 +208,7 @@ TEST_P(EngineInBothModes, AStopFromAnotherThreadEndsTheRun) {
   EXPECT_EQ(f.output->finished, 1);
   EXPECT_FALSE(f.output->complete);
   EXPECT_EQ(f.output->failure, "");
+  EXPECT_FALSE(f.output->before_first_frame);
   EXPECT_GE(f.output->poses.size(), 6u);
 }
 
@@ -218,6 +219,7 @@ TEST_P(EngineInBothModes, AStopBeforeTheRunProcessesNothing) {
   Engine(f.stages(), runtime(GetParam()), {}).run(stop.get_token());
   EXPECT_EQ(f.output->poses.size(), 0u);
   EXPECT_EQ(f.output->finished, 1);
+  EXPECT_TRUE(f.output->before_first_frame);
 }
 
 TEST(Engine, ARefinementEndsEarlyWhenAnotherKeyFrameWaits) {

@@ -282,7 +282,7 @@ TEST_F(MapFile, WhatCannotBeWrittenIsSaid) {
     FAIL() << "written";
   } catch (const Error& error) {
     EXPECT_EQ(error.fault(), Fault::kUsage);
-    EXPECT_THAT(error.what(), HasSubstr("cannot be written"));
+    EXPECT_THAT(error.what(), HasSubstr("/proc/nowhere: cannot write: "));
   }
 }
 
