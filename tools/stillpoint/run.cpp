@@ -89,7 +89,7 @@ bool run_and_print(Stages stages, const PipelineConfig& config, RunFolder& folde
                    std::stop_token stop) {
   const fs::path ground_truth = in_source(stages, &Source::ground_truth);
   const auto begin = std::make_shared<FolderBegin>(folder, config.effective_yaml);
-  stages.outputs.insert(stages.outputs.begin(), {{begin, "run folder"}});
+  stages.outputs.insert(stages.outputs.begin(), OutputSetup{.stage = {begin, "run folder"}});
   const auto table = std::make_shared<RunTable>();
   stages.outputs.push_back({{table, "table"}});
   const auto end = [&] {
