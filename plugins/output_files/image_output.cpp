@@ -37,9 +37,10 @@ void remove_pictures(const fs::path& folder) {
 ImageOutput::ImageOutput(const Options& options, const StageContext& context)
     : options_(options), folder_(context.output_directory / options.folder) {
   std::error_code none;
-  if (fs::exists(folder_, none) && !fs::is_directory(folder_, none))
-    throw Error(Fault::kUsage, "is no folder: pictures cannot be written into it", folder_.string(),
-                "choose another one with its option folder");
+  for (fs::path path = folder_; path.has_relative_path(); path = path.parent_path())
+    if (fs::exists(path, none) && !fs::is_directory(path, none))
+      throw Error(Fault::kUsage, "is no folder: pictures cannot be written into it", path.string(),
+                  "choose another one with the option 'folder'");
   if (options.worst == 0) return;
   for (const Badness& badness : {Badness(exclusion), Badness(lack_of_inliers), loss()})
     worst_.emplace_back(static_cast<std::size_t>(options.worst), badness);

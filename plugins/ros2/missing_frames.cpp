@@ -12,6 +12,7 @@ constexpr std::size_t kFewest = 9;  // intervals
 }  // namespace
 
 void MissingFrames::add(double time) {
+  if (any_ && time <= last_) return;
   if (std::exchange(any_, true)) intervals_.push_back(time - last_);
   last_ = time;
 }

@@ -10,7 +10,7 @@ namespace stillpoint::ros2 {
 /// overwritten before they were taken.
 class MissingFrames {
  public:
-  /// Time of a frame in seconds, later than that of the one before.
+  /// Time of a frame in seconds. One that is not later than the one before does not count.
   void add(double time);
   /// An estimate, for a camera of constant rate; 0 with fewer than ten frames. A gap of n periods
   /// counts as n - 1. The period is that of the shorter intervals: the median would be twice as

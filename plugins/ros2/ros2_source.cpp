@@ -1,5 +1,6 @@
 #include "ros2/ros2_source.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <sstream>
@@ -129,6 +130,8 @@ std::optional<Frame> Ros2Source::next() {
 std::optional<Frame> Ros2Source::frame_of_waiting() {
   const double ahead = color_->time - depth_->time;
   if (std::abs(ahead) > (options_.approximate ? options_.max_difference : 0.0)) {
+    if (ahead < 0) missing_.add(color_->time);  // it did come
+    unpaired_depth_ += ahead > 0 ? 1 : 0;
     (ahead < 0 ? color_ : depth_).reset();
     ++unpaired_;
     if (given_ == 0 && unpaired_ % 100 == 0)
@@ -165,13 +168,14 @@ void Ros2Source::fail(const Reader& missing) const {
 
 SourceReport Ros2Source::report() const {
   SourceReport report;
-  const std::size_t missing = missing_.count();
+  // Of a colour image that is missing, the depth image has been counted if it came.
+  const std::size_t missing = missing_.count() - std::min(missing_.count(), unpaired_depth_);
   report.skipped = unpaired_ + backwards_ + missing;
   if (missing > 0)
     report.warnings.push_back(
         text_of("about ", missing,
-                " frames are missing, by the times of the others: lost on the way, or newer ones "
-                "came before they could be used (queue_size, reliable)"));
+                " frames are missing, if the camera has a constant rate: lost on the way, or newer "
+                "ones came before they could be used (queue_size, reliable)"));
   if (unpaired_ > 0)
     report.warnings.push_back(text_of(unpaired_, " images had no partner of the same time"));
   if (backwards_ > 0)

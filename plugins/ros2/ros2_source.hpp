@@ -63,11 +63,12 @@ class Ros2Source final : public Source {
   std::optional<Rectifier> rectifier_;
   std::optional<Image> color_, depth_;  // waiting for each other
   bool ended_ = false;
-  std::uint32_t given_ = 0;    // frames
-  double last_time_ = 0.0;     // of the last frame, seconds
-  std::size_t unpaired_ = 0;   // images
+  std::uint32_t given_ = 0;   // frames
+  double last_time_ = 0.0;    // of the last frame, seconds
+  std::size_t unpaired_ = 0;  // images
+  std::size_t unpaired_depth_ = 0;
   std::size_t backwards_ = 0;  // pairs that are not later than the one before
-  MissingFrames missing_;
+  MissingFrames missing_;      // by the times of colour images
 };
 
 }  // namespace stillpoint::ros2

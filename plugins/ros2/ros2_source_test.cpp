@@ -147,6 +147,18 @@ TEST_F(Ros2SourceTest, CountsFramesThatCameTooFast) {
   EXPECT_THAT(source().report().warnings, ElementsAre(HasSubstr("about 6 frames are missing")));
 }
 
+TEST_F(Ros2SourceTest, CountsAnImageOnce) {
+  info();
+  for (int i = 0; i < 16; ++i) {
+    if (i != 5) color(i);
+    if (i != 9) depth(i);
+  }
+  while (source().next()) {
+  }
+  EXPECT_EQ(source().report().skipped, 2U);
+  EXPECT_THAT(source().report().warnings, ElementsAre(HasSubstr("2 images had no partner")));
+}
+
 TEST(MissingFrames, AreCountedByTheShorterIntervals) {
   MissingFrames frames;
   for (const int i : {0, 2, 4, 5, 7, 9, 10, 12, 14, 16}) frames.add(7.0 + i / 30.0);

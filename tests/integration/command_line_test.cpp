@@ -104,6 +104,7 @@ TEST(Completion, InBash) {
   EXPECT_THAT(offered_by_bash("plugins "), Contains("describe"));
   EXPECT_THAT(offered_by_bash("run --set a=b orb_b"), Contains("orb_baseline"));
   EXPECT_THAT(offered_by_bash("run --set a=\\'b=c\\' --dataset=x orb_b"), Contains("orb_baseline"));
+  EXPECT_THAT(offered_by_bash("run orb_baseline --camera=tum_fr3"), Contains("tum_fr3"));
   EXPECT_THAT(offered_by_bash("map render " STILLPOINT_SOURCE_DIR "/READ"),
               ElementsAre(STILLPOINT_SOURCE_DIR "/README.md"));
 }

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <fstream>
 #include <opencv2/core/utility.hpp>
 #include <string>
 #include <tuple>
@@ -277,10 +278,13 @@ TEST_F(BadPlugins, CtrlCBeforeTheFirstFrameLeavesEarlierResults) {
                     with_plugins());
     ASSERT_TRUE(program.wait_for("the camera begins"));
     program.send(SIGINT);
+    ASSERT_TRUE(program.wait_for("frame 0; Ctrl-C again gives it up"));
+    std::ofstream(out() / "go") << "go";
     const Outcome outcome = program.finish();
     EXPECT_EQ(outcome.signal, SIGINT);
     EXPECT_THAT(outcome.err, HasSubstr("stopped before the first frame; nothing was written"));
     EXPECT_EQ(text_of(out() / "summary.json"), summary);
+    fs::remove(out() / "go");
   }
 }
 

@@ -104,6 +104,12 @@ std::vector<Candidate> candidates(const Place& place, const std::string& begun) 
 
 void print_completions(const CLI::App& app, std::vector<std::string> words) {
   if (words.empty()) words.emplace_back();
+  // "--camera=tum"
+  if (const std::string last = words.back(); last.starts_with("--"))
+    if (const std::size_t equals = last.find('='); equals != std::string::npos) {
+      words.back() = last.substr(0, equals);
+      words.push_back(last.substr(equals + 1));
+    }
   const std::string begun = words.back();
   words.pop_back();
   for (const Candidate& candidate : candidates(follow(app, words), begun))

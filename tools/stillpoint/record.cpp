@@ -81,7 +81,8 @@ void print(const RecordingTotals& totals, const RecordArguments& arguments) {
   std::cout << "recorded  " << text.data();
   if (totals.skipped > 0) std::cout << ", " << totals.skipped << " images left out";
   const std::string target = arguments.output.string();
-  std::cout << "\nfiles     " << target << '\n';
+  std::cout << '\n';
+  if (fs::exists(arguments.output)) std::cout << "files     " << target << '\n';
   if (totals.recorded > 0) {
     std::cout << "run       stillpoint run PIPELINE --dataset " << target;
     if (fs::is_directory(arguments.output)) std::cout << " --camera " << target << "/camera.yaml";

@@ -40,6 +40,7 @@ class McapRecorder final : public Output {
   explicit McapRecorder(const std::filesystem::path& file);
   void frame(const FrameReport& report) override;
   void finish(const RunSummary& summary) override;
+  void ended_before_first_frame(const RunSummary& summary) override { finish(summary); }
 
  private:
   ros2_messages::McapWriter writer_;

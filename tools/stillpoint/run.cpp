@@ -83,6 +83,18 @@ auto in_source(const Stages& stages, Function function) {
                   [&] { return std::invoke(function, *stages.source.object); });
 }
 
+/// A run that failed before its first frame has a log, too, where that replaces no other one.
+void log_failure(const Error& failure, RunFolder& folder, const std::string& effective_yaml) {
+  try {
+    if (!folder.has_begun() && !folder.holds_earlier_run()) folder.begin(effective_yaml);
+  } catch (const Error& error) {  // the failure of the run matters more
+    folder.log(LogLevel::kWarning, error.what());
+  }
+  folder.log(LogLevel::kInfo, std::string("failed: ") + failure.what());
+  if (!folder.has_begun() && folder.holds_earlier_run())
+    folder.log(LogLevel::kWarning, folder.path().string() + " still holds an earlier run");
+}
+
 // Runs, and prints the table also when a stage has failed: what was computed is saved. Whether the
 // run came to its end.
 bool run_and_print(Stages stages, const PipelineConfig& config, RunFolder& folder, bool quiet,
@@ -103,15 +115,12 @@ bool run_and_print(Stages stages, const PipelineConfig& config, RunFolder& folde
     engine.run(std::move(stop));
   } catch (const Error& error) {
     end();
-    if (begin->failure()) std::rethrow_exception(begin->failure());
-    if (!folder.has_begun() && !folder.holds_earlier_run()) folder.begin(config.effective_yaml);
-    folder.log(LogLevel::kInfo, std::string("failed: ") + error.what());
-    if (!folder.has_begun())
-      folder.log(LogLevel::kWarning, folder.path().string() + " still holds an earlier run");
+    log_failure(error, folder, config.effective_yaml);
     if (StageGuard::has_ended_a_call()) {  // nothing more of its plugin is to be run
       std::cerr << "error: " << error.what() << std::endl;
       std::_Exit(error.exit_code());
     }
+    if (begin->failure()) std::rethrow_exception(begin->failure());
     throw;
   }
   end();

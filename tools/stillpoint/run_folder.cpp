@@ -125,6 +125,7 @@ RunFolder::RunFolder(fs::path path, Console& console) : path_(std::move(path)), 
     for (const fs::path& file : files)
       if (const auto written = fs::last_write_time(file, error); !error)
         earlier_files_.emplace_back(file, written);
+  require_replaceable();
 }
 
 RunFolder::~RunFolder() {
@@ -185,6 +186,16 @@ std::vector<std::string> RunFolder::contents() const {
     names.push_back(entry.path().filename().string() + (entry.is_directory() ? "/" : ""));
   std::sort(names.begin(), names.end());
   return names;
+}
+
+// Before the run rather than in the middle of it: after another user's run, a container's, for
+// example.
+void RunFolder::require_replaceable() const {
+  if (holds_earlier_run_ && ::access((path_ / kLog).c_str(), W_OK) != 0)
+    fail(path_ / kLog, std::strerror(errno));
+  for (const auto& [file, written] : earlier_files_)
+    if (::access(file.parent_path().c_str(), W_OK) != 0)
+      fail(file.parent_path(), std::strerror(errno));
 }
 
 // Every run has a log. A pipeline.yaml without one is the user's, who runs it where it lies; so are

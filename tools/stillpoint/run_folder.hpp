@@ -49,6 +49,7 @@ class RunFolder {
 
  private:
   void require_no_results() const;
+  void require_replaceable() const;
   void begin_log();
   void remove_earlier_files() const;
 

@@ -212,6 +212,7 @@ void MappingSystem::adjust(const AdjustRequest& request) {
 
 void MappingSystem::map_densely(const DenseItem& item) {
   const std::lock_guard lock(dense_mutex_);
+  if (!map_backend_.usable()) return;  // an output's thread had it read or saved
   if (const auto* keyframe = std::get_if<std::shared_ptr<const DenseKeyFrame>>(&item)) {
     dense_frame_ = (*keyframe)->frame->index;
     map_backend_.call("dense", dense_frame_, &MapBackend::integrate, **keyframe);

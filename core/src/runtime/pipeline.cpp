@@ -233,7 +233,8 @@ void Pipeline::end_threads() {
 void Pipeline::finish_outputs() {
   const bool begun = !poses_.empty() || !stop_.requested();
   const MapStore::Snapshot map = mapping_.snapshot();
-  const SourceReport source = feed_ ? feed_->report() : SourceReport();
+  SourceReport source;
+  if (feed_) keep_failure_of([&] { source = feed_->report(); });
   const std::vector<StageTime> times = times_.take();
   if (!map_directory_.empty() && begun)
     keep_failure_of([&] { map_is_saved_ = mapping_.save(map_directory_); });

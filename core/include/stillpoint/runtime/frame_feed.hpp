@@ -31,7 +31,9 @@ class FrameFeed {
   void end();
 
   /// Only after end().
-  SourceReport report() { return source_.call_unmeasured({}, &Source::report); }
+  SourceReport report() {
+    return source_.usable() ? source_.call_unmeasured({}, &Source::report) : SourceReport();
+  }
   std::size_t dropped() const { return dropped_; }
 
  private:
