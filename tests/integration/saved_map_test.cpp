@@ -63,7 +63,7 @@ TEST_F(SavedMap, AnUnusableOneIsRefusedBeforeTheRun) {
   EXPECT_THAT(missing.err, HasSubstr("there is no such file"));
   const Outcome unwritable = run("unwritable", {"--save-map", "/proc/no.map"});
   EXPECT_EQ(unwritable.exit_code, 2);
-  EXPECT_THAT(unwritable.err, HasSubstr("/proc/no.map"));
+  EXPECT_THAT(unwritable.err, HasSubstr("/proc/no.map: cannot write"));
   EXPECT_FALSE(fs::exists(out() / "unwritable"));
   EXPECT_EQ(run("alone", {"--localise-only"}).exit_code, 2);
 }

@@ -25,7 +25,8 @@ class Comparison : public ::testing::Test {
     study_.baseline = "plain";
     StudyResults results{.study = study_, .cells = cells_of(study_), .results = {}, .command = ""};
     for (const Cell& cell : results.cells) {
-      CellResult result = cell.variant == 0 ? result_with(0.1) : better(cell.sequence, cell.repeat);
+      CellResult result = cell.variant == 0 ? result_with(0.1, baseline_coverage_(cell.repeat))
+                                            : better(cell.sequence, cell.repeat);
       result.values[kCpuPerFrame] = cell.variant == 0 ? 20.0 : 30.0;
       results.results.emplace_back(std::move(result));
     }
@@ -36,6 +37,7 @@ class Comparison : public ::testing::Test {
   Study study_ = two_by_two(1);
   std::size_t cameras_ = 1;  // that each recording is run with
   bool on_disk_ = false;     // recordings, not scenes
+  std::function<double(int)> baseline_coverage_ = [](int) { return 100.0; };  // %, by repeat
 };
 
 TEST_F(Comparison, CountsRecordingsAndTheirRatios) {
@@ -57,6 +59,28 @@ TEST_F(Comparison, RepeatsOnOneRecordingAreOnePair) {
   study_.new_noise = true;  // every repeat has a recording of its own
   EXPECT_EQ(compared(2, better).worse, 4u);
   EXPECT_EQ(compared(2, better).better, 2u);
+}
+
+TEST_F(Comparison, OfTwoRepeatsNeitherSideIsFavoured) {
+  study_.repeats = 2;
+  const auto of = [](double first, double second, double first_coverage = 100.0) {
+    return [=](std::size_t, int repeat) {
+      return repeat == 0 ? result_with(first, first_coverage) : result_with(second);
+    };
+  };
+  EXPECT_EQ(compared(2, of(0.08, 0.11)).better, 2u);
+  EXPECT_EQ(compared(2, of(0.11, 0.08)).better, 2u);
+  EXPECT_EQ(compared(2, of(0.12, 0.09)).worse, 2u);
+  EXPECT_NEAR(compared(2, of(0.05, 0.2)).ate_ratio->median, 1.0, 1e-9);
+  EXPECT_EQ(compared(2, of(0.05, 0.08, 90.0)).worse, 2u) << "one of them covers less";
+}
+
+TEST_F(Comparison, OneRunThatCoversMoreAndOneThatCoversLessCancel) {
+  study_.repeats = 2;
+  baseline_coverage_ = [](int repeat) { return repeat == 0 ? 100.0 : 90.0; };
+  const PairedComparison even = compared(
+      2, [](std::size_t, int repeat) { return result_with(0.1, repeat == 0 ? 90.0 : 100.0); });
+  EXPECT_EQ(even.better + even.worse, 0u);
 }
 
 TEST_F(Comparison, RepeatsOnARecordingOnDiskAreOnePairAlsoWithNewNoise) {

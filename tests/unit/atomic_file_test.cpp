@@ -89,7 +89,7 @@ TEST_F(AtomicFileTest, OnAFullDiskTheEarlierFileStaysWhole) {
       FAIL() << "a file that is not whole was put in its place";
     } catch (const Error& error) {
       EXPECT_EQ(error.fault(), Fault::kUsage);
-      EXPECT_THAT(error.what(), ::testing::HasSubstr(".part: cannot write: "));
+      EXPECT_THAT(error.what(), ::testing::HasSubstr("/map: cannot write: "));
       EXPECT_THAT(error.what(), ::testing::HasSubstr("free space"));
     }
   }

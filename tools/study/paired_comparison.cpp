@@ -34,10 +34,11 @@ struct Pair {
   std::optional<double> time_ratio;
 };
 
-/// The middle one, or the lower of the middle two: a mean with an infinite one says nothing.
-double middle(std::vector<double> values) {
+/// The median, whichever of the two is called the baseline: two opposite decisions cancel.
+double median(std::vector<double> values) {
   std::ranges::sort(values);
-  return values[(values.size() - 1) / 2];
+  const double mean = (values[(values.size() - 1) / 2] + values[values.size() / 2]) / 2.0;
+  return std::isnan(mean) ? 0.0 : mean;
 }
 
 class Pairs {
@@ -91,7 +92,7 @@ class Pairs {
         if (time && other_time && *other_time > 0.0) times.push_back(*time / *other_time);
       }
     if (advantages.empty()) return std::nullopt;
-    Pair pair{.advantage = middle(std::move(advantages)), .time_ratio = {}};
+    Pair pair{.advantage = median(std::move(advantages)), .time_ratio = {}};
     if (const auto spread = spread_of(std::move(times))) pair.time_ratio = spread->median;
     return pair;
   }

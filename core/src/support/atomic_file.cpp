@@ -45,7 +45,7 @@ AtomicFile::AtomicFile(std::filesystem::path path)
   if (path_.has_parent_path()) std::filesystem::create_directories(path_.parent_path(), error);
   if (error) fail(path_.parent_path(), error.value());
   stream_.open(temporary_, std::ios::binary | std::ios::trunc);
-  if (!stream_) fail(temporary_, errno);
+  if (!stream_) fail(path_, errno);
 }
 
 AtomicFile::~AtomicFile() {
@@ -55,12 +55,12 @@ AtomicFile::~AtomicFile() {
 }
 
 void AtomicFile::flush() {
-  if (!stream_.flush()) fail(temporary_, errno);
+  if (!stream_.flush()) fail(path_, errno);
 }
 
 void AtomicFile::commit() {
   stream_.close();
-  if (!stream_) fail(temporary_, errno);
+  if (!stream_) fail(path_, errno);
   std::error_code error;
   std::filesystem::rename(temporary_, path_, error);
   if (error) fail(path_, error.value());
