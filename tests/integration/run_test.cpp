@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "support/absolute_error.hpp"
+#include "support/full_disk.hpp"
 #include "support/simulated_recording.hpp"
 
 namespace stillpoint::testing {
@@ -263,6 +264,25 @@ TEST_F(Run, NothingTrackedIsSaid) {
   };
   EXPECT_THAT(run_with("100000").err, HasSubstr("warning: no frame was tracked"));
   EXPECT_THAT(run_with("100").err, ::testing::Not(HasSubstr("no frame was tracked")));
+}
+
+TEST_F(Run, WhereTheDiskIsFullTheEarlierRunStays) {
+  const auto again = [&] {
+    return run("same", "orb_baseline",
+               {"--dataset", simulated_recording().string(), "--set", "source.limit=3"});
+  };
+  ASSERT_EQ(again().exit_code, 0);
+  const std::string trajectory = text_of(out() / "same/trajectory.txt");
+  const std::string log = text_of(out() / "same/log.txt");
+  {
+    const FullDisk full(1024);  // bytes; pipeline.yaml has more
+    const Outcome outcome = again();
+    EXPECT_EQ(outcome.exit_code, 2);
+    EXPECT_THAT(outcome.err, HasSubstr("pipeline.yaml: cannot write: "));
+  }
+  EXPECT_EQ(text_of(out() / "same/trajectory.txt"), trajectory);
+  EXPECT_EQ(text_of(out() / "same/log.txt"), log);
+  EXPECT_TRUE(fs::exists(out() / "same/summary.json"));
 }
 
 // In containers many processes have the same number.

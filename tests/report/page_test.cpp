@@ -10,6 +10,7 @@
 #include "report/run_reader.hpp"
 #include "study/cell_result.hpp"
 #include "support/browser.hpp"
+#include "support/full_disk.hpp"
 #include "support/program.hpp"
 #include "support/simulated_recording.hpp"
 
@@ -160,6 +161,23 @@ TEST(RunReader, ASummaryWithValuesOfOtherTypesIsANote) {
   folder.write("summary.json", R"({"complete": "maybe", "coverage": "all"})");
   EXPECT_THAT(report::read_run(folder.path(), "name").notes,
               ::testing::Contains(HasSubstr("type must be boolean")));
+}
+
+TEST(ReportProgram, OnAFullDiskTheEarlierReportStays) {
+  SKIP_WITHOUT_PAGE();
+  const TemporaryFolder folder;
+  folder.write("page.html", "of yesterday");
+  folder.write("page.tex", "of yesterday");
+  const std::string run = finished_run().string();  // made while there is room
+  {
+    const FullDisk full(65536);  // bytes
+    const Outcome outcome = call({"report", run, "-o", "page.html"}, {.folder = folder.path()});
+    EXPECT_EQ(outcome.exit_code, 2);
+    EXPECT_THAT(outcome.err, HasSubstr("page.html: cannot write: "));
+  }
+  EXPECT_EQ(text_of(folder.path() / "page.html"), "of yesterday");
+  EXPECT_EQ(text_of(folder.path() / "page.tex"), "of yesterday");
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder.path()), fs::directory_iterator()), 2);
 }
 
 TEST(ReportProgram, WhatIsNoRunIsNamed) {

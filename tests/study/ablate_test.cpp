@@ -4,8 +4,10 @@
 
 #include <csignal>
 #include <string>
+#include <vector>
 
 #include "ablate_fixture.hpp"
+#include "support/full_disk.hpp"
 
 namespace stillpoint::testing {
 namespace {
@@ -46,6 +48,29 @@ TEST_F(Ablate, RunsTheMatrixOnceAndThenWhatIsMissing) {
   longer.replace(longer.find("frames: 30"), 10, "frames: 8");
   EXPECT_THAT(ablate(longer, {"--again"}).err,
               AllOf(HasSubstr("simulating tiny"), HasSubstr("[2/2]")));
+}
+
+TEST_F(Ablate, OnAFullDiskTheStudyStaysAsItWasAndGoesOn) {
+  ASSERT_EQ(ablate(kShort).exit_code, 0);
+  const auto files = {out() / "results.csv", out() / "results.md", out() / "tables.tex",
+                      out() / "study.yaml", out() / "runs/tiny/few/0/trajectory.txt"};
+  std::vector<std::string> before;
+  for (const fs::path& file : files) before.push_back(text_of(file));
+  fs::remove_all(out() / "runs/tiny/many");
+  {
+    const FullDisk full(1024);  // bytes
+    const Outcome outcome = ablate(kShort);
+    EXPECT_EQ(outcome.exit_code, 2);
+    EXPECT_THAT(outcome.err, HasSubstr("study.yaml: cannot write: "));
+  }
+  std::vector<std::string> after;
+  for (const fs::path& file : files) after.push_back(text_of(file));
+  EXPECT_EQ(after, before);
+  for (const auto& entry : fs::recursive_directory_iterator(out()))
+    EXPECT_NE(entry.path().extension(), ".part") << entry.path();
+  const Outcome resumed = ablate(kShort);
+  EXPECT_EQ(resumed.exit_code, 0) << resumed.err;
+  EXPECT_THAT(resumed.err, HasSubstr("[1/1] tiny/many/0: ATE"));
 }
 
 TEST_F(Ablate, ReplacesNothingThatWasMadeFromSomethingElse) {

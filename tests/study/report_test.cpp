@@ -296,15 +296,16 @@ TEST(Published, IsFoundByRecordingAndFigure) {
 }
 
 TEST_F(Report, AsSummary) {
+  const std::string origin =
+      ",\"Stillpoint 1.2.3, commit 0123456789ab; a machine, 2 cores; 2026-01-30 to 2026-02-01\"\n";
   EXPECT_THAT(
       csv_summary(results_),
-      ::testing::StartsWith(
-          "sequence,variant,metric,runs,failed,missing,median,first_quartile,third_quartile,"
-          "smallest,largest\n"
-          "walking,plain,ate_m,2,0,0,0.6,0.55,0.65,0.5,0.7\n"
-          "walking,plain,coverage_percent,2,0,0,100,100,100,100,100\n"
-          "walking,plain,times_lost,2,0,0,0,0,0,0,0\n"
-          "walking,better,ate_m,1,1,0,0.06,0.06,0.06,0.06,0.06\n"));
+      ::testing::StartsWith("sequence,variant,metric,runs,failed,missing,median,first_quartile,"
+                            "third_quartile,smallest,largest,origin\n"
+                            "walking,plain,ate_m,2,0,0,0.6,0.55,0.65,0.5,0.7" +
+                            origin + "walking,plain,coverage_percent,2,0,0,100,100,100,100,100" +
+                            origin + "walking,plain,times_lost,2,0,0,0,0,0,0,0" + origin +
+                            "walking,better,ate_m,1,1,0,0.06,0.06,0.06,0.06,0.06" + origin));
   EXPECT_THAT(csv_summary(results_), ::testing::HasSubstr("walking_empty,better,ate_m,1,0,1,0.02"));
 }
 

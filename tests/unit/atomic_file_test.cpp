@@ -2,40 +2,21 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <sys/resource.h>
 #include <sys/stat.h>
 
-#include <csignal>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <string>
 
 #include "stillpoint/error.hpp"
+#include "support/full_disk.hpp"
 #include "support/recording_writer.hpp"
 
 namespace stillpoint {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// While it lives, no file of this process can grow beyond a size: as on a full disk.
-class FullDisk {
- public:
-  explicit FullDisk(rlim_t bytes) : handler_(std::signal(SIGXFSZ, SIG_IGN)) {
-    ::getrlimit(RLIMIT_FSIZE, &before_);
-    const rlimit limit{.rlim_cur = bytes, .rlim_max = before_.rlim_max};
-    ::setrlimit(RLIMIT_FSIZE, &limit);
-  }
-  ~FullDisk() {
-    ::setrlimit(RLIMIT_FSIZE, &before_);
-    std::signal(SIGXFSZ, handler_);
-  }
-
- private:
-  rlimit before_{};
-  void (*handler_)(int);
-};
 
 class AtomicFileTest : public ::testing::Test {
  protected:
@@ -81,7 +62,7 @@ TEST_F(AtomicFileTest, WithoutCommitNothingIsLeft) {
 TEST_F(AtomicFileTest, OnAFullDiskTheEarlierFileStaysWhole) {
   write(folder_ / "map", "old");
   {
-    const FullDisk full(65536);
+    const testing::FullDisk full(65536);
     AtomicFile out(folder_ / "map");
     out.stream() << std::string(1 << 20, 'x');
     try {

@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "stillpoint/error.hpp"
+#include "stillpoint/support/atomic_file.hpp"
 
 namespace stillpoint {
 namespace {
@@ -134,11 +135,13 @@ RunFolder::~RunFolder() {
 }
 
 void RunFolder::begin(const std::string& effective_yaml) {
+  AtomicFile yaml(path_ / "pipeline.yaml");
+  yaml.stream() << effective_yaml;
+  yaml.flush();  // on a full disk, the earlier run stays
   begin_log();
   begun_ = true;
   remove_earlier_files();
-  std::ofstream yaml(path_ / "pipeline.yaml");
-  if (!(yaml << effective_yaml << std::flush)) fail(path_ / "pipeline.yaml", std::strerror(errno));
+  yaml.commit();
 }
 
 void RunFolder::begin_log() {

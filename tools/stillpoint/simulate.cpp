@@ -4,7 +4,6 @@
 #include <chrono>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <iostream>
 #include <memory>
 #include <mutex>
@@ -15,6 +14,7 @@
 #include "scene_file.hpp"
 #include "simulation/parallel.hpp"
 #include "simulation/recording_writer.hpp"
+#include "stillpoint/support/atomic_file.hpp"
 
 namespace stillpoint {
 namespace {
@@ -70,6 +70,12 @@ void write_frames(const simulation::Simulator& simulator, simulation::RecordingW
   });
 }
 
+void write_camera(const CameraModel& camera, const std::filesystem::path& target) {
+  AtomicFile file(target);
+  file.stream() << "version: 1\n" << camera_yaml(camera);
+  file.commit();
+}
+
 void simulate(const SimulateArguments& arguments) {
   SceneFile file = load_scene(arguments.scene, arguments.assignments);
   if (arguments.frames > 0) file.scene.frames = arguments.frames;
@@ -78,7 +84,7 @@ void simulate(const SimulateArguments& arguments) {
                           : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
   const simulation::Simulator simulator(file.scene, file.camera, 1);
   simulation::RecordingWriter writer(arguments.output);
-  std::ofstream(arguments.output / "camera.yaml") << "version: 1\n" << camera_yaml(file.camera);
+  write_camera(file.camera, arguments.output / "camera.yaml");
   writer.write_ground_truth(simulator, simulator.size());
   write_frames(simulator, writer, threads, arguments.quiet);
   if (!arguments.quiet) std::cout << "recording in " << arguments.output.string() << '\n';

@@ -1,6 +1,8 @@
 #include "study/csv_report.hpp"
 
+#include "stillpoint/support/did_you_mean.hpp"
 #include "study/csv_text.hpp"
+#include "study/provenance.hpp"
 
 namespace stillpoint::study {
 namespace {
@@ -59,7 +61,8 @@ std::string csv_summary(const StudyResults& results) {
   const Study& study = results.study;
   std::string text =
       "sequence,variant,metric,runs,failed,missing,median,first_quartile,third_quartile,smallest,"
-      "largest\n";
+      "largest,origin\n";
+  const std::string origin = csv_field(join(provenance(results), " | "));
   for (std::size_t sequence = 0; sequence < study.sequences.size(); ++sequence)
     for (std::size_t variant = 0; variant < study.variants.size(); ++variant) {
       const auto [failed, missing] = without_result(results, sequence, variant);
@@ -72,7 +75,7 @@ std::string csv_summary(const StudyResults& results) {
         for (const double value : {spread->median, spread->first_quartile, spread->third_quartile,
                                    spread->min, spread->max})
           text += "," + csv_number(value);
-        text += "\n";
+        text += "," + origin + "\n";
       }
     }
   return text;
