@@ -53,8 +53,7 @@ void print_files(const RunFolder& folder, const fs::path& ground_truth) {
 /// cannot be used, must not cost the results of an earlier run.
 class FolderBegin final : public Output {
  public:
-  FolderBegin(RunFolder& folder, std::string effective_yaml)
-      : folder_(folder), effective_yaml_(std::move(effective_yaml)) {}
+  explicit FolderBegin(RunFolder& folder) : folder_(folder) {}
   void frame(const FrameReport&) override { begin_once(); }
   void finish(const RunSummary&) override { begin_once(); }  // of a source without a frame
 
@@ -65,7 +64,7 @@ class FolderBegin final : public Output {
   void begin_once() {
     if (folder_.has_begun() || failure_) return;
     try {
-      folder_.begin(effective_yaml_);
+      folder_.begin();
     } catch (...) {
       failure_ = std::current_exception();
       throw;
@@ -73,7 +72,6 @@ class FolderBegin final : public Output {
   }
 
   RunFolder& folder_;
-  const std::string effective_yaml_;
   std::exception_ptr failure_;
 };
 
@@ -84,9 +82,9 @@ auto in_source(const Stages& stages, Function function) {
 }
 
 /// A run that failed before its first frame has a log, too, where that replaces no other one.
-void log_failure(const Error& failure, RunFolder& folder, const std::string& effective_yaml) {
+void log_failure(const Error& failure, RunFolder& folder) {
   try {
-    if (!folder.has_begun() && !folder.holds_earlier_run()) folder.begin(effective_yaml);
+    if (!folder.has_begun() && !folder.holds_earlier_run()) folder.begin();
   } catch (const Error& error) {  // the failure of the run matters more
     folder.log(LogLevel::kWarning, error.what());
   }
@@ -100,7 +98,7 @@ void log_failure(const Error& failure, RunFolder& folder, const std::string& eff
 bool run_and_print(Stages stages, const PipelineConfig& config, RunFolder& folder, bool quiet,
                    std::stop_token stop) {
   const fs::path ground_truth = in_source(stages, &Source::ground_truth);
-  const auto begin = std::make_shared<FolderBegin>(folder, config.effective_yaml);
+  const auto begin = std::make_shared<FolderBegin>(folder);
   stages.outputs.insert(stages.outputs.begin(), OutputSetup{.stage = {begin, "run folder"}});
   const auto table = std::make_shared<RunTable>();
   stages.outputs.push_back({{table, "table"}});
@@ -115,7 +113,7 @@ bool run_and_print(Stages stages, const PipelineConfig& config, RunFolder& folde
     engine.run(std::move(stop));
   } catch (const Error& error) {
     end();
-    log_failure(error, folder, config.effective_yaml);
+    log_failure(error, folder);
     if (StageGuard::has_ended_a_call()) {  // nothing more of its plugin is to be run
       std::cerr << "error: " << error.what() << std::endl;
       std::_Exit(error.exit_code());
@@ -161,7 +159,8 @@ int run(const RunArguments& arguments) {
   if (!arguments.save_map.empty()) saver = std::make_shared<MapSaver>(arguments.save_map);
   Console console(arguments.quiet);
   RunFolder folder(
-      arguments.output.empty() ? fs::path("out") / config.file.stem() : arguments.output, console);
+      arguments.output.empty() ? fs::path("out") / config.file.stem() : arguments.output,
+      config.effective_yaml, console);
   folder.log(LogLevel::kInfo, "stillpoint " STILLPOINT_VERSION ", " + config.file.string());
   folder.log(LogLevel::kInfo,
              "by " + origin_text(study::origin_of(

@@ -17,7 +17,6 @@
 #include <vector>
 
 #include "stillpoint/error.hpp"
-#include "stillpoint/support/atomic_file.hpp"
 
 namespace stillpoint {
 namespace {
@@ -114,7 +113,8 @@ spdlog::level::level_enum level_of(LogLevel level) {
 
 }  // namespace
 
-RunFolder::RunFolder(fs::path path, Console& console) : path_(std::move(path)), console_(console) {
+RunFolder::RunFolder(fs::path path, const std::string& effective_yaml, Console& console)
+    : path_(std::move(path)), console_(console) {
   std::error_code error;
   made_ = fs::create_directories(path_, error);
   if (error) fail(path_, error.message());
@@ -127,21 +127,22 @@ RunFolder::RunFolder(fs::path path, Console& console) : path_(std::move(path)), 
       if (const auto written = fs::last_write_time(file, error); !error)
         earlier_files_.emplace_back(file, written);
   require_replaceable();
+  pipeline_.emplace(path_ / "pipeline.yaml");
+  pipeline_->stream() << effective_yaml;
+  pipeline_->flush();
 }
 
 RunFolder::~RunFolder() {
+  pipeline_.reset();
   std::error_code ignored;
   if (made_ && !begun_) fs::remove(path_, ignored);
 }
 
-void RunFolder::begin(const std::string& effective_yaml) {
-  AtomicFile yaml(path_ / "pipeline.yaml");
-  yaml.stream() << effective_yaml;
-  yaml.flush();  // on a full disk, the earlier run stays
+void RunFolder::begin() {
   begin_log();
   begun_ = true;
   remove_earlier_files();
-  yaml.commit();
+  pipeline_->commit();
 }
 
 void RunFolder::begin_log() {

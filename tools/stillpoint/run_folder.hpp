@@ -14,6 +14,7 @@
 #include "console.hpp"
 #include "stillpoint/engine/folder_lock.hpp"
 #include "stillpoint/plugin.hpp"
+#include "stillpoint/support/atomic_file.hpp"
 
 namespace spdlog {
 class logger;
@@ -25,9 +26,10 @@ namespace stillpoint {
 /// stay as they are until begin().
 class RunFolder {
  public:
-  /// Throws Error(kUsage) when the folder cannot be written, another run is writing into it, or it
-  /// holds files with the names of results that are not those of a run.
-  RunFolder(std::filesystem::path path, Console& console);
+  /// `effective_yaml` is to be its pipeline.yaml. Throws Error(kUsage) when the folder cannot be
+  /// written, the disk is full, another run is writing into it, or it holds files with the names of
+  /// results that are not those of a run.
+  RunFolder(std::filesystem::path path, const std::string& effective_yaml, Console& console);
   /// Leaves no empty folder of its own behind where no run began.
   ~RunFolder();
   RunFolder(const RunFolder&) = delete;
@@ -36,9 +38,9 @@ class RunFolder {
   /// Whether an earlier run has left its log.
   bool holds_earlier_run() const { return holds_earlier_run_; }
   /// Once a frame is through, and so all that the run needs is good: begins the log, removes
-  /// results of an earlier run and writes pipeline.yaml. Throws Error(kUsage) when that is not
-  /// possible.
-  void begin(const std::string& effective_yaml);
+  /// results of an earlier run and puts pipeline.yaml in its place. Throws Error(kUsage) when that
+  /// is not possible.
+  void begin();
   bool has_begun() const { return begun_; }
 
   const std::filesystem::path& path() const { return path_; }
@@ -59,6 +61,7 @@ class RunFolder {
   bool holds_earlier_run_ = false;
   std::atomic<bool> begun_ = false;
   std::optional<FolderLock> lock_;
+  std::optional<AtomicFile> pipeline_;  // written; not in its place before begin()
   mutable std::mutex mutex_;
   std::shared_ptr<spdlog::logger> log_;                          // guarded, like early_
   mutable std::vector<std::pair<LogLevel, std::string>> early_;  // lines before begin()
