@@ -3,7 +3,7 @@
 FROM debian:bookworm-slim AS build
 COPY . /stillpoint
 WORKDIR /stillpoint
-RUN tools/setup \
+RUN apt-get update && apt-get install -y --no-install-recommends git && tools/setup \
  && cmake --preset release -DSTILLPOINT_BUILD_TESTS=OFF \
  && cmake --build --preset release \
  && cpack --config build/release/CPackConfig.cmake

@@ -75,14 +75,18 @@ void Bayes::Options::visit(OptionVisitor& v) {
   v("trusted_share", trusted_share,
     {.min = 0,
      .max = 1,
-     .help = "of the image with labels of movable classes, up to which labels count in full"});
+     .help = "share of the image labelled as movable up to which labels count in full"});
   v("doubted_share", doubted_share,
     {.min = 0,
      .max = 1,
-     .help = "from which labels hardly count, as too little is left to track on"});
+     .help = "share of the image labelled as movable from which labels hardly count: too little is "
+             "left to track on"});
   v.require(trusted_share < doubted_share, "trusted_share is not below doubted_share");
   v("margin", margin,
-    {.min = 0, .max = 50, .unit = "px", .help = "around moving objects that is excluded as well"});
+    {.min = 0,
+     .max = 50,
+     .unit = "px",
+     .help = "border around moving objects that is excluded as well"});
 }
 
 Bayes::Bayes(const Options& options, const StageContext& context)

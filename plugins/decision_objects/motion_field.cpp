@@ -27,14 +27,17 @@ void sample_depth(const cv::Mat& depth, cv::Mat& cells) {
 
 void MotionFieldOptions::visit(OptionVisitor& v) {
   v("moving_evidence", moving_evidence,
-    {.min = 0, .max = 10, .unit = "log-odds", .help = "of a moving point"});
+    {.min = 0, .max = 10, .unit = "log-odds", .help = "added around a moving point"});
   v("static_evidence", static_evidence,
-    {.min = 0, .max = 10, .unit = "log-odds", .help = "of a static point"});
+    {.min = 0, .max = 10, .unit = "log-odds", .help = "subtracted around a static point"});
   v("kept_evidence", kept_evidence,
     {.min = 0, .max = 1, .help = "share of evidence kept to the next frame"});
-  v("reach", reach, {.min = 0.01, .max = 2, .unit = "m", .help = "of a point's evidence"});
+  v("reach", reach,
+    {.min = 0.01, .max = 2, .unit = "m", .help = "how far the evidence of a point reaches"});
   v("depth_gate", depth_gate,
-    {.min = 0.001, .max = 1, .help = "of a point's depth; more is another surface"});
+    {.min = 0.001,
+     .max = 1,
+     .help = "difference in depth, as a share of it, from which a surface is another one"});
 }
 
 void MotionField::update(const Frame& frame, const MovingPoints& moving) {

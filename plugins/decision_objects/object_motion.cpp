@@ -9,22 +9,31 @@ namespace stillpoint::decision_objects {
 
 void ObjectMotionOptions::visit(OptionVisitor& v) {
   v("gain", gain,
-    {.min = 0, .max = 1000, .unit = "log-odds", .help = "per share of moving points"});
+    {.min = 0,
+     .max = 1000,
+     .unit = "log-odds",
+     .help = "evidence of an object in a frame: gain * (its share of moving points - share)"});
   v("share", share,
-    {.min = 0, .max = 1, .help = "of moving points on an object that is neutral evidence"});
+    {.min = 0, .max = 1, .help = "share of moving points that is evidence for neither"});
   v("max_increase", max_increase,
-    {.min = 0, .max = 100, .unit = "log-odds", .help = "per frame at most"});
+    {.min = 0, .max = 100, .unit = "log-odds", .help = "largest increase per frame"});
   v("max_decrease", max_decrease,
-    {.min = 0, .max = 100, .unit = "log-odds", .help = "per frame at most; slow: people pause"});
+    {.min = 0,
+     .max = 100,
+     .unit = "log-odds",
+     .help = "largest decrease per frame; small, since people pause"});
   v("prior_decay", prior_decay,
     {.min = 0, .max = 1, .help = "decay towards the prior per frame, seen or missed"});
   v("range", range,
     {.min = 0, .max = 20, .unit = "log-odds", .help = "greatest deviation from the prior"});
-  v("min_points", min_points, {.min = 1, .help = "on an object, to count as evidence"});
+  v("min_points", min_points, {.min = 1, .help = "points that an object needs for evidence"});
   v("moves_above", moves_above,
-    {.min = 0.2, .max = 1, .help = "probability: not used from here on"});
+    {.min = 0.2,
+     .max = 1,
+     .help =
+         "probability of moving from which an object is excluded; its weight falls until there"});
   v("static_below", static_below,
-    {.min = 0, .max = 1, .help = "probability: used again below; weighted in between"});
+    {.min = 0, .max = 1, .help = "probability below which an excluded object is used again"});
   v.require(static_below <= moves_above, "static_below is greater than moves_above");
 }
 

@@ -10,11 +10,14 @@ void ObjectVote::Options::visit(OptionVisitor& v) {
   v("min_moving_points", min_moving_points,
     {.min = 1, .help = "an object with fewer does not move (the paper's 'certain number')"});
   v("min_moving_share", min_moving_share,
-    {.min = 0, .max = 1, .help = "of the points on the object"});
+    {.min = 0, .max = 1, .help = "least share of moving points on an object that moves"});
   v("reach", reach,
     {.min = 0, .max = 100, .unit = "px", .help = "points this near count as on the object"});
   v("margin", margin,
-    {.min = 0, .max = 50, .unit = "px", .help = "around moving objects that is excluded as well"});
+    {.min = 0,
+     .max = 50,
+     .unit = "px",
+     .help = "border around moving objects that is excluded as well"});
   v.choice("unsure", unsure, {{"static", Unsure::kStatic}, {"moves", Unsure::kMoves}},
            {.help = "assumed for the classes while the moving check is not reliable"});
 }

@@ -7,7 +7,8 @@ namespace stillpoint::decision_objects {
 
 void SemanticOnly::Options::visit(OptionVisitor& v) {
   v("labels", labels, {.help = "classes that are not used"});
-  v("margin", margin, {.min = 0, .max = 50, .unit = "px", .help = "around their outlines"});
+  v("margin", margin,
+    {.min = 0, .max = 50, .unit = "px", .help = "border around them that is excluded as well"});
 }
 
 SemanticOnly::SemanticOnly(const Options& options, const StageContext& context)

@@ -38,7 +38,8 @@ void DepthConsistency::Options::visit(OptionVisitor& v) {
   v("min_agreement", min_agreement,
     {.min = 0,
      .max = 1,
-     .help = "inlier share of the points on or behind trusted surfaces, below which there is no "
+     .help = "share of the points on or behind trusted surfaces that lie on them; with less, the "
+             "frame's pose is in doubt and there is no "
              "evidence"});
 }
 

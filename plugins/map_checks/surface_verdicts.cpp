@@ -233,36 +233,59 @@ void VerdictOptions::visit(OptionVisitor& v) {
     {.min = 0,
      .max = 10,
      .unit = "m",
-     .help = "in front of the earlier surface, besides noise: free-space violation"});
+     .help = "a surface this far in front of an earlier one, beyond the sensor's noise, violates "
+             "its free space"});
   v("tolerance", tolerance,
     {.min = 0,
      .max = 10,
      .unit = "m",
-     .help = "around the earlier surface, besides noise: the same surface"});
+     .help = "a surface this near to an earlier one, besides the sensor's noise, is the same"});
   v("rest_time", rest_time,
-    {.min = 0, .max = 600, .unit = "s", .help = "until what came in and stays is static"});
+    {.min = 0,
+     .max = 600,
+     .unit = "s",
+     .help = "how long an object that came in must stay to be static"});
   v("min_age", min_age,
     {.min = 0,
      .max = 600,
      .unit = "s",
-     .help = "of a view from the same place, to be evidence for static"});
+     .help = "least age of an earlier view from the same viewpoint, as evidence for static"});
   v("min_parallax", min_parallax,
-    {.min = 0, .max = 100, .unit = "m", .help = "between viewpoints, for younger views to count"});
+    {.min = 0,
+     .max = 100,
+     .unit = "m",
+     .help = "distance of the viewpoints from which younger views count, too"});
   v("came_in", came_in,
-    {.min = 0, .max = 100, .unit = "log-odds", .help = "of each view that saw free space there"});
+    {.min = 0,
+     .max = 100,
+     .unit = "log-odds",
+     .help = "added for each view that saw free space where the surface is"});
   v("same_mapped", same_mapped,
     {.min = 0,
      .max = 100,
      .unit = "log-odds",
-     .help = "of each view that saw and mapped it there"});
+     .help = "subtracted for each view that saw the surface there and used it for the map"});
   v("same_tracked", same_tracked,
-    {.min = 0, .max = 100, .unit = "log-odds", .help = "of each that saw and only tracked it"});
+    {.min = 0,
+     .max = 100,
+     .unit = "log-odds",
+     .help = "subtracted for each view that saw it there and used it for tracking only"});
   v("same_untrusted", same_untrusted,
-    {.min = 0, .max = 100, .unit = "log-odds", .help = "of each that saw it and did neither"});
-  v("range", range, {.min = 0, .max = 100, .unit = "log-odds", .help = "greatest total"});
+    {.min = 0,
+     .max = 100,
+     .unit = "log-odds",
+     .help = "subtracted for each view that saw it there, but used it for neither"});
+  v("range", range,
+    {.min = 0,
+     .max = 100,
+     .unit = "log-odds",
+     .help = "limit of the sum over all views, in both directions"});
   v.require(margin >= tolerance, "margin is less than tolerance");
   v("reach", reach,
-    {.min = 0, .max = 10, .unit = "m", .help = "to grow violations over unknown space"});
+    {.min = 0,
+     .max = 10,
+     .unit = "m",
+     .help = "how far a violation grows along a surface over which no view decides"});
 }
 
 cv::Mat judge_surfaces(const cv::Mat& depth, const CellCamera& camera,

@@ -42,13 +42,19 @@ View make_view(const TrackedFrame& tracked) {
 }  // namespace
 
 void MemoryOptions::visit(OptionVisitor& v) {
-  v("views", views, {.min = 2, .max = 100, .help = "earlier frames that are kept"});
+  v("views", views, {.min = 2, .max = 100, .help = "number of earlier frames kept"});
   v("interval", interval,
-    {.min = 0, .max = 60, .unit = "s", .help = "after which a frame is kept in any case"});
+    {.min = 0, .max = 60, .unit = "s", .help = "greatest time between two frames kept"});
   v("angle", angle,
-    {.min = 0.1, .max = 180, .unit = "degrees", .help = "from all that are kept: kept at once"});
+    {.min = 0.1,
+     .max = 180,
+     .unit = "degrees",
+     .help = "a frame that looks this far away from all kept ones is kept at once"});
   v("distance", distance,
-    {.min = 0.001, .max = 10, .unit = "m", .help = "from all that are kept: kept at once"});
+    {.min = 0.001,
+     .max = 10,
+     .unit = "m",
+     .help = "a frame this far away from all kept ones is kept at once"});
 }
 
 void ViewMemory::add(const TrackedFrame& frame) {

@@ -82,13 +82,14 @@ void OctomapBackend::Options::visit(OptionVisitor& v) {
      .unit = "px",
      .help = "between pixels that are used; 0: by the resolution"});
   v("min_weight", min_weight,
-    {.min = 0, .max = 255, .help = "of a pixel in the map: less is not mapped; 0: all is"});
+    {.min = 0, .max = 255, .help = "least map weight of pixels that are mapped; 0: all are"});
   v("margin", margin,
     {.min = 0,
      .max = 0.1,
      .unit = "m",
-     .help = "around pixels that are not mapped, in which a voxel needs two hits; at most three "
-             "voxels"});
+     .help =
+         "border around pixels that are not mapped, in which a voxel needs two hits; at most three "
+         "voxels"});
   v("cost_map", cost_map, {.help = "2-D cost map for robots on the floor, saved with the map"});
   v.require(range / resolution <= 500, "range is more than 500 voxels");
   v.require(least < occupied_above && occupied_above < most,

@@ -8,7 +8,7 @@ void VoxelCloudBackend::Options::visit(OptionVisitor& v) {
   v("range", range, {.min = 0.5, .max = 20, .unit = "m", .help = "surfaces beyond are left out"});
   v("min_points", min_points, {.min = 1, .max = 1000, .help = "with fewer a voxel is left out"});
   v("min_weight", min_weight,
-    {.min = 1, .max = 255, .help = "of a pixel in the map: less is not mapped"});
+    {.min = 1, .max = 255, .help = "least map weight of pixels that are mapped"});
 }
 
 void VoxelCloudBackend::integrate(const DenseKeyFrame& keyframe) {

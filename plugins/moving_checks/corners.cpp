@@ -93,16 +93,20 @@ void CornerOptions::visit(OptionVisitor& v) {
            {.help = "P1 of Algorithm 1: the strongest corner of every cell, or the strongest ones "
                     "anywhere"});
   v("max_corners", max_corners,
-    {.min = 8, .max = 100000, .help = "of P1, the corners followed from the previous frame"});
+    {.min = 8,
+     .max = 100000,
+     .help = "most corners followed from the previous frame, P1 of Algorithm 1"});
   v("min_gradient", min_gradient,
     {.min = 0,
      .max = 255,
      .unit = "grey levels/px",
-     .help = "of grid: least gradient in every direction, in the image at half its size"});
+     .help = "for grid: least gradient in every direction, in the image at half its size"});
   v("corner_quality", corner_quality,
-    {.min = 1e-6, .max = 1, .help = "of shi_tomasi: least score, as a share of the strongest one"});
+    {.min = 1e-6,
+     .max = 1,
+     .help = "for shi_tomasi: least score, as a share of the strongest one"});
   v("min_distance", min_distance,
-    {.min = 0, .unit = "px", .help = "of shi_tomasi: between corners"});
+    {.min = 0, .unit = "px", .help = "for shi_tomasi: least distance of two corners"});
 }
 
 Corners find_corners(const cv::Mat& gray, const cv::Mat& half, std::span<const cv::Point2f> kept,

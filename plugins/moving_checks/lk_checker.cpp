@@ -102,7 +102,8 @@ void EpipolarChecker::Options::visit(OptionVisitor& v) {
            {{"unreliable", Degenerate::kUnreliable},
             {"homography", Degenerate::kHomography},
             {"ignore", Degenerate::kIgnore}},
-           {.help = "without parallax: not reliable, homography, or ignored as in the paper"});
+           {.help = "without parallax, the check is not reliable, uses a homography, or goes on as "
+                    "in the paper"});
 }
 
 EpipolarChecker::EpipolarChecker(const Options& options, Consensus consensus,

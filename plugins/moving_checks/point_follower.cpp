@@ -37,8 +37,11 @@ void FollowOptions::visit(OptionVisitor& v) {
      .unit = "px",
      .help = "side of the tracked patch (Algorithm 1, line 1)"});
   v("pyramid_levels", pyramid_levels,
-    {.min = 1, .max = 10, .help = "of the flow, the image itself included (line 1)"});
-  v("iterations", iterations, {.min = 1, .max = 1000, .help = "of the flow, per level (line 1)"});
+    {.min = 1,
+     .max = 10,
+     .help = "levels of the flow's pyramid, the image itself included (line 1)"});
+  v("iterations", iterations,
+    {.min = 1, .max = 1000, .help = "iterations of the flow per level (line 1)"});
   v("accuracy", accuracy,
     {.min = 0, .max = 1, .unit = "px", .help = "a smaller step ends the iterations (line 1)"});
   v("edge", edge,

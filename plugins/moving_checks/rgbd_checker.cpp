@@ -71,7 +71,7 @@ void RgbdChecker::Options::visit(OptionVisitor& v) {
     {.min = 0.01, .unit = "px", .help = "standard deviation of a tracked point"});
   surface.visit(v);
   follow.visit(v);
-  v("samples", samples, {.min = 1, .max = 100000, .help = "of the RANSAC, three matches each"});
+  v("samples", samples, {.min = 1, .max = 100000, .help = "samples of RANSAC, three matches each"});
   v("min_matches", min_matches,
     {.min = 6, .max = 100000, .help = "with depth; with fewer the check is not reliable"});
   v("min_agreement", min_agreement,

@@ -40,7 +40,8 @@ void OrbLocalMapper::Options::visit(OptionVisitor& v) {
      .help = "a key frame is removed when three others see more than this share of its landmarks"});
   v("bundle_keyframes", bundle_keyframes,
     {.min = 2, .help = "key frames that the local bundle adjustment moves"});
-  v("bundle_iterations", bundle_iterations, {.min = 1, .help = "of the local bundle adjustment"});
+  v("bundle_iterations", bundle_iterations,
+    {.min = 1, .help = "iterations of the local bundle adjustment"});
 }
 
 OrbLocalMapper::OrbLocalMapper(Options options, const StageContext&)

@@ -34,7 +34,8 @@ void OrbLoopCloser::Options::visit(OptionVisitor& v) {
     {.min = 0,
      .help = "share of the path since the place was left, plus 0.5 m: greatest correction"});
   v("adjust_iterations", adjust_iterations,
-    {.min = 0, .help = "of the bundle adjustment of the whole map after a loop; 0 = none"});
+    {.min = 0,
+     .help = "iterations of the bundle adjustment of the whole map after a loop; 0: none"});
 }
 
 OrbLoopCloser::OrbLoopCloser(Options options, const StageContext&) : options_(options) {}

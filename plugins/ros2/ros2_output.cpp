@@ -68,15 +68,17 @@ TrackedPose tracked_pose(const FrameReport& report) {
 
 void Ros2Output::Options::visit(OptionVisitor& v) {
   v("name", name, {.help = "before the names of all topics but /tf"});
-  v("domain", domain, {.min = -1, .max = 232, .help = "of DDS; -1: that of ROS_DOMAIN_ID, or 0"});
+  v("domain", domain,
+    {.min = -1, .max = 232, .help = "DDS domain; -1: that of ROS_DOMAIN_ID, or 0"});
   v("map_frame", map_frame, {.help = "where the base was at the first frame"});
   v("base_frame", base_frame,
-    {.help = "of the robot; without odom_frame it must have no parent in tf"});
+    {.help = "frame of the robot; without odom_frame it must have no parent in tf"});
   v("base_from_camera", base_from_camera,
     {.help = "x, y, z and quaternion x, y, z, w of the camera in the base; empty: the base is the "
              "camera, and the map has x where it looked, z up"});
   v("camera_frame", camera_frame,
-    {.help = "of the images: where it is on the base is asked of tf, instead of base_from_camera"});
+    {.help = "frame of the images: where it is on the base is asked of tf, instead of "
+             "base_from_camera"});
   v("odom_frame", odom_frame,
     {.help = "in which tf has the base, by the robot's odometry: map → odom is published, as REP "
              "105 has it, instead of map → base"});

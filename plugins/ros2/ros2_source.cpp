@@ -49,17 +49,18 @@ void Ros2Source::Options::visit(OptionVisitor& v) {
     {.help = "sensor_msgs/Image, of the size and view of the colour images"});
   v("info_topic", info_topic,
     {.help = "sensor_msgs/CameraInfo of the colour images; not used with a camera section"});
-  v("domain", domain, {.min = -1, .max = 232, .help = "of DDS; -1: that of ROS_DOMAIN_ID, or 0"});
+  v("domain", domain,
+    {.min = -1, .max = 232, .help = "DDS domain; -1: that of ROS_DOMAIN_ID, or 0"});
   v("reliable", reliable,
     {.help = "have lost packets sent again; publishers that are not reliable are not heard"});
   v("queue_size", queue_size,
     {.min = 1,
      .max = 10000,
      .unit = "images",
-     .help = "of a topic that wait; older ones are lost"});
+     .help = "images of a topic that may wait; older ones are dropped"});
   v("approximate", approximate, {.help = "stamps of colour and depth may differ"});
   v("max_difference", max_difference,
-    {.min = 0, .max = 1, .unit = "s", .help = "of the stamps of a pair, if approximate"});
+    {.min = 0, .max = 1, .unit = "s", .help = "largest time difference of a pair, if approximate"});
   v("rectified", rectified, {.help = "the images are rectified: P of CameraInfo holds, not K, D"});
   v("depth_factor", depth_factor,
     {.min = 0, .max = 1e9, .help = "16-bit depth of one metre; 0: the camera's, 1000 in ROS"});
@@ -67,7 +68,7 @@ void Ros2Source::Options::visit(OptionVisitor& v) {
     {.min = 0.1,
      .max = 86400,
      .unit = "s",
-     .help = "without images: an error before the first pair, the end after it"});
+     .help = "time without images: an error before the first pair, the end of the run after it"});
   v("limit", limit, {.min = 0, .unit = "frames", .help = "frames to read; 0 for no limit"});
 }
 

@@ -113,15 +113,18 @@ void BoxMaskOptions::visit(OptionVisitor& v) {
   v("overlap", overlap,
     {.min = 0,
      .max = 1,
-     .help = "of two boxes of a class with more intersection over union the better one counts"});
+     .help =
+         "boxes of a class with more intersection over union are one object; the best one counts"});
   v("depth_step", depth_step,
     {.min = 0, .unit = "m", .help = "between neighbouring pixels of one surface, besides noise"});
   v("depth_extent", depth_extent,
-    {.min = 0, .unit = "m", .help = "of an object in front of and behind its median depth"});
+    {.min = 0,
+     .unit = "m",
+     .help = "greatest extent of an object in front of and behind its median depth"});
   v("near_share", near_share,
     {.min = 0,
      .max = 1,
-     .help = "of the middle of a box that the nearest surface in it covers at least"});
+     .help = "least share of the middle of a box that the nearest surface in it covers"});
 }
 
 cv::Mat box_mask(const cv::Mat& depth, double noise, const cv::Rect& box,

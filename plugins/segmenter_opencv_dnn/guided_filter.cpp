@@ -6,7 +6,7 @@ namespace stillpoint::segmenter_opencv_dnn {
 
 void RefinementOptions::visit(OptionVisitor& v) {
   v("radius", radius,
-    {.min = 0, .max = 100, .unit = "cells", .help = "of the guided filter; 0: none"});
+    {.min = 0, .max = 100, .unit = "cells", .help = "radius of the guided filter; 0: none"});
   v("epsilon", epsilon,
     {.min = 1e-6,
      .max = 1,

@@ -93,7 +93,7 @@ void OpenCvDnnSegmenter::Options::visit(OptionVisitor& v) {
   v("threads", threads,
     {.min = 0,
      .max = 256,
-     .help = "of OpenCV, in the whole process; 0: as many as the runtime gives a stage"});
+     .help = "threads of OpenCV, in the whole process; 0: as many as the runtime gives a stage"});
   v.require(refinement.radius == 0 || cells == CellAlignment::kCentres,
             "'refine' needs cells that tile the input: 'cells: centres'");
 }

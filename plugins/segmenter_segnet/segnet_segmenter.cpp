@@ -44,7 +44,7 @@ void SegnetSegmenter::Options::visit(OptionVisitor& v) {
   v("threads", threads,
     {.min = 0,
      .max = 256,
-     .help = "of OpenCV, in the whole process; 0: as many as the runtime gives a stage"});
+     .help = "threads of OpenCV, in the whole process; 0: as many as the runtime gives a stage"});
   v.require(mean.size() == 1 || mean.size() == 3, "'mean' needs one or three numbers");
 }
 

@@ -87,8 +87,8 @@ cv::Mat pixels_of(const VideoFrameRef& frame, int type) {
 
 void OpenNi2Source::Options::visit(OptionVisitor& v) {
   v("device", device, {.help = "URI of the camera; empty for the first one"});
-  v("width", width, {.min = 16, .max = 4096, .unit = "px", .help = "of the images"});
-  v("height", height, {.min = 16, .max = 4096, .unit = "px", .help = "of the images"});
+  v("width", width, {.min = 16, .max = 4096, .unit = "px", .help = "width of the images"});
+  v("height", height, {.min = 16, .max = 4096, .unit = "px", .help = "height of the images"});
   v("rate", rate, {.min = 1, .max = 300, .unit = "Hz", .help = "images per second"});
   v("auto_exposure", auto_exposure,
     {.help = "let the camera adjust exposure and white balance to the scene"});

@@ -36,11 +36,3 @@ if(KIND STREQUAL tracker)
   run(${program} run ${name}/pipeline.yaml --dataset ${recording} -o run)
   expect_small_error("${elsewhere}/run" 0.03)
 endif()
-
-# Without GoogleTest, the plugin alone.
-if(KIND STREQUAL output)
-  run(${CMAKE_COMMAND} -S ${name} -B without -D CMAKE_PREFIX_PATH=${prefix}
-    -D CMAKE_DISABLE_FIND_PACKAGE_GTest=ON)
-  expect_in_output("${name}_test is not built")
-  run(${CMAKE_COMMAND} --build without)
-endif()

@@ -76,9 +76,17 @@ endif()
 
 unpack(libstillpoint-dev)
 expect_depends(libstillpoint-dev stillpoint libeigen3-dev libopencv-dev)
+file(REMOVE_RECURSE ${work}/packaged)
 run(${program} plugins new output packaged -o ${work}/packaged)
 run(${CMAKE_COMMAND} -S ${work}/packaged -B ${work}/packaged/build -G ${GENERATOR}
-  -D CMAKE_CXX_COMPILER=${CXX_COMPILER} -D CMAKE_PREFIX_PATH=${root}/usr)
+  -D CMAKE_CXX_COMPILER=${CXX_COMPILER} -D CMAKE_PREFIX_PATH=${root}/usr
+  -D CMAKE_CXX_COMPILER_LAUNCHER=${CXX_LAUNCHER} -D CMAKE_DISABLE_FIND_PACKAGE_GTest=ON)
+expect_in_output("packaged_test is not built")  # without GoogleTest, the plugin alone
+run(${CMAKE_COMMAND} --build ${work}/packaged/build)
+run(${CMAKE_CTEST_COMMAND} --test-dir ${work}/packaged/build)
+expect_in_output("100% tests passed, 0 tests failed out of 1")
+run(${program} run ${work}/packaged/pipeline.yaml --quiet --dataset ${recording} --set source.limit=3
+  -o ${work}/packaged/out)
 
 unpack(stillpoint-doc)
 find_program(python python3 REQUIRED)
@@ -90,6 +98,28 @@ if(PYTHON)
   run(${CMAKE_COMMAND} -E env PYTHONPATH=${root}/usr/lib/python3/dist-packages
     ${PYTHON} -c "import stillpoint; print(stillpoint.Engine)")
 endif()
+
+# The demo, with a recording that is there already: making the whole one takes minutes.
+function(check_demo)
+  set(demo ${work}/packaged_demo)
+  set(recording ${demo}/recording)
+  file(REMOVE_RECURSE ${demo})
+  file(COPY ${recording_with_people}/ DESTINATION ${recording})
+  file(TOUCH ${recording}/complete)
+  run(${root}/usr/bin/stillpoint-demo ${demo})
+  set(error "0\\.[0-9][0-9][0-9] m")
+  if(NOT output MATCHES "off by ${error} without Stillpoint, ${error} with it")
+    message(FATAL_ERROR "the demo ends without its two errors:\n${output}")
+  endif()
+  expect_small_error(${demo}/with 0.02)
+  foreach(picture without/trajectory.png without/map.png with/trajectory.png with/map.png)
+    file(SIZE ${demo}/${picture} size)
+    if(size LESS 5000)
+      message(FATAL_ERROR "${picture} of the demo has ${size} bytes only")
+    endif()
+  endforeach()
+endfunction()
+check_demo()
 
 # OpenCV's codecs are loaded when the first image needs them.
 set(with_pictures --quiet --dataset ${recording} -o ${work}/packaged_run --set source.limit=3

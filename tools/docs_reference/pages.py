@@ -238,6 +238,12 @@ class Program:
         return done.stdout.decode("utf-8")
 
 
+def as_sentence(summary: str):
+    """A file's or a type's name keeps its small letter."""
+    first = summary.split()[0]
+    return (summary if re.search(r"[._]", first) else summary[:1].upper() + summary[1:]) + "."
+
+
 def described(program: Program, kind: str, name: str):
     """Summary, library, and the rows of the table of options, whose columns are measured in bytes."""
     lines = program.output("plugins", "describe", f"{kind}/{name}").encode().split(b"\n")
@@ -271,7 +277,7 @@ def plugins_page(root: Path, program: Program):
                 continue
             summary, _, rows = described(program, kind, entry["type"])
             names.append(f"[`{entry['type']}`](#{kind}-{entry['type']})")
-            body += f"## {kind}: {entry['type']}\n\n{summary[:1].upper() + summary[1:]}. "
+            body += f"## {kind}: {entry['type']}\n\n{as_sentence(summary)} "
             body += f"Source: [`plugins/{folder}`](../../plugins/{folder}/README.md).\n\n"
             if rows:
                 body += table(["option", "type", "default", "range", "unit", "meaning"],

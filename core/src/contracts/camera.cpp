@@ -4,8 +4,10 @@ namespace stillpoint {
 
 void CameraModel::visit(OptionVisitor& v) {
   v("name", name, {.help = "for messages and summaries"});
-  v("width", width, {.min = 16, .max = 16384, .unit = "px", .help = "of the recorded images"});
-  v("height", height, {.min = 16, .max = 16384, .unit = "px", .help = "of the recorded images"});
+  v("width", width,
+    {.min = 16, .max = 16384, .unit = "px", .help = "width of the recorded images"});
+  v("height", height,
+    {.min = 16, .max = 16384, .unit = "px", .help = "height of the recorded images"});
   v("fx", fx,
     {.min = 1, .max = 1e6, .unit = "px", .help = "focal length along x", .required = true});
   v("fy", fy,

@@ -215,8 +215,9 @@ void RuntimeOptions::visit(OptionVisitor& v) {
            {.help = "one thread with reproducible results, or one per stage"});
   v.choice("pace", pace, {{"free", Pace::kFree}, {"sensor", Pace::kSensor}},
            {.help = "as fast as possible, or as recorded, dropping frames while busy"});
-  v("seed", seed, {.min = 0, .help = "of everything random"});
-  v("threads", threads, {.min = 1, .max = 256, .help = "of each solver; inline uses 1"});
+  v("seed", seed, {.min = 0, .help = "start of all random numbers"});
+  v("threads", threads,
+    {.min = 1, .max = 256, .help = "threads of each solver; inline always uses 1"});
   v("stage_timeout", stage_timeout,
     {.min = 0, .max = 1e6, .unit = "s", .help = "a stage that takes longer is reported; 0: never"});
   v.choice("validate", validate, {{"cheap", Validate::kCheap}, {"full", Validate::kFull}},
@@ -230,7 +231,8 @@ void SegmentationOptions::visit(OptionVisitor& v) {
     {.min = 1,
      .max = 1000,
      .unit = "frames",
-     .help = "n: with 'latest', the network takes at most every n-th frame; more cost less"});
+     .help =
+         "with 'latest', the network takes at most every n-th frame; a larger n costs less time"});
   v("latency", latency,
     {.min = 0,
      .max = 1000,
