@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -107,6 +108,28 @@ TEST(Completion, InBash) {
   EXPECT_THAT(offered_by_bash("run orb_baseline --camera=tum_fr3"), Contains("tum_fr3"));
   EXPECT_THAT(offered_by_bash("map render " STILLPOINT_SOURCE_DIR "/READ"),
               ElementsAre(STILLPOINT_SOURCE_DIR "/README.md"));
+}
+
+/// Types `stillpoint LINE` and two tabs into zsh, and waits for `expected`; the screen.
+std::string completed_by_zsh(const std::string& line, const std::string& expected) {
+  const std::string script = R"(zmodload zsh/zpty
+zpty shell zsh -f -i
+zpty -w shell "PS1= ; path=($1 \$path); fpath=($2 \$fpath); autoload -Uz compinit; compinit -u -D; print re''ady"
+zpty -r shell screen '*ready*'
+zpty -w -n shell "stillpoint $3"$'\t\t'
+zpty -r shell screen "*$4*"
+print -r -- $screen)";
+  return call({"30", "zsh", "-f", "-c", script, "zsh", program_file().parent_path().string(),
+               STILLPOINT_SOURCE_DIR "/tools/stillpoint/completion", line, expected},
+              {.program = "/usr/bin/timeout"})
+      .out;
+}
+
+TEST(Completion, InZsh) {
+  if (!std::filesystem::exists("/usr/bin/zsh")) GTEST_SKIP() << "zsh is not installed";
+  EXPECT_THAT(completed_by_zsh("run --dat", "--dataset"), HasSubstr("--dataset"));
+  EXPECT_THAT(completed_by_zsh("run x --camera tum_", "tum_fr3"), HasSubstr("tum_fr1"));
+  EXPECT_THAT(completed_by_zsh("run x --camera=tum_", "tum_fr3"), HasSubstr("tum_fr1"));
 }
 
 class CommandLineRun : public ::testing::Test {
