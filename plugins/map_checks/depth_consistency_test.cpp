@@ -208,5 +208,26 @@ TEST(ViewAlignment, FindsThePoseToMillimetres) {
   EXPECT_GT(found.agreement, 0.9);
 }
 
+TEST(ViewAlignment, ANoisierSensorFitsAsWell) {
+  TestRoom room;
+  ViewMemory memory({});
+  memory.add(
+      {.frame = room.see(Pose::Identity(), 0), .weights = std::make_shared<const StaticWeights>()});
+  const View* const views[] = {&memory.views_in({})[0]};
+  const Pose true_pose = pose(0.05, -0.02, 0.04, 2);
+  const auto frame = room.see(true_pose, 1);
+  Camera camera = *frame->camera;
+  camera.surface_noise = 0.02;  // m at 1 m: ten times a Kinect's
+  cv::RNG random(7);
+  cv::Mat noisy = sample_depth(frame->depth);
+  for (float& z : cv::Mat_<float>(noisy)) z += random.gaussian(camera.surface_noise * z * z);
+  const ViewAlignment known = align(noisy, CellCamera(camera), {&true_pose, 1}, views);
+  EXPECT_GT(known.agreement, 0.9);
+  EXPECT_LT((true_pose.inverse() * known.world_from_camera).translation().norm(), 0.05);
+  const ViewAlignment taken_for_a_kinect =
+      align(noisy, CellCamera(*frame->camera), {&true_pose, 1}, views);
+  EXPECT_LT(taken_for_a_kinect.agreement, 0.7);
+}
+
 }  // namespace
 }  // namespace stillpoint::map_checks

@@ -11,15 +11,16 @@ namespace {
 constexpr int kStep = 4;        // cells between the points used
 constexpr int kIterations = 4;  // of ICP
 constexpr std::size_t kMaxAlignedViews = 3;
-// Association gates in metres at up to 2 m (noise_scale): from the error of a predicted pose, 5 cm
-// and 0.05 rad at 2 m, to five times the noise of depth.
+// For a Kinect, in metres at up to 2 m (spread_at): from the error of a predicted pose, 5 cm and
+// 0.05 rad at 2 m, to six times the noise of depth.
 constexpr float kFirstGate = 0.15F;
 constexpr float kLastGate = 0.05F;
-constexpr float kOnSurface = 0.04F;  // m, likewise: four times the noise
+constexpr float kOnSurface = 0.04F;     // m, likewise: five times the noise
+constexpr float kKinectNoise = 0.002F;  // Camera::surface_noise
 // Errors of neighbouring points are correlated (registration, calibration): so many count as one.
 constexpr double kCorrelated = 5.0;
-// m at up to 1.4 m: noise of a Kinect's depth (3 mm, Khoshelham and Elberink 2012) and what is left
-// of the error of registration and of the view's own pose.
+// m at up to 1.4 m, for a Kinect: noise of its depth (3 mm, Khoshelham and Elberink 2012) and what
+// is left of the error of registration and of the view's own pose.
 constexpr double kSurfaceSigma = 0.01;
 constexpr double kGuessPosition = 0.05;  // m, standard deviation of the guess
 constexpr double kGuessAngle = 0.05;     // rad
@@ -35,7 +36,13 @@ struct Normal {
 };
 
 // Noise grows with the distance.
-float noise_scale(float z) { return std::max(1.0F, z * z / 4); }
+float spread_at(float z) { return std::max(1.0F, z * z / 4); }
+
+// Of distances from surfaces, relative to a Kinect's. About half of them comes from registration
+// and poses, which another sensor does not change.
+float spread_of(const CellCamera& camera) {
+  return (1.0F + camera.surface_noise / kKinectNoise) / 2.0F;
+}
 
 std::vector<Eigen::Vector3f> points_of(const cv::Mat& depth, const CellCamera& camera) {
   std::vector<Eigen::Vector3f> points;
@@ -48,13 +55,16 @@ std::vector<Eigen::Vector3f> points_of(const cv::Mat& depth, const CellCamera& c
 
 class Aligner {
  public:
-  Aligner(const std::vector<Eigen::Vector3f>& points, std::span<const View* const> views)
-      : points_(points), views_(views.first(std::min(views.size(), kMaxAlignedViews))) {}
+  Aligner(const std::vector<Eigen::Vector3f>& points, const CellCamera& camera,
+          std::span<const View* const> views)
+      : points_(points),
+        spread_(spread_of(camera)),
+        views_(views.first(std::min(views.size(), kMaxAlignedViews))) {}
 
   Fit compare(const Pose& world_from_camera) const {
     Fit fit;
     for_each_surface(world_from_camera, [&](const Surface& surface) {
-      const float reach = kOnSurface * noise_scale(surface.z);
+      const float reach = kOnSurface * spread_ * spread_at(surface.z);
       fit.on_surface += std::abs(surface.distance) < reach;
       fit.behind += surface.distance <= -reach;  // normals look at the camera
     });
@@ -68,7 +78,7 @@ class Aligner {
     Pose pose = guess;
     for (int i = 0; i < kIterations; ++i) {
       const float t = static_cast<float>(i) / (kIterations - 1);
-      Normal sum = normal_equations(pose, kFirstGate + t * (kLastGate - kFirstGate));
+      Normal sum = normal_equations(pose, kFirstGate + t * (kLastGate * spread_ - kFirstGate));
       // In the camera's frame: pose = guess * exp(offset).
       const Vector6d offset = log_se3(guess.inverse() * pose);
       sum.hessian.diagonal() += prior;
@@ -116,12 +126,13 @@ class Aligner {
   Normal normal_equations(const Pose& world_from_camera, float gate) const {
     Normal sum;
     for_each_surface(world_from_camera, [&](const Surface& surface) {
-      const float limit = gate * noise_scale(surface.z);
+      const float limit = gate * spread_at(surface.z);
       if (std::abs(surface.distance) >= limit) return;
       // Tukey's weight; d distance / d (translation, rotation) of the camera's own frame.
       const float share = surface.distance / limit;
       const double tukey = (1 - share * share) * (1 - share * share);
-      const double sigma = kSurfaceSigma * std::max(1.0, double(surface.z) * surface.z / 2);
+      const double sigma =
+          kSurfaceSigma * spread_ * std::max(1.0, double(surface.z) * surface.z / 2);
       const double weight = tukey / (kCorrelated * sigma * sigma);
       Vector6d jacobian;
       jacobian.head<3>() = surface.normal.cast<double>();
@@ -134,6 +145,7 @@ class Aligner {
   }
 
   const std::vector<Eigen::Vector3f>& points_;
+  float spread_;
   std::span<const View* const> views_;
 };
 
@@ -149,7 +161,7 @@ double agreement(const Fit& fit) {
 ViewAlignment align(const cv::Mat& depth, const CellCamera& camera, std::span<const Pose> guesses,
                     std::span<const View* const> views) {
   const std::vector<Eigen::Vector3f> points = points_of(depth, camera);
-  const Aligner aligner(points, views);
+  const Aligner aligner(points, camera, views);
   const Pose* best = &guesses.front();
   int most = -1;
   for (const Pose& guess : guesses) {
