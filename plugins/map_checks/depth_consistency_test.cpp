@@ -221,11 +221,12 @@ TEST(ViewAlignment, ANoisierSensorFitsAsWell) {
   cv::RNG random(7);
   cv::Mat noisy = sample_depth(frame->depth);
   for (float& z : cv::Mat_<float>(noisy)) z += random.gaussian(camera.surface_noise * z * z);
-  const ViewAlignment known = align(noisy, CellCamera(camera), {&true_pose, 1}, views);
+  const Pose guess = true_pose * pose(0.02, 0.01, -0.015, 1);
+  const ViewAlignment known = align(noisy, CellCamera(camera), {&guess, 1}, views);
   EXPECT_GT(known.agreement, 0.9);
   EXPECT_LT((true_pose.inverse() * known.world_from_camera).translation().norm(), 0.05);
   const ViewAlignment taken_for_a_kinect =
-      align(noisy, CellCamera(*frame->camera), {&true_pose, 1}, views);
+      align(noisy, CellCamera(*frame->camera), {&guess, 1}, views);
   EXPECT_LT(taken_for_a_kinect.agreement, 0.7);
 }
 

@@ -233,13 +233,14 @@ void VerdictOptions::visit(OptionVisitor& v) {
     {.min = 0,
      .max = 10,
      .unit = "m",
-     .help = "a surface this far in front of an earlier one, beyond the sensor's noise, violates "
-             "its free space"});
+     .help = "a surface this far in front of an earlier one violates its free space; plus five "
+             "standard deviations of the depth"});
   v("tolerance", tolerance,
     {.min = 0,
      .max = 10,
      .unit = "m",
-     .help = "a surface this near to an earlier one, besides the sensor's noise, is the same"});
+     .help = "a surface this near to an earlier one is the same; plus five standard deviations of "
+             "the depth"});
   v("rest_time", rest_time,
     {.min = 0,
      .max = 600,
@@ -274,7 +275,8 @@ void VerdictOptions::visit(OptionVisitor& v) {
     {.min = 0,
      .max = 100,
      .unit = "log-odds",
-     .help = "subtracted for each view that saw it there, but used it for neither"});
+     .help =
+         "subtracted for each view that saw it there and used it for neither, after rest_time"});
   v("range", range,
     {.min = 0,
      .max = 100,

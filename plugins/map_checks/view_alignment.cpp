@@ -11,8 +11,8 @@ namespace {
 constexpr int kStep = 4;        // cells between the points used
 constexpr int kIterations = 4;  // of ICP
 constexpr std::size_t kMaxAlignedViews = 3;
-// For a Kinect, in metres at up to 2 m (spread_at): from the error of a predicted pose, 5 cm and
-// 0.05 rad at 2 m, to six times the noise of depth.
+// Association gates in metres at up to 2 m (spread_at): from the error of a predicted pose, 5 cm
+// and 0.05 rad at 2 m, to six times the noise of depth, a Kinect's.
 constexpr float kFirstGate = 0.15F;
 constexpr float kLastGate = 0.05F;
 constexpr float kOnSurface = 0.04F;     // m, likewise: five times the noise
@@ -38,10 +38,11 @@ struct Normal {
 // Noise grows with the distance.
 float spread_at(float z) { return std::max(1.0F, z * z / 4); }
 
-// Of distances from surfaces, relative to a Kinect's. About half of them comes from registration
-// and poses, which another sensor does not change.
+// Of distances from surfaces, relative to a Kinect's: half of the gates is for the noise of the
+// sensor, half for the error of registration and poses, which another sensor does not change.
 float spread_of(const CellCamera& camera) {
-  return (1.0F + camera.surface_noise / kKinectNoise) / 2.0F;
+  constexpr float kMost = 4.0F;  // beyond it, a gate would hold several surfaces
+  return std::min(kMost, (1.0F + camera.surface_noise / kKinectNoise) / 2.0F);
 }
 
 std::vector<Eigen::Vector3f> points_of(const cv::Mat& depth, const CellCamera& camera) {
@@ -78,7 +79,8 @@ class Aligner {
     Pose pose = guess;
     for (int i = 0; i < kIterations; ++i) {
       const float t = static_cast<float>(i) / (kIterations - 1);
-      Normal sum = normal_equations(pose, kFirstGate + t * (kLastGate * spread_ - kFirstGate));
+      const float last = kLastGate * spread_, first = std::max(kFirstGate, last);
+      Normal sum = normal_equations(pose, first + t * (last - first));
       // In the camera's frame: pose = guess * exp(offset).
       const Vector6d offset = log_se3(guess.inverse() * pose);
       sum.hessian.diagonal() += prior;

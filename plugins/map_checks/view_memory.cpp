@@ -44,17 +44,21 @@ View make_view(const TrackedFrame& tracked) {
 void MemoryOptions::visit(OptionVisitor& v) {
   v("views", views, {.min = 2, .max = 100, .help = "number of earlier frames kept"});
   v("interval", interval,
-    {.min = 0, .max = 60, .unit = "s", .help = "greatest time between two frames kept"});
+    {.min = 0,
+     .max = 60,
+     .unit = "s",
+     .help = "a frame is kept at the latest this long after the last kept one"});
   v("angle", angle,
     {.min = 0.1,
      .max = 180,
      .unit = "degrees",
-     .help = "a frame that looks this far away from all kept ones is kept at once"});
+     .help =
+         "change of direction at which a frame is kept at once; counts together with distance"});
   v("distance", distance,
     {.min = 0.001,
      .max = 10,
      .unit = "m",
-     .help = "a frame this far away from all kept ones is kept at once"});
+     .help = "change of position at which a frame is kept at once; counts together with angle"});
 }
 
 void ViewMemory::add(const TrackedFrame& frame) {

@@ -75,12 +75,12 @@ void OctomapBackend::Options::visit(OptionVisitor& v) {
     {.min = 0,
      .max = 10,
      .unit = "voxels",
-     .help = "that key frames may move before they are fused again"});
+     .help = "how far key frames may move before they are fused again"});
   v("stride", stride,
     {.min = 0,
      .max = 32,
      .unit = "px",
-     .help = "between pixels that are used; 0: by the resolution"});
+     .help = "step between pixels that are used; 0: by the resolution"});
   v("min_weight", min_weight,
     {.min = 0, .max = 255, .help = "least map weight of pixels that are mapped; 0: all are"});
   v("margin", margin,

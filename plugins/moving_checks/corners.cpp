@@ -95,7 +95,8 @@ void CornerOptions::visit(OptionVisitor& v) {
   v("max_corners", max_corners,
     {.min = 8,
      .max = 100000,
-     .help = "most corners followed from the previous frame, P1 of Algorithm 1"});
+     .help =
+         "corners followed from the previous frame, P1 of Algorithm 1; for grid: about so many"});
   v("min_gradient", min_gradient,
     {.min = 0,
      .max = 255,

@@ -50,7 +50,8 @@ void split_off(std::vector<Corner>& corners, const cv::Mat& fallback, cv::Size l
 void OrbOptions::visit(OptionVisitor& v) {
   v("features", features, {.min = 1, .max = 100000, .help = "features wanted per image"});
   v("levels", levels, {.min = 1, .max = 16, .help = "levels of the scale pyramid"});
-  v("scale_factor", scale_factor, {.min = 1.01, .max = 4, .help = "between two levels"});
+  v("scale_factor", scale_factor,
+    {.min = 1.01, .max = 4, .help = "ratio of the sizes of two levels"});
   v("fast_threshold", fast_threshold,
     {.min = 1, .max = 254, .unit = "grey levels", .help = "contrast of a corner"});
   v("fast_min_threshold", fast_min_threshold,

@@ -116,7 +116,9 @@ void BoxMaskOptions::visit(OptionVisitor& v) {
      .help =
          "boxes of a class with more intersection over union are one object; the best one counts"});
   v("depth_step", depth_step,
-    {.min = 0, .unit = "m", .help = "between neighbouring pixels of one surface, besides noise"});
+    {.min = 0,
+     .unit = "m",
+     .help = "largest step between neighbouring pixels of one surface, besides noise"});
   v("depth_extent", depth_extent,
     {.min = 0,
      .unit = "m",

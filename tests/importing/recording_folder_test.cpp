@@ -1,12 +1,10 @@
 #include "importing/recording_folder.hpp"
 
-#include <sys/resource.h>
-
-#include <csignal>
 #include <stop_token>
 #include <vector>
 
 #include "importing/fixtures.hpp"
+#include "support/full_disk.hpp"
 
 namespace stillpoint::importing {
 namespace {
@@ -28,27 +26,6 @@ class InMemory final : public ForeignRecording {
 
  private:
   std::vector<std::uint8_t> bytes_;
-};
-
-/// Files of the process cannot grow beyond this: what a full disk looks like to it.
-class FullDisk {
- public:
-  explicit FullDisk(rlim_t bytes) {
-    std::signal(SIGXFSZ, SIG_IGN);
-    ::getrlimit(RLIMIT_FSIZE, &before_);
-    rlimit limit = before_;
-    limit.rlim_cur = bytes;
-    ::setrlimit(RLIMIT_FSIZE, &limit);
-  }
-  ~FullDisk() {
-    ::setrlimit(RLIMIT_FSIZE, &before_);
-    std::signal(SIGXFSZ, SIG_DFL);
-  }
-  FullDisk(const FullDisk&) = delete;
-  FullDisk& operator=(const FullDisk&) = delete;
-
- private:
-  rlimit before_{};
 };
 
 class RecordingFolderTest : public ::testing::Test {
@@ -73,7 +50,7 @@ TEST_F(RecordingFolderTest, FullDiskIsOneMessageAndLeavesNothing) {
   const auto import = [this] {
     InMemory recording(10'000);
     RecordingFolder folder(out());
-    const FullDisk full(4096);
+    const testing::FullDisk full(4096);
     add_frames(recording, folder, {}, [](std::size_t) {});
   };
   EXPECT_THAT(refusal(import), HasSubstr("rgb/0.000000.png: cannot be written: File too large; "
@@ -86,7 +63,7 @@ TEST_F(RecordingFolderTest, FullDiskAtTheListsLeavesNothing) {
     InMemory recording(10);
     RecordingFolder folder(out());
     add_frames(recording, folder, {}, [](std::size_t) {});
-    const FullDisk full(100);
+    const testing::FullDisk full(100);
     folder.commit({}, "version: 1\n");
   };
   EXPECT_THAT(refusal(import), HasSubstr("rgb.txt: cannot be written: File too large"));

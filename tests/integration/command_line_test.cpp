@@ -114,7 +114,7 @@ TEST(Completion, InBash) {
 std::string completed_by_zsh(const std::string& line, const std::string& expected) {
   const std::string script = R"(zmodload zsh/zpty
 zpty shell zsh -f -i
-zpty -w shell "PS1= ; path=($1 \$path); fpath=($2 \$fpath); autoload -Uz compinit; compinit -u -D; print re''ady"
+zpty -w shell "PS1= ; path=('$1' \$path); fpath=('$2' \$fpath); autoload -Uz compinit; compinit -u -D; print re''ady"
 zpty -r shell screen '*ready*'
 zpty -w -n shell "stillpoint $3"$'\t\t'
 zpty -r shell screen "*$4*"

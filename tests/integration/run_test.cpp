@@ -279,7 +279,9 @@ TEST_F(Run, WhereTheDiskIsFullTheEarlierRunStays) {
     const Outcome outcome = again();
     EXPECT_EQ(outcome.exit_code, 2);
     EXPECT_THAT(outcome.err, HasSubstr("pipeline.yaml: cannot write: "));
+    run("new", "orb_baseline", {"--dataset", simulated_recording().string()});
   }
+  EXPECT_FALSE(fs::exists(out() / "new"));
   EXPECT_EQ(text_of(out() / "same/trajectory.txt"), trajectory);
   EXPECT_EQ(text_of(out() / "same/log.txt"), log);
   EXPECT_TRUE(fs::exists(out() / "same/summary.json"));

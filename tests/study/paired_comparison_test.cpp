@@ -81,6 +81,8 @@ TEST_F(Comparison, OneRunThatCoversMoreAndOneThatCoversLessCancel) {
   const PairedComparison even = compared(
       2, [](std::size_t, int repeat) { return result_with(0.1, repeat == 0 ? 90.0 : 100.0); });
   EXPECT_EQ(even.better + even.worse, 0u);
+  EXPECT_EQ(even.incomplete, 2u);
+  EXPECT_FALSE(even.ate_ratio);
 }
 
 TEST_F(Comparison, RepeatsOnARecordingOnDiskAreOnePairAlsoWithNewNoise) {

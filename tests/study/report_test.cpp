@@ -302,7 +302,7 @@ TEST_F(Report, AsSummary) {
   EXPECT_THAT(
       csv_summary(results_),
       ::testing::StartsWith("sequence,variant,metric,runs,failed,missing,median,first_quartile,"
-                            "third_quartile,smallest,largest,origin\n"
+                            "third_quartile,smallest,largest,study_origin\n"
                             "walking,plain,ate_m,2,0,0,0.6,0.55,0.65,0.5,0.7" +
                             origin + "walking,plain,coverage_percent,2,0,0,100,100,100,100,100" +
                             origin + "walking,plain,times_lost,2,0,0,0,0,0,0,0" + origin +

@@ -240,7 +240,7 @@ class Program:
 
 def as_sentence(summary: str):
     """A file's or a type's name keeps its small letter."""
-    first = summary.split()[0]
+    first = summary.partition(" ")[0]
     return (summary if re.search(r"[._]", first) else summary[:1].upper() + summary[1:]) + "."
 
 

@@ -127,22 +127,33 @@ RunFolder::RunFolder(fs::path path, const std::string& effective_yaml, Console& 
       if (const auto written = fs::last_write_time(file, error); !error)
         earlier_files_.emplace_back(file, written);
   require_replaceable();
-  pipeline_.emplace(path_ / "pipeline.yaml");
-  pipeline_->stream() << effective_yaml;
-  pipeline_->flush();
+  keep_pipeline(effective_yaml);
 }
 
-RunFolder::~RunFolder() {
+RunFolder::~RunFolder() { discard(); }
+
+void RunFolder::discard() {
   pipeline_.reset();
   std::error_code ignored;
   if (made_ && !begun_) fs::remove(path_, ignored);
 }
 
+void RunFolder::keep_pipeline(const std::string& effective_yaml) {
+  try {
+    pipeline_.emplace(path_ / "pipeline.yaml");
+    pipeline_->stream() << effective_yaml;
+    pipeline_->flush();
+  } catch (const Error&) {
+    discard();
+    throw;
+  }
+}
+
 void RunFolder::begin() {
+  pipeline_->commit();  // first: whatever the disk refuses, it refuses here
   begin_log();
   begun_ = true;
   remove_earlier_files();
-  pipeline_->commit();
 }
 
 void RunFolder::begin_log() {

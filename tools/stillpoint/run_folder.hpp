@@ -37,8 +37,8 @@ class RunFolder {
 
   /// Whether an earlier run has left its log.
   bool holds_earlier_run() const { return holds_earlier_run_; }
-  /// Once a frame is through, and so all that the run needs is good: begins the log, removes
-  /// results of an earlier run and puts pipeline.yaml in its place. Throws Error(kUsage) when that
+  /// Once a frame is through, and so all that the run needs is good: puts pipeline.yaml in its
+  /// place, begins the log and removes results of an earlier run. Throws Error(kUsage) when that
   /// is not possible.
   void begin();
   bool has_begun() const { return begun_; }
@@ -52,6 +52,8 @@ class RunFolder {
  private:
   void require_no_results() const;
   void require_replaceable() const;
+  void keep_pipeline(const std::string& effective_yaml);
+  void discard();
   void begin_log();
   void remove_earlier_files() const;
 

@@ -61,7 +61,7 @@ std::string csv_summary(const StudyResults& results) {
   const Study& study = results.study;
   std::string text =
       "sequence,variant,metric,runs,failed,missing,median,first_quartile,third_quartile,smallest,"
-      "largest,origin\n";
+      "largest,study_origin\n";
   const std::string origin = csv_field(join(provenance(results), " | "));
   for (std::size_t sequence = 0; sequence < study.sequences.size(); ++sequence)
     for (std::size_t variant = 0; variant < study.variants.size(); ++variant) {

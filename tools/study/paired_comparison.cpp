@@ -31,14 +31,14 @@ std::optional<double> advantage(const CellResult& variant, const CellResult& bas
 /// Of one recording.
 struct Pair {
   double advantage = 0.0;
+  bool by_coverage = false;  // decided by it, not by errors
   std::optional<double> time_ratio;
 };
 
-/// The median, whichever of the two is called the baseline: two opposite decisions cancel.
+/// The same whichever of the two is called the baseline. Not a number: two opposite decisions.
 double median(std::vector<double> values) {
   std::ranges::sort(values);
-  const double mean = (values[(values.size() - 1) / 2] + values[values.size() / 2]) / 2.0;
-  return std::isnan(mean) ? 0.0 : mean;
+  return (values[(values.size() - 1) / 2] + values[values.size() / 2]) / 2.0;
 }
 
 class Pairs {
@@ -92,7 +92,10 @@ class Pairs {
         if (time && other_time && *other_time > 0.0) times.push_back(*time / *other_time);
       }
     if (advantages.empty()) return std::nullopt;
-    Pair pair{.advantage = median(std::move(advantages)), .time_ratio = {}};
+    const double middle = median(std::move(advantages));
+    Pair pair{.advantage = std::isnan(middle) ? 0.0 : middle,
+              .by_coverage = !std::isfinite(middle),
+              .time_ratio = {}};
     if (const auto spread = spread_of(std::move(times))) pair.time_ratio = spread->median;
     return pair;
   }
@@ -108,7 +111,7 @@ PairedComparison comparison_of(std::size_t variant, const std::vector<Pair>& pai
     advantages.push_back(pair.advantage);
     result.better += pair.advantage > 0.0;
     result.worse += pair.advantage < 0.0;
-    if (std::isinf(pair.advantage))
+    if (pair.by_coverage)
       ++result.incomplete;
     else
       ratios.push_back(std::exp(-pair.advantage));

@@ -11,7 +11,7 @@ namespace stillpoint::study {
 
 /// A pair is a recording. The repeats on one recording are no pairs of their own, unless each has a
 /// recording with noise of its own, and neither are sequences that have the same images and differ
-/// in the camera that the pipeline assumes: their median counts.
+/// in the camera that the pipeline assumes: the median of their logarithms counts.
 ///
 /// Errors are compared only between runs that have covered the same. Of two runs, the one that
 /// failed, or covers less by more than 1 % of the frames, or lost its way where the other did not,

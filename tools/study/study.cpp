@@ -22,7 +22,7 @@ void Sequence::visit(OptionVisitor& v) {
   v("name", name, {.help = "in tables and as the name of a folder", .required = true});
   v("dataset", dataset, {.help = "folder of a recording with ground truth", .is_path = true});
   v("scene", scene, {.help = "simulated once: a file, or a name from configs/scenes"});
-  v("frames", frames, {.min = 0, .help = "of the scene; 0: as many as it says"});
+  v("frames", frames, {.min = 0, .help = "frames of the scene; 0: as many as it says"});
   v("set", set, {.help = "changes of the scene, as in [source.seed=2]"});
   v("camera", camera,
     {.help = "a file, or a name from configs/cameras; empty: the recording's own"});

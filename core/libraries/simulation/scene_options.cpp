@@ -26,7 +26,7 @@ void RoomOptions::visit(OptionVisitor& v) {
      .max = 1,
      .help = "relative contrast of plaster, carpet and ceiling; 1: as usual, 0: uniform colours"});
   v("alike", alike, {.help = "every room of a suite is furnished as the others are"});
-  v("seed", seed, {.min = 0, .help = "of what is printed on posters, papers and books"});
+  v("seed", seed, {.min = 0, .help = "seed of what is printed on posters, papers and books"});
   v("photographs", photographs,
     {.help = "folder of images that cover walls, floor, boards, desks and boxes; empty: painted",
      .is_path = true});
@@ -58,7 +58,8 @@ void MotionOptions::visit(OptionVisitor& v) {
 
 void SensorOptions::visit(OptionVisitor& v) {
   v("ideal", ideal, {.help = "no noise, blur, holes, drift or quantisation"});
-  v("exposure", exposure, {.min = 0, .max = 0.1, .unit = "s", .help = "of one colour image"});
+  v("exposure", exposure,
+    {.min = 0, .max = 0.1, .unit = "s", .help = "exposure time of a colour image"});
   v("exposure_drift", exposure_drift,
     {.min = 0, .max = 0.5, .help = "relative amplitude of slow changes of brightness"});
   v("color_noise", color_noise,
@@ -101,7 +102,7 @@ void PersonOptions::visit(OptionVisitor& v) {
   v("height", height, {.min = 0.8, .max = 2.3, .unit = "m", .help = "standing"});
   v("shirt", shirt, {.help = "plaid, striped or plain"});
   v("carries_box", carries_box, {.help = "a cardboard box in both arms"});
-  v("seed", seed, {.min = 0, .help = "of rhythm and clothes"});
+  v("seed", seed, {.min = 0, .help = "seed of rhythm and clothes"});
   v.require(path.size() % 2 == 0 && path.size() >= (pose == Pose::kWalk ? 6 : 2),
             "path takes pairs x, y: three or more of them to walk, one to sit");
   v.require(shirt == "plaid" || shirt == "striped" || shirt == "plain",
@@ -112,7 +113,7 @@ void BallOptions::visit(OptionVisitor& v) {
   v("from", from, point("x, y, z of one hand"));
   v("to", to, point("x, y, z of the other hand"));
   v("flight", flight, {.min = 0.1, .max = 5, .unit = "s", .help = "time of one throw"});
-  v("pause", pause, {.min = 0, .max = 60, .unit = "s", .help = "between throws"});
+  v("pause", pause, {.min = 0, .max = 60, .unit = "s", .help = "time between throws"});
   v("radius", radius, {.min = 0.01, .max = 0.5, .unit = "m"});
   v.require(from.size() == 3 && to.size() == 3, "from and to take x, y, z");
 }
@@ -122,9 +123,9 @@ void SceneOptions::visit(OptionVisitor& v) {
   v("rate", rate, {.min = 1, .max = 240, .unit = "Hz", .help = "frames per second"});
   v("start_time", start_time,
     {.min = 0, .max = 1e10, .unit = "s", .help = "time stamp of the first frame"});
-  v("seed", seed, {.min = 0, .help = "of the noise and of the hand's trembling"});
+  v("seed", seed, {.min = 0, .help = "seed of the noise and of the hand's trembling"});
   v("room", room, {.help = "the room and what stands in it"});
-  v("motion", motion, {.help = "of the camera"});
+  v("motion", motion, {.help = "motion of the camera"});
   v("sensor", sensor, {.help = "noise, exposure, range and timing of the camera"});
   v("people", people, {.help = "who walks or sits in the room"});
   v("balls", balls, {.help = "thrown to and fro"});

@@ -215,7 +215,7 @@ void RuntimeOptions::visit(OptionVisitor& v) {
            {.help = "one thread with reproducible results, or one per stage"});
   v.choice("pace", pace, {{"free", Pace::kFree}, {"sensor", Pace::kSensor}},
            {.help = "as fast as possible, or as recorded, dropping frames while busy"});
-  v("seed", seed, {.min = 0, .help = "start of all random numbers"});
+  v("seed", seed, {.min = 0, .help = "seed of all random numbers"});
   v("threads", threads,
     {.min = 1, .max = 256, .help = "threads of each solver; inline always uses 1"});
   v("stage_timeout", stage_timeout,
