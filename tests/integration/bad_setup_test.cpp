@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "bad_setup_fixture.hpp"
+#include "support/full_disk.hpp"
 
 namespace stillpoint::testing {
 namespace {
@@ -91,6 +92,12 @@ TEST_F(BadSetup, SimulateDoesNotTouchARecording) {
                  recording.path().string());
   expect_refused(call({"simulate", "fr3_wlking_xyz", "-o", out().string()}),
                  "did you mean 'fr3_walking_xyz'?");
+}
+
+TEST_F(BadSetup, SimulateSaysThatTheDiskIsFull) {
+  const FullDisk full(512);  // bytes; camera.yaml has more
+  expect_refused(call({"simulate", kScene, "--frames", "1", "-o", (out() / "new").string()}),
+                 "camera.yaml: cannot write: ");
 }
 
 TEST_F(BadPlugins, AreListedWithTheirReasonsBesideTheGoodOnes) {
