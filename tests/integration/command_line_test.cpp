@@ -53,6 +53,11 @@ TEST(CommandLine, OptionsThatDoNotExistGetASuggestion) {
   EXPECT_THAT(refusal({"run", "orb_baseline", "--datset", "x"}),
               Eq("error: stillpoint run: no option '--datset'; did you mean '--dataset'?\n"));
   EXPECT_THAT(refusal({"run", "--outptu=x"}), HasSubstr("did you mean '--output'?"));
+  EXPECT_THAT(refusal({"--quiet", "run", "orb_baseline"}),
+              Eq("error: stillpoint run: option '--quiet' stands before the command; write "
+                 "'stillpoint run --quiet'\n"));
+  EXPECT_THAT(refusal({"run", "orb_baseline", "--dataset"}),
+              Not(HasSubstr("stands before the command")));
   EXPECT_THAT(refusal({"plugins", "list", "--jsno"}),
               HasSubstr("stillpoint plugins list: no option '--jsno'; did you mean '--json'?"));
   EXPECT_THAT(refusal({"run", "orb_baseline", "-x"}),

@@ -87,7 +87,7 @@ void add_evaluate(CLI::App& app) {
   command->add_flag("--json", arguments->json, "Print JSON instead of a table");
   file("--plot", arguments->plot, "Draw both trajectories and the error: .png, .svg or .pdf");
   file("--aligned", arguments->aligned,
-       "Write the estimate as it lies beside the reference (SE(3)), TUM format");
+       "Write the estimate after SE(3) alignment to the reference, TUM format");
   command->callback([arguments] { print_evaluation(*arguments); });
 }
 

@@ -113,7 +113,7 @@ void add_import(CLI::App& app) {
       ->required();
   command
       ->add_option("--layout", arguments->layout,
-                   "That of the recording; default: by what is in it")
+                   "Layout of the recording; default: detected from its files")
       ->type_name(all_layouts());
   command
       ->add_option("--camera", arguments->camera,

@@ -70,10 +70,14 @@ std::vector<std::string> option_names(const CLI::App& command) {
 /// CLI11 would only say which words were not expected.
 void check_options(const CLI::App& app) {
   const auto [command, name] = chosen_command(app);
+  const std::vector<std::string> known = option_names(*command);
   for (const std::string& word : app.remaining(true)) {
     if (word.size() < 2 || word[0] != '-') continue;
     const std::string option = word.substr(0, word.find('='));
-    const std::string suggestion = stillpoint::did_you_mean(option, option_names(*command));
+    if (std::ranges::find(known, option) != known.end())
+      throw Error(Fault::kUsage, "option '" + option + "' stands before the command", name,
+                  "write '" + name + ' ' + option + "'");
+    const std::string suggestion = stillpoint::did_you_mean(option, known);
     throw Error(Fault::kUsage, "no option '" + option + "'" + suggestion, name,
                 suggestion.empty() ? "'" + name + " --help' lists them" : "");
   }

@@ -140,7 +140,7 @@ void add_project(CLI::App& map) {
   CostMapOptions& options = arguments->options;
   number("--from", options.from, "Height above the floor, m; what is lower is no obstacle");
   number("--to", options.to, "Height above the floor, m; what is higher is no obstacle");
-  number("--robot-radius", options.robot_radius, "Obstacles grow by it, m");
+  number("--robot-radius", options.robot_radius, "Inflate obstacles by this radius, m");
   add_floor(*command, arguments->floor);
   command->callback([arguments] {
     CostMapOptions chosen = arguments->options;
@@ -220,7 +220,7 @@ void add_render(CLI::App& map) {
   CLI::App* command = map.add_subcommand("render", "Draw a map; needs no display");
   add_map_argument(*command, "map", arguments->map);
   add_file(*command, "-o,--output", arguments->output, "PNG file")->required();
-  command->add_option("--mode", arguments->mode, "What the voxels are coloured by")
+  command->add_option("--mode", arguments->mode, "Colour scheme of the voxels")
       ->capture_default_str()
       ->check(CLI::IsMember({"color", "class"}))
       ->type_name("color|class");
@@ -234,7 +234,9 @@ void add_render(CLI::App& map) {
       ->capture_default_str();
   number("--elevation", options.elevation, -90, 90, "Degrees above the floor; 90: from above")
       ->capture_default_str();
-  command->add_option("--below", options.highest, "Draw only what is lower above the floor, m")
+  command
+      ->add_option("--below", options.highest,
+                   "Draw only voxels below this height above the floor, m")
       ->check(CLI::Range(-100.0, 100.0))
       ->type_name("NUMBER");
   const auto point = [&](const char* name, std::string& value, const char* help) {

@@ -136,7 +136,7 @@ void add_plugins(CLI::App& app) {
   CLI::App* list_command = command->add_subcommand(
       "list", "Every stage type with version and file, and what cannot be used");
   auto options = std::make_shared<ListOptions>();
-  list_command->add_flag("--json", options->json, "For programs");
+  list_command->add_flag("--json", options->json, "Print JSON");
   list_command->add_flag("--strict", options->strict,
                          "Exit code 2 when a library, a type or a folder cannot be used");
   list_command->fallthrough();  // --path may stand behind it, too

@@ -162,7 +162,7 @@ void add_plugins_check(CLI::App& plugins) {
       ->type_name("S")
       ->check(CLI::Range(0.1, 3600.0))
       ->capture_default_str();
-  command->add_flag("--json", options->json, "For programs");
+  command->add_flag("--json", options->json, "Print JSON");
   command->callback([options] {
     try {
       check(*options);
