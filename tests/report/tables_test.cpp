@@ -59,6 +59,16 @@ TEST(RunTable, ASmallErrorOfAPartOfTheRecordingIsNotTheBest) {
   EXPECT_EQ(table.rows[2][1].text, "0.0010");
 }
 
+TEST(RunTable, ASmallErrorOfARunThatLostItsWayIsNotTheBest) {
+  std::vector<RunData> runs = {run_with("a", 0.02, 1.0), run_with("b", 0.03, 1.0),
+                               run_with("lost", 0.001, 1.0)};
+  runs[0].times_lost = runs[1].times_lost = 0;
+  runs[2].times_lost = 3;
+  const Table table = run_table(runs);
+  EXPECT_TRUE(table.rows[0][1].best);
+  EXPECT_FALSE(table.rows[2][1].best);
+}
+
 TEST(RunTable, WhatReadsTheSameIsEquallyGood) {
   const std::vector<RunData> runs = {run_with("a", 0.02001, 1.0), run_with("b", 0.02002, 1.0),
                                      run_with("c", 0.05, 1.0)};

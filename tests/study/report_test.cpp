@@ -297,7 +297,8 @@ TEST(Published, IsFoundByRecordingAndFigure) {
 
 TEST_F(Report, AsSummary) {
   const std::string origin =
-      ",\"6 of 7 runs: Stillpoint 1.2.3, commit 0123456789ab; a machine, 2 cores; 2026-01-30 to "
+      ",\"stillpoint ablate demo | 6 of 7 runs: Stillpoint 1.2.3, commit 0123456789ab; a machine, "
+      "2 cores; 2026-01-30 to "
       "2026-02-01 | 1 of 7 runs: a build that has left no record\"\n";
   EXPECT_THAT(
       csv_summary(results_),

@@ -21,7 +21,7 @@ namespace {
 using Json = nlohmann::json;
 
 constexpr std::string_view kPlace = "<!-- data -->";
-constexpr std::size_t kAllPoints = 100'000;  // of one series over all runs
+constexpr std::size_t kAllPoints = 50'000;  // of one series over all runs
 
 /// What the page finds by its id, packed.
 std::string block(const std::string& id, std::string_view bytes) {
@@ -55,7 +55,7 @@ class Blocks {
  public:
   Blocks(const ReportData& data, const std::filesystem::path& folder, const PageLimits& limits)
       : folder_(folder), limits_(limits) {
-    points_ = std::clamp<std::size_t>(kAllPoints / std::max<std::size_t>(1, data.runs.size()), 200,
+    points_ = std::clamp<std::size_t>(kAllPoints / std::max<std::size_t>(1, data.runs.size()), 150,
                                       limits.points);
   }
 

@@ -8,12 +8,12 @@
 
 namespace stillpoint::report {
 
-/// How much of a report's runs goes into its page, so that it stays below 20 MB.
+/// How much of a report's runs goes into its page, so that it stays below 20 MB up to 300 runs.
 struct PageLimits {
   std::size_t points = 2000;              ///< of a series; with many runs fewer
   std::size_t voxels = 250'000;           ///< of a map
-  std::size_t map_bytes = 6'000'000;      ///< of all maps; what comes after is left out
-  std::size_t picture_bytes = 4'000'000;  ///< of all pictures, likewise
+  std::size_t map_bytes = 5'000'000;      ///< of all maps; what comes after is left out
+  std::size_t picture_bytes = 3'000'000;  ///< of all pictures before base64, likewise
   std::size_t replay_bytes = 6'000'000;   ///< of all recorded live views, likewise
 };
 

@@ -68,13 +68,17 @@ const std::vector<Column>& columns() {
 void mark_best(std::span<const RunData> runs, const std::vector<std::size_t>& rows,
                std::size_t place, Table& table) {
   const Column& column = columns()[place - 1];
+  const auto times_lost = [&](std::size_t row) { return runs[row].times_lost.value_or(0); };
+  const double fewest = times_lost(*std::ranges::min_element(rows, {}, times_lost));
   std::vector<std::optional<evaluation::RatedFigure>> figures;
   for (const std::size_t row : rows) {
     const std::optional<double>& value = table.rows[row][place].value;
     figures.emplace_back();
     if (!value) continue;
     figures.back() = {.value = *value};
-    if (column.is_error) figures.back()->coverage_percent = 100.0 * runs[row].coverage.value_or(0);
+    if (!column.is_error) continue;
+    figures.back()->coverage_percent = 100.0 * runs[row].coverage.value_or(0);
+    figures.back()->can_win = times_lost(row) <= fewest;
   }
   const std::vector<bool> best = best_of(figures, column.better, column.digits);
   for (std::size_t i = 0; i < rows.size(); ++i) table.rows[rows[i]][place].best = best[i];
@@ -84,9 +88,11 @@ void mark_best(std::span<const RunData> runs, const std::vector<std::size_t>& ro
 
 Table run_table(std::span<const RunData> runs) {
   Table table{.title = "Runs",
-              .note = runs.size() > 1 ? "Bold: the best of its recording; of errors, among runs "
-                                        "that cover as much as the one that covers most, up to 1 %."
-                                      : "",
+              .note = runs.size() > 1
+                          ? "Bold: the best of its recording; of errors, among runs "
+                            "that cover as much as the one that covers most, up to 1 %, "
+                            "and lost their way as rarely as any."
+                          : "",
               .header = {"run"}};
   for (const Column& column : columns()) table.header.emplace_back(column.title);
   std::map<std::string, std::vector<std::size_t>> by_recording;

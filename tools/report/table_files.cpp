@@ -1,5 +1,7 @@
 #include "report/table_files.hpp"
 
+#include <algorithm>
+
 #include "study/csv_text.hpp"
 #include "study/latex_table.hpp"
 
@@ -44,7 +46,10 @@ std::string name_of(const std::vector<TableCell>& row, std::size_t names) {
 
 std::string latex_tables(std::span<const Table> tables, Origins origins) {
   std::string text = "% Needs \\usepackage{booktabs}.\n";
-  for (const std::string& origin : origins) text += "% " + origin + "\n";
+  for (std::string origin : origins) {
+    std::ranges::replace(origin, '\n', ' ');
+    text += "% " + origin + "\n";
+  }
   for (const Table& table : tables) text += latex_table(in_latex(table));
   return text;
 }

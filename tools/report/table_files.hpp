@@ -8,7 +8,7 @@
 
 namespace stillpoint::report {
 
-/// Which builds made the runs, where and when: a line each.
+/// The command, which builds made the runs, where and when, what is incomplete: a line each.
 using Origins = std::span<const std::string>;
 
 /// Tables with \toprule, \midrule and \bottomrule of the package booktabs, to be included by

@@ -96,8 +96,11 @@ void write_report(const ReportArguments& arguments) {
     return fs::absolute(page).replace_extension(ending);
   };
   write_text(fs::absolute(page), html);
-  write_text(beside(".tex"), report::latex_tables(data.tables, data.origins));
-  write_text(beside(".csv"), report::csv_tables(data.tables, data.origins));
+  std::vector<std::string> origins = data.origins;
+  if (!data.command.empty()) origins.insert(origins.begin(), data.command);
+  write_text(beside(".csv"), report::csv_tables(data.tables, origins));
+  origins.insert(origins.end(), data.notes.begin(), data.notes.end());  // what is incomplete
+  write_text(beside(".tex"), report::latex_tables(data.tables, origins));
   for (const std::string& note : data.notes) std::cerr << "note: " << note << '\n';
   std::cout << page.string() << " (" << evaluation::fixed(static_cast<double>(html.size()) / 1e6, 1)
             << " MB); tables: " << beside(".tex").filename().string() << ", "

@@ -62,7 +62,9 @@ std::string csv_summary(const StudyResults& results) {
   std::string text =
       "sequence,variant,metric,runs,failed,missing,median,first_quartile,third_quartile,smallest,"
       "largest,study_origin\n";
-  const std::string origin = csv_field(join(provenance(results), " | "));
+  std::vector<std::string> lines = provenance(results);
+  if (!results.command.empty()) lines.insert(lines.begin(), results.command);
+  const std::string origin = csv_field(join(lines, " | "));
   for (std::size_t sequence = 0; sequence < study.sequences.size(); ++sequence)
     for (std::size_t variant = 0; variant < study.variants.size(); ++variant) {
       const auto [failed, missing] = without_result(results, sequence, variant);

@@ -12,8 +12,8 @@ namespace stillpoint::study {
 std::string csv_report(const StudyResults& results);
 
 /// Columns: sequence, variant, metric, runs (with that figure), failed, missing, median,
-/// first_quartile, third_quartile, smallest, largest, study_origin (of all runs: which builds made
-/// them, where and when). Without rows in which no run has the figure.
+/// first_quartile, third_quartile, smallest, largest, study_origin (of all runs: the command, which
+/// builds made them, where and when). Without rows in which no run has the figure.
 std::string csv_summary(const StudyResults& results);
 
 }  // namespace stillpoint::study
