@@ -168,6 +168,59 @@ TEST(Rectifier, RefusesCamerasThatAreNone) {
   expect_fault([&] { Rectifier{model}; }, Fault::kUsage, "camera 'fr1': fx = nan is not finite");
 }
 
+// What the limits of a camera's options let through must not read outside of the image.
+TEST(Rectifier, TakesTheLargestValuesOfACamera) {
+  const cv::Mat bgr(48, 64, CV_8UC3, cv::Scalar::all(200));
+  const cv::Mat depth(48, 64, CV_16UC1, cv::Scalar(5000));
+  for (const double k : {-1e6, 1e6})
+    for (const double focal : {1.0, 1e6})
+      for (const double centre : {-1e6, 1e6})
+        for (const double factor : {1e-6, 1e9}) {
+          const Rectifier rectifier(CameraModel{.width = 64,
+                                                .height = 48,
+                                                .fx = focal,
+                                                .fy = focal,
+                                                .cx = centre,
+                                                .cy = centre,
+                                                .distortion = {k, k, k, k, k},
+                                                .depth_factor = factor,
+                                                .min_depth = 0.0,
+                                                .max_depth = 1e6,
+                                                .depth_noise = 100,
+                                                .surface_noise = 100});
+          const Frame frame = rectifier.frame(0, bgr, depth);
+          EXPECT_EQ(frame.bgr.size(), bgr.size());
+          EXPECT_EQ(frame.depth.size(), depth.size());
+          EXPECT_TRUE(cv::checkRange(frame.depth, true, nullptr, 0.0, 1e6 + 1));
+        }
+}
+
+// Beyond them, a message: not one of the values is tried.
+TEST(Rectifier, RefusesValuesBeyondThoseOfAnyCamera) {
+  const auto refused = [](auto CameraModel::*member, auto value) {
+    CameraModel model = fr1();
+    model.*member = value;
+    EXPECT_THROW(Rectifier{model}, Error) << value;
+  };
+  for (const double value : {1e308, -1e308}) {
+    for (const auto member :
+         {&CameraModel::fx, &CameraModel::fy, &CameraModel::cx, &CameraModel::cy,
+          &CameraModel::depth_factor, &CameraModel::max_depth, &CameraModel::min_depth,
+          &CameraModel::depth_noise, &CameraModel::surface_noise})
+      refused(member, value);
+    CameraModel model = fr1();
+    model.distortion[2] = value;
+    EXPECT_THROW(Rectifier{model}, Error) << value;
+    model = fr1();
+    model.crop = {0, 0, value, value};
+    EXPECT_THROW(Rectifier{model}, Error) << value;
+  }
+  for (const int value : {0, 2'000'000'000}) {
+    refused(&CameraModel::width, value);
+    refused(&CameraModel::height, value);
+  }
+}
+
 TEST(Rectifier, LeavesImagesOfAnIdealCameraAlone) {
   CameraModel model{.distortion = {0, 0, 0, 0, 0}};
   cv::Mat image(480, 640, CV_8UC3);

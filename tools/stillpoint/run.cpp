@@ -1,7 +1,6 @@
 // stillpoint run: a recording through a pipeline, and what comes out into a run folder.
 #include <csignal>
 #include <cstdlib>
-#include <exception>
 #include <filesystem>
 #include <functional>
 #include <iostream>
@@ -49,32 +48,6 @@ void print_files(const RunFolder& folder, const fs::path& ground_truth) {
               << " --estimate " << trajectory.string() << '\n';
 }
 
-/// Begins the run's folder with the first frame: a camera that does not fit, or a network that
-/// cannot be used, must not cost the results of an earlier run.
-class FolderBegin final : public Output {
- public:
-  explicit FolderBegin(RunFolder& folder) : folder_(folder) {}
-  void frame(const FrameReport&) override { begin_once(); }
-  void finish(const RunSummary&) override { begin_once(); }  // of a source without a frame
-
-  /// What is wrong with the folder; null: nothing.
-  std::exception_ptr failure() const { return failure_; }
-
- private:
-  void begin_once() {
-    if (folder_.has_begun() || failure_) return;
-    try {
-      folder_.begin();
-    } catch (...) {
-      failure_ = std::current_exception();
-      throw;
-    }
-  }
-
-  RunFolder& folder_;
-  std::exception_ptr failure_;
-};
-
 template <class Function>
 auto in_source(const Stages& stages, Function function) {
   return in_stage("source (" + stages.source.type + ")", {},
@@ -98,8 +71,9 @@ void log_failure(const Error& failure, RunFolder& folder) {
 bool run_and_print(Stages stages, const PipelineConfig& config, RunFolder& folder, bool quiet,
                    std::stop_token stop) {
   const fs::path ground_truth = in_source(stages, &Source::ground_truth);
-  const auto begin = std::make_shared<FolderBegin>(folder);
-  stages.outputs.insert(stages.outputs.begin(), OutputSetup{.stage = {begin, "run folder"}});
+  // A camera that does not fit, or a network that cannot be used, must not cost the results of an
+  // earlier run.
+  stages.before_outputs = [&folder] { folder.begin(); };
   const auto table = std::make_shared<RunTable>();
   stages.outputs.push_back({{table, "table"}});
   const auto end = [&] {
@@ -118,7 +92,6 @@ bool run_and_print(Stages stages, const PipelineConfig& config, RunFolder& folde
       std::cerr << "error: " << error.what() << std::endl;
       std::_Exit(error.exit_code());
     }
-    if (begin->failure()) std::rethrow_exception(begin->failure());
     throw;
   }
   end();

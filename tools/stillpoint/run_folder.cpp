@@ -3,6 +3,7 @@
 #include <spdlog/logger.h>
 #include <spdlog/sinks/basic_file_sink.h>
 #include <unistd.h>
+#include <yaml-cpp/yaml.h>
 
 #include <algorithm>
 #include <cerrno>
@@ -17,6 +18,7 @@
 #include <vector>
 
 #include "stillpoint/error.hpp"
+#include "stillpoint/support/atomic_file.hpp"
 
 namespace stillpoint {
 namespace {
@@ -24,9 +26,9 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kLog = "log.txt";
-constexpr const char* kResults[] = {"pipeline.yaml", "trajectory.txt", "keyframes.txt",
-                                    "timings.csv",   "frames.csv",     "summary.json",
-                                    "run.mcap",      "sparse.map"};
+constexpr const char* kPipeline = "pipeline.yaml";
+constexpr const char* kResults[] = {kPipeline,    "trajectory.txt", "keyframes.txt", "timings.csv",
+                                    "frames.csv", "summary.json",   "run.mcap",      "sparse.map"};
 constexpr const char* kMaps[] = {"map.ot", "map.bt", "map.ply", "map.pgm", "map.yaml", "cloud.ply"};
 
 bool is_number(std::string_view text) {
@@ -81,15 +83,37 @@ std::vector<fs::path> unfinished_in(const fs::path& run) {
   return files;
 }
 
-/// All but the log, by their names: nothing else in these folders is the program's.
-std::vector<fs::path> files_of_a_run(const fs::path& folder) {
+/// All but log and pictures, by their names: nothing else in these folders is the program's.
+std::vector<fs::path> results_in(const fs::path& run) {
   std::vector<fs::path> files;
-  for (const char* name : kResults) files.push_back(folder / name);
-  for (const char* name : kMaps) files.push_back(folder / "map" / name);
+  for (const char* name : kResults) files.push_back(run / name);
+  for (const char* name : kMaps) files.push_back(run / "map" / name);
+  return files;
+}
+
+std::vector<fs::path> pictures_in(const fs::path& run) {
+  std::vector<fs::path> files;
   std::error_code none;
-  for (const auto& entry : fs::directory_iterator(folder / "images", none))
+  for (const auto& entry : fs::directory_iterator(run / "images", none))
     if (is_picture(entry.path())) files.push_back(entry.path());
   return files;
+}
+
+/// Whether a run of this effective pipeline writes pictures. Without it, pictures in its folder are
+/// the user's.
+bool writes_pictures(const YAML::Node& pipeline) {
+  const YAML::Node outputs = pipeline["outputs"];
+  return std::any_of(outputs.begin(), outputs.end(), [](const YAML::Node& output) {
+    return output["type"].as<std::string>() == "images";
+  });
+}
+
+bool has_written_pictures(const fs::path& run) {
+  try {
+    return writes_pictures(YAML::LoadFile(run / kPipeline));
+  } catch (const YAML::Exception&) {  // none, or none of a run
+    return false;
+  }
 }
 
 [[noreturn]] void fail(const fs::path& path, const std::string& reason) {
@@ -113,47 +137,43 @@ spdlog::level::level_enum level_of(LogLevel level) {
 
 }  // namespace
 
-RunFolder::RunFolder(fs::path path, const std::string& effective_yaml, Console& console)
-    : path_(std::move(path)), console_(console) {
+RunFolder::RunFolder(fs::path path, std::string effective_yaml, Console& console)
+    : path_(std::move(path)), effective_yaml_(std::move(effective_yaml)), console_(console) {
   std::error_code error;
   made_ = fs::create_directories(path_, error);
   if (error) fail(path_, error.message());
   lock_.emplace(path_);
   if (::access(path_.c_str(), W_OK) != 0) fail(path_, std::strerror(errno));
   holds_earlier_run_ = is_log_of_a_run(path_ / kLog);
-  if (!holds_earlier_run_) require_no_results();
-  for (const auto& files : {files_of_a_run(path_), unfinished_in(path_)})
-    for (const fs::path& file : files)
-      if (const auto written = fs::last_write_time(file, error); !error)
-        earlier_files_.emplace_back(file, written);
+  const bool holds_its_pictures = holds_earlier_run_ && has_written_pictures(path_);
+  if (!holds_earlier_run_) {
+    require_none_of({path_ / kLog});
+    require_none_of(results_in(path_));
+  }
+  if (!holds_its_pictures && writes_pictures(YAML::Load(effective_yaml_)))
+    require_none_of(pictures_in(path_));
+  add_earlier(results_in(path_));
+  add_earlier(unfinished_in(path_));
+  if (holds_its_pictures) add_earlier(pictures_in(path_));
   require_replaceable();
-  keep_pipeline(effective_yaml);
 }
 
-RunFolder::~RunFolder() { discard(); }
-
-void RunFolder::discard() {
-  pipeline_.reset();
+RunFolder::~RunFolder() {
   std::error_code ignored;
   if (made_ && !begun_) fs::remove(path_, ignored);
 }
 
-void RunFolder::keep_pipeline(const std::string& effective_yaml) {
-  try {
-    pipeline_.emplace(path_ / "pipeline.yaml");
-    pipeline_->stream() << effective_yaml;
-    pipeline_->flush();
-  } catch (const Error&) {
-    discard();
-    throw;
-  }
-}
-
 void RunFolder::begin() {
-  pipeline_->commit();  // first: whatever the disk refuses, it refuses here
+  write_pipeline();  // first: a full disk is met before anything is removed
   begin_log();
   begun_ = true;
   remove_earlier_files();
+}
+
+void RunFolder::write_pipeline() const {
+  AtomicFile file(path_ / kPipeline);
+  file.stream() << effective_yaml_;
+  file.commit();
 }
 
 void RunFolder::begin_log() {
@@ -215,14 +235,19 @@ void RunFolder::require_replaceable() const {
 
 // Every run has a log. A pipeline.yaml without one is the user's, who runs it where it lies; so are
 // maps and numbered pictures.
-void RunFolder::require_no_results() const {
-  std::vector<fs::path> names = files_of_a_run(path_);
-  names.insert(names.begin(), path_ / kLog);
+void RunFolder::require_none_of(const std::vector<fs::path>& files) const {
   std::error_code none;
-  for (const fs::path& file : names)
+  for (const fs::path& file : files)
     if (fs::exists(file, none))
       throw Error(Fault::kUsage, "is no file of an earlier run, and would be replaced",
                   file.string(), "choose another folder with -o, or move it");
+}
+
+void RunFolder::add_earlier(const std::vector<fs::path>& files) {
+  std::error_code error;
+  for (const fs::path& file : files)
+    if (const auto written = fs::last_write_time(file, error); !error)
+      earlier_files_.emplace_back(file, written);
 }
 
 }  // namespace stillpoint

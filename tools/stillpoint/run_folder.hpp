@@ -14,7 +14,6 @@
 #include "console.hpp"
 #include "stillpoint/engine/folder_lock.hpp"
 #include "stillpoint/plugin.hpp"
-#include "stillpoint/support/atomic_file.hpp"
 
 namespace spdlog {
 class logger;
@@ -27,9 +26,9 @@ namespace stillpoint {
 class RunFolder {
  public:
   /// `effective_yaml` is to be its pipeline.yaml. Throws Error(kUsage) when the folder cannot be
-  /// written, the disk is full, another run is writing into it, or it holds files with the names of
-  /// results that are not those of a run.
-  RunFolder(std::filesystem::path path, const std::string& effective_yaml, Console& console);
+  /// written, another run is writing into it, or it holds files with the names of results that are
+  /// not those of a run.
+  RunFolder(std::filesystem::path path, std::string effective_yaml, Console& console);
   /// Leaves no empty folder of its own behind where no run began.
   ~RunFolder();
   RunFolder(const RunFolder&) = delete;
@@ -37,9 +36,8 @@ class RunFolder {
 
   /// Whether an earlier run has left its log.
   bool holds_earlier_run() const { return holds_earlier_run_; }
-  /// Once a frame is through, and so all that the run needs is good: puts pipeline.yaml in its
-  /// place, begins the log and removes results of an earlier run. Throws Error(kUsage) when that
-  /// is not possible.
+  /// Once a frame is through, and so all that the run needs is good: writes pipeline.yaml, begins
+  /// the log and removes results of an earlier run. Throws Error when that is not possible.
   void begin();
   bool has_begun() const { return begun_; }
 
@@ -50,20 +48,20 @@ class RunFolder {
   std::vector<std::string> contents() const;
 
  private:
-  void require_no_results() const;
+  void require_none_of(const std::vector<std::filesystem::path>& files) const;
+  void add_earlier(const std::vector<std::filesystem::path>& files);
   void require_replaceable() const;
-  void keep_pipeline(const std::string& effective_yaml);
-  void discard();
+  void write_pipeline() const;
   void begin_log();
   void remove_earlier_files() const;
 
   std::filesystem::path path_;
+  std::string effective_yaml_;
   Console& console_;
   bool made_ = false;  // by this run
   bool holds_earlier_run_ = false;
   std::atomic<bool> begun_ = false;
   std::optional<FolderLock> lock_;
-  std::optional<AtomicFile> pipeline_;  // written; not in its place before begin()
   mutable std::mutex mutex_;
   std::shared_ptr<spdlog::logger> log_;                          // guarded, like early_
   mutable std::vector<std::pair<LogLevel, std::string>> early_;  // lines before begin()

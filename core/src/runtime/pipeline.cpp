@@ -87,6 +87,7 @@ Pipeline::Pipeline(Stages stages, const RuntimeOptions& runtime,
     : options_(runtime),
       map_directory_(std::move(stages.map_directory)),
       localise_only_(stages.localise_only),
+      before_outputs_(stages.before_outputs ? std::move(stages.before_outputs) : [] {}),
       classes_(classes_of(stages.segmenter)),
       clock_(clock ? std::move(clock) : std::make_shared<SteadyClock>()),
       wall_start_(SteadyClock().now()),
@@ -208,6 +209,7 @@ void Pipeline::add(NewKeyFrame keyframe) {
 }
 
 void Pipeline::record(const FrameReportPtr& report) {
+  if (poses_.empty()) before_outputs_();
   const TrackResult& result = report->result;
   poses_.push_back({.frame = report->frame->index,
                     .time = report->frame->time,
@@ -231,6 +233,7 @@ void Pipeline::end_threads() {
 }
 
 void Pipeline::finish_outputs() {
+  if (poses_.empty() && !stop_.requested()) keep_failure_of(before_outputs_);
   const bool begun = !poses_.empty() || !stop_.requested();
   const MapStore::Snapshot map = mapping_.snapshot();
   SourceReport source;

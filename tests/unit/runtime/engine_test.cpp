@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <set>
 #include <thread>
 
@@ -220,6 +221,40 @@ TEST_P(EngineInBothModes, AStopBeforeTheRunProcessesNothing) {
   EXPECT_EQ(f.output->poses.size(), 0u);
   EXPECT_EQ(f.output->finished, 1);
   EXPECT_TRUE(f.output->before_first_frame);
+}
+
+TEST_P(EngineInBothModes, BeforeOutputsIsCalledOnceAndBeforeEveryOutput) {
+  for (const std::uint32_t frames : {0, 3}) {
+    EngineFixture f(frames);
+    Stages stages = f.stages();
+    for (OutputSetup& output : stages.outputs) {
+      output.stage.object = std::make_shared<testing::FakeOutput>(f.calls);
+      output.when_full = &output == &stages.outputs.front() ? WhenFull::kWait : WhenFull::kDrop;
+    }
+    stages.before_outputs = [&f] { f.calls.write("before", 0); };
+    Engine(std::move(stages), runtime(GetParam()), {}).run();
+    const auto calls = f.calls.entries();
+    EXPECT_EQ(std::ranges::count(calls, "before 0"), 1);
+    const auto begun = std::ranges::find(calls, "before 0");
+    EXPECT_EQ(std::find_if(calls.begin(), begun,
+                           [](const auto& call) {
+                             return call.starts_with("output") || call.starts_with("finish");
+                           }),
+              begun);
+  }
+}
+
+TEST_P(EngineInBothModes, WhatFailsBeforeTheOutputsEndsTheRunForThemBeforeItsFirstFrame) {
+  for (const std::uint32_t frames : {0, 3}) {
+    EngineFixture f(frames);
+    Stages stages = f.stages();
+    stages.before_outputs = [] { throw Error(Fault::kUsage, "no room"); };
+    Engine engine(std::move(stages), runtime(GetParam()), {});
+    EXPECT_THROW(engine.run(), Error);
+    EXPECT_TRUE(f.output->before_first_frame);
+    EXPECT_EQ(f.calls.entries("output"), Strings());
+    EXPECT_EQ(f.calls.entries("save"), Strings()) << "no dense map beside that of an earlier run";
+  }
 }
 
 TEST(Engine, ARefinementEndsEarlyWhenAnotherKeyFrameWaits) {

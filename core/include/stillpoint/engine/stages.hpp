@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -48,6 +49,9 @@ struct Stages {
   bool localise_only = false;           ///< the map stays as it is
   /// Where outputs may have the sparse map saved while the run goes (LiveRun); empty: nowhere.
   std::filesystem::path map_file;
+  /// Called once by the thread that tracks: when the first frame is through, before an output has
+  /// it, or at the end of a source without a frame. What it throws ends the run. May be empty.
+  std::function<void()> before_outputs;
 };
 
 }  // namespace stillpoint

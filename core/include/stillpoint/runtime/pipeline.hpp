@@ -57,6 +57,7 @@ class Pipeline {
   const RuntimeOptions options_;
   const std::filesystem::path map_directory_;
   const bool localise_only_;
+  const std::function<void()> before_outputs_;
   const ClassNames classes_;
   const std::shared_ptr<PaceClock> clock_;
   const double wall_start_;
