@@ -5,7 +5,8 @@
 
 namespace stillpoint::orb_slam {
 
-/// Throws Error(kStage) when a key frame's features have no 256-bit descriptors.
+/// Throws Error(kStage) when a key frame's features have no 256-bit descriptors, or a pyramid that
+/// ScalePyramid does not take.
 void require_orb(const KeyFrame& keyframe);
 void require_orb(const SparseMap& map);
 

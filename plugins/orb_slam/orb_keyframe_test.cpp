@@ -58,5 +58,26 @@ TEST(OrbKeyFrame, WithoutFeaturesThereIsNothingToRefuse) {
   EXPECT_NO_THROW(require_orb(keyframe));
 }
 
+// A saved map may have up to 64 levels and right checksums.
+TEST(OrbKeyFrame, PyramidsOfOtherTrackersAreRefused) {
+  const auto with_pyramid = [](int levels, double factor) {
+    Features features{.keypoints = {{10, 10, 1}}, .descriptors = {{}}, .depth = {1}};
+    features.keypoints[0].octave = levels - 1;
+    features.levels = levels;
+    features.scale_factor = factor;
+    KeyFrame keyframe = of_another_tracker();
+    keyframe.features = std::make_shared<const Features>(std::move(features));
+    return keyframe;
+  };
+  for (const int levels : {1, 8, 16}) EXPECT_NO_THROW(require_orb(with_pyramid(levels, 1.2)));
+  for (const int levels : {-1, 0, 17, 64}) {
+    OrbLocalMapper mapper({}, {});
+    EXPECT_THAT([&] { mapper.insert({}, with_pyramid(levels, 1.2)); },
+                ::testing::ThrowsMessage<Error>(::testing::HasSubstr(
+                    "of " + std::to_string(levels) + " pyramid levels, not of 1 to 16")));
+  }
+  EXPECT_THROW(require_orb(with_pyramid(8, 1.0)), Error);
+}
+
 }  // namespace
 }  // namespace stillpoint::orb_slam

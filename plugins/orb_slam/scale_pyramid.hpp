@@ -13,9 +13,11 @@ namespace stillpoint::orb_slam {
 /// Factors of the pyramid that features were extracted from.
 class ScalePyramid {
  public:
+  static constexpr int kMaxLevels = 16;
+
+  /// Of up to kMaxLevels levels; require_orb() says so.
   explicit ScalePyramid(const Features& features)
-      : levels_(std::min(features.levels, kMaxLevels)),
-        log_factor_(std::log(features.scale_factor)) {
+      : levels_(features.levels), log_factor_(std::log(features.scale_factor)) {
     scale_[0] = 1.0;
     for (int i = 1; i < levels_; ++i) scale_[i] = scale_[i - 1] * features.scale_factor;
   }
@@ -40,7 +42,6 @@ class ScalePyramid {
   }
 
  private:
-  static constexpr int kMaxLevels = 16;
   int levels_;
   double log_factor_;
   std::array<double, kMaxLevels> scale_{};

@@ -64,6 +64,7 @@ struct Results {
   SparseMap map;
 
   Results() {
+    labels.frame = frame.index;
     labels.labels = cv::Mat(kSize, CV_8UC1, cv::Scalar(kClasses - 1));
     labels.instances = cv::Mat(kSize, CV_8UC1, cv::Scalar(10));
     labels.objects.assign(10, {.label = 15, .box = {20, 20, 200, 300}, .pixels = 50'000});
@@ -85,7 +86,7 @@ void BasicChecks(benchmark::State& state) {
   const Results results;
   for (auto _ : state) {
     check_frame(results.frame, results.frame.index, &results.previous);
-    check_segmentation(results.labels, kSize, kClasses);
+    check_segmentation(results.labels, results.frame, kClasses);
     check_moving_points(results.moving, kSize);
     check_evidence(results.evidence, kSize);
     check_weights(results.weights, results.labels, kSize);
@@ -101,7 +102,7 @@ void ThoroughChecks(benchmark::State& state) {
     check_thoroughly(results.frame);
     check_thoroughly(results.moving);
     check_thoroughly(results.evidence);
-    check_thoroughly(results.tracked, results.frame);
+    check_thoroughly(results.tracked);
   }
 }
 BENCHMARK(ThoroughChecks)->Unit(benchmark::kMillisecond);

@@ -23,6 +23,7 @@ struct Wrong {
   const char* role;  // what messages call the stage
   const char* how;
   const char* problem;
+  const char* validate = "cheap";
 };
 
 constexpr Wrong kWrongs[] = {
@@ -36,14 +37,33 @@ constexpr Wrong kWrongs[] = {
     {"segmenter", "segmentation", "size",
      "the labels have 2 x 2 pixels, but the frame has 64 x 48"},
     {"segmenter", "segmentation", "label", "a pixel has label 2, but there are 2 classes"},
+    {"segmenter", "segmentation", "frame", "Segmentation::frame is 0 for frame 3"},
+    {"propagator", "propagation", "", "Segmentation::frame is 2 for frame 3"},
+    {"moving_checker", "moving check", "outside", "a point at 64, 0 is not in the image"},
+    {"map_checker", "map check", "size", "the evidence has 1 x 30 cells"},
     {"decision", "decision", "size", "the weights have 2 x 2 pixels, but the frame has 64 x 48"},
     {"decision", "decision", "type", "the weights are of CV_32FC1"},
     {"tracker", "tracking", "nan_pose", "the pose is no rigid motion"},
     {"tracker", "tracking", "reference", "the reference is key frame kNoId of 4"},
     {"tracker", "tracking", "keyframe_id", "the key frame has id 4, but the next one is 3"},
     {"tracker", "tracking", "features", "the key frame has no features"},
-    {"local_mapper", "local mapping", "", "key frame 3 was not added to the map"},
-    {"loop_closer", "loop closing", "", "the correction names key frame 4 of 4"},
+    {"tracker", "tracking", "two_poses", "are two different poses"},
+    {"tracker", "tracking", "octave", "wrong features: a keypoint has octave 1000 of 8"},
+    {"tracker", "tracking", "nothing_prepared", "prepare() gave nothing"},
+    {"local_mapper", "local mapping", "forgotten", "key frame 3 was not added to the map"},
+    {"local_mapper", "local mapping", "nan_pose", "the pose of key frame 3 is no rigid motion"},
+    {"local_mapper", "local mapping", "refined_to_nothing", "ids of the map are gone"},
+    {"loop_closer", "loop closing", "close", "the correction names key frame 4 of 4"},
+    {"loop_closer", "loop closing", "adjust", "the correction names key frame "},
+    // What is looked at value by value.
+    {"source", "source", "nan_depth", "the depth at 2, 1 is nan", "full"},
+    {"moving_checker", "moving check", "nan_residual", "the residual of a point is no number",
+     "full"},
+    {"map_checker", "map check", "nan", "the evidence at 2, 1 is nan", "full"},
+    {"tracker", "tracking", "nan_uncertainty", "the uncertainty of the pose is no covariance",
+     "full"},
+    {"local_mapper", "local mapping", "unseen_landmark", "landmark 0 has no observation", "full"},
+    {"local_mapper", "local mapping", "unseen_refined", "landmark 0 has no observation", "full"},
 };
 
 class WrongResults : public ::testing::TestWithParam<std::tuple<const char*, Wrong>> {
@@ -59,11 +79,16 @@ class WrongResults : public ::testing::TestWithParam<std::tuple<const char*, Wro
     };
     return folder_.write("wrong.yaml",
                          "version: 1\n" + section("source", "{type: wrong, how: right}") +
-                             section("segmenter", "") + section("decision", "") +
+                             section("segmenter", segmenter_for_propagator()) +
+                             section("propagator", "") + section("moving_checker", "") +
+                             section("map_checker", "") + section("decision", "") +
                              section("tracker", "{type: wrong, how: right}") +
                              section("local_mapper", "") + section("loop_closer", "") +
                              "outputs: [{type: trajectory}, {type: summary}]\nruntime: {mode: " +
-                             std::get<0>(GetParam()) + "}\n");
+                             std::get<0>(GetParam()) + ", validate: " + wrong().validate + "}\n");
+  }
+  static std::string segmenter_for_propagator() {
+    return wrong().kind == std::string("propagator") ? "{type: wrong, how: right}" : "";
   }
 
   const TemporaryFolder folder_;

@@ -56,23 +56,12 @@ class TrackerDrive final : public FrameDrive<Tracker> {
         "track", i, [&] { return stage_.track(std::move(prepared), *now.weights, map_, hints); });
     check("track", i, [&] {
       check_tracking(result, *now.frame, map_, hints);
-      check_thoroughly(result, *now.frame);
+      check_thoroughly(result);
     });
-    require_one_pose(result);
     observer_.saw(result.state);
     observer_.saw(result.world_from_camera);
     if (result.state == TrackState::kTracking) note_error(result, now);
     if (result.keyframe) map_ = inserted(std::move(map_), std::move(*result.keyframe));
-  }
-
-  void require_one_pose(const TrackResult& result) const {
-    if (result.state != TrackState::kTracking || result.reference >= map_.keyframe_id_end()) return;
-    const Pose pose = map_.world_from_keyframe(result.reference) * result.reference_from_camera;
-    if (!pose.isApprox(result.world_from_camera, 1e-4))
-      throw Failure({"reference_from_camera and world_from_camera are two different poses",
-                     "trajectories follow the one, what needs a pose at once takes the other",
-                     "world_from_camera = map.world_from_keyframe(reference) * "
-                     "reference_from_camera"});
   }
 
   // The first tracked camera is at the origin.

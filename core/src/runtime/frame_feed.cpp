@@ -61,6 +61,7 @@ FrameFeed::~FrameFeed() {
 
 void FrameFeed::end() {
   if (thread_.joinable()) thread_.join();
+  if (failure_) stop_.fail(failure_);  // also where a stop came before next() could tell
 }
 
 FramePtr FrameFeed::next() {

@@ -24,18 +24,14 @@ void require(bool possible, const char* what) {
   if (!possible) throw DamagedMap(std::string(what) + " has impossible values");
 }
 
-bool possible(const Features& features, const Camera& camera) {
-  const bool pyramid =
-      within(features.scale_factor, 1, kMostScale) && within(features.levels, 1, kMostLevels);
-  const auto inside = [&](const cv::KeyPoint& k) {
-    return within(k.pt.x, -kImageMargin, camera.width + kImageMargin) &&
-           within(k.pt.y, -kImageMargin, camera.height + kImageMargin) &&
-           within(k.size, 0, kMaxImageSide) && std::isfinite(k.angle) &&
-           std::isfinite(k.response) && within(k.octave, 0, features.levels - 1);
-  };
-  const auto depth = [](float z) { return within(z, 0, kFarthest); };
-  return pyramid && std::ranges::all_of(features.keypoints, inside) &&
-         std::ranges::all_of(features.depth, depth);
+bool is_inside(const cv::Point2f& position, const Camera& camera) {
+  return within(position.x, -kImageMargin, camera.width + kImageMargin) &&
+         within(position.y, -kImageMargin, camera.height + kImageMargin);
+}
+
+bool is_possible(const cv::KeyPoint& keypoint) {
+  return within(keypoint.size, 0, kMaxImageSide) && std::isfinite(keypoint.angle) &&
+         std::isfinite(keypoint.response);
 }
 
 bool possible(const Pose& pose) {
@@ -56,6 +52,22 @@ bool possible(const Camera& camera) {
          within(camera.surface_noise, kLeastNoise, kMostNoise);
 }
 
+std::string fault_of(const Features& features, const Camera& camera) {
+  if (!within(features.levels, 1, kMostLevels) || !within(features.scale_factor, 1, kMostScale))
+    return "it has no pyramid of 1 to 64 levels, with a factor of 1 to 4";
+  for (const cv::KeyPoint& keypoint : features.keypoints) {
+    if (!is_inside(keypoint.pt, camera)) return "a keypoint is not in the image";
+    if (keypoint.octave < 0 || keypoint.octave >= features.levels)
+      return "a keypoint has octave " + std::to_string(keypoint.octave) + " of " +
+             std::to_string(features.levels);
+    if (!is_possible(keypoint)) return "the size, angle or response of a keypoint cannot be";
+  }
+  const auto is_depth = [](float z) { return within(z, 0, kFarthest); };
+  if (!std::ranges::all_of(features.depth, is_depth))
+    return "the depth of a feature is negative or no number";
+  return "";
+}
+
 void check_values(const Camera& camera) { require(possible(camera), "a camera"); }
 
 void check_values(const Landmark& landmark) {
@@ -68,7 +80,7 @@ void check_values(const Landmark& landmark) {
 
 void check_values(const KeyFrame& keyframe) {
   require(std::isfinite(keyframe.time) && possible(keyframe.world_from_camera) &&
-              possible(*keyframe.features, *keyframe.camera),
+              fault_of(*keyframe.features, *keyframe.camera).empty(),
           "a key frame");
 }
 

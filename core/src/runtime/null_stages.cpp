@@ -15,8 +15,10 @@ class NullSegmenter final : public Segmenter {
 // Labels stay where they were: those of the frame itself when the network is waited for.
 class NullPropagator final : public Propagator {
  public:
-  Segmentation propagate(const Segmentation& segmentation, const Frame&, const Frame&) override {
-    return segmentation;
+  Segmentation propagate(const Segmentation& segmentation, const Frame&, const Frame& to) override {
+    Segmentation unmoved = segmentation;
+    unmoved.frame = to.index;
+    return unmoved;
   }
 };
 

@@ -41,7 +41,7 @@ TrackResult track(Tracker& tracker, PreparedFramePtr prepared, const StaticWeigh
   const FramePtr frame = prepared->frame;
   TrackResult result = tracker.track(std::move(prepared), weights, map, hints);
   check_tracking(result, *frame, map, hints);
-  if (thorough) check_thoroughly(result, *frame);
+  if (thorough) check_thoroughly(result);
   return result;
 }
 

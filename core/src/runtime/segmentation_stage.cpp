@@ -23,14 +23,14 @@ double largest_share(const Segmentation& segmentation) {
 
 Segmentation segment(Segmenter& segmenter, const Frame& frame, std::size_t classes) {
   Segmentation found = segmenter.segment(frame);
-  check_segmentation(found, frame.gray.size(), classes);
+  check_segmentation(found, frame, classes);
   return found;
 }
 
 Segmentation propagate(Propagator& propagator, const Segmentation& labels, const Frame& from,
                        const Frame& to, std::size_t classes) {
   Segmentation moved = propagator.propagate(labels, from, to);
-  check_segmentation(moved, to.gray.size(), classes);
+  check_segmentation(moved, to, classes);
   return moved;
 }
 

@@ -19,7 +19,7 @@ namespace stillpoint {
 namespace {
 
 constexpr double kLargestSkew = 1e-3;   // of a rotation matrix from an orthonormal one
-constexpr double kSamePose = 1e-6;      // relative difference of two matrices
+constexpr double kSamePose = 1e-4;      // relative difference of two matrices, also of floats
 constexpr float kFarthestMedian = 200;  // metres; a room's is above that in millimetres
 
 /// `what` is in the plural: "the labels".
@@ -120,7 +120,7 @@ void check_keyframe(const KeyFrame& keyframe, const Frame& frame, const SparseMa
   require_of_stage(keyframe.time == frame.time,
                    "the time of the key frame is not that of its frame",
                    "set KeyFrame::time to Frame::time");
-  require_of_stage(keyframe.camera != nullptr, "the key frame has no camera",
+  require_of_stage(keyframe.camera && possible(*keyframe.camera), "the key frame has no camera",
                    "give it that of the frame");
   require_of_stage(keyframe.features != nullptr, "the key frame has no features",
                    "a tracker without point features gives an empty Features");
@@ -145,6 +145,39 @@ void check_keyframe(const KeyFrame& keyframe, const Frame& frame, const SparseMa
                           [&](LandmarkId id) { return id == kNoId || id < map.landmark_id_end(); }),
       "the key frame sees a landmark that is not in the map",
       "use ids of the map that track() was given");
+  const std::string fault = fault_of(features, *keyframe.camera);
+  require_of_stage(fault.empty(), "the key frame has wrong features: " + fault,
+                   "positions are in pixels of the frame, octaves count from 0 to "
+                   "Features::levels - 1, a depth of 0 stands for no measurement");
+  require_of_stage(keyframe.covariance.allFinite(), "the covariance of the key frame is not finite",
+                   "leave it 0 where it is not known");
+}
+
+/// The pose by the reference, which trajectories follow, is that of the result.
+void check_reference(const TrackResult& result, const Pose& world_from_reference) {
+  const Pose pose = world_from_reference * result.reference_from_camera;
+  require_of_stage(pose.isApprox(result.world_from_camera, kSamePose),
+                   "reference_from_camera and world_from_camera are two different poses",
+                   "world_from_camera = map.world_from_keyframe(reference) * "
+                   "reference_from_camera");
+}
+
+/// Key frames that `before` does not have, or not as they are now, and the landmarks they see.
+void check_changes(const SparseMap& map, const SparseMap& before) {
+  for (KeyFrameId id = 0; id < map.keyframe_id_end(); ++id) {
+    const KeyFrame* keyframe = map.keyframe(id);
+    if (!keyframe || (id < before.keyframe_id_end() && keyframe == before.keyframe(id))) continue;
+    if (!is_pose(keyframe->world_from_camera))
+      require_of_stage(false, "the pose of key frame " + std::to_string(id) + " is no rigid motion",
+                       "it must be finite, with an orthonormal rotation");
+    for (const LandmarkId seen : keyframe->landmarks) {
+      const Landmark* landmark = map.landmark(seen);
+      if (landmark && !landmark->position_in_world.allFinite())
+        require_of_stage(false,
+                         "the position of landmark " + std::to_string(seen) + " is not finite",
+                         "remove landmarks whose position is not known");
+    }
+  }
 }
 
 }  // namespace
@@ -186,8 +219,13 @@ void check_frame(const Frame& frame, std::uint32_t index, const Frame* previous)
       "give depth in metres; of images in other units, the camera's depth_factor says it");
 }
 
-void check_segmentation(const Segmentation& segmentation, cv::Size frame, std::size_t classes) {
+void check_segmentation(const Segmentation& segmentation, const Frame& of, std::size_t classes) {
   if (!segmentation.known()) return;
+  const cv::Size frame = of.gray.size();
+  require_of_stage(segmentation.frame == of.index,
+                   "Segmentation::frame is " + std::to_string(segmentation.frame) + " for frame " +
+                       std::to_string(of.index),
+                   "set it to Frame::index: propagators tell by it which labels are new");
   check_image(segmentation.labels, frame, "the labels", "give one byte per pixel of the frame");
   const int label = highest(segmentation.labels);
   require_of_stage(label < std::max(1, static_cast<int>(classes)),
@@ -274,6 +312,10 @@ void check_tracking(const TrackResult& result, const Frame& frame, const SparseM
                        (result.reference == kNoId ? "kNoId" : std::to_string(result.reference)) +
                        " of " + std::to_string(end),
                    "TrackResult::reference must be a key frame of the map, or the one just made");
+  if (result.reference < map.keyframe_id_end())
+    check_reference(result, map.world_from_keyframe(result.reference));
+  else if (result.reference == hints.next_keyframe)
+    check_reference(result, result.keyframe->world_from_camera);
 }
 
 void check_inserted(const SparseMap& map, const SparseMap& before) {
@@ -288,6 +330,7 @@ void check_refined(const SparseMap& map, const SparseMap& before) {
   require_of_stage(map.keyframe_id_end() >= before.keyframe_id_end() &&
                        map.landmark_id_end() >= before.landmark_id_end(),
                    "ids of the map are gone", "give the next version of the map it was given");
+  check_changes(map, before);
 }
 
 void check_correction(const MapCorrection& correction, const SparseMap& map) {

@@ -30,25 +30,6 @@ void require_range(const cv::Mat& image, double least, double most, const std::s
       what + " at " + text_of(outside) + " is " + std::to_string(image.at<float>(outside)), remedy);
 }
 
-void check_keyframe(const KeyFrame& keyframe, const Frame& frame) {
-  const Features& features = *keyframe.features;
-  const cv::Rect2f image({}, cv::Size2f(frame.gray.size()));
-  for (const cv::KeyPoint& point : features.keypoints) {
-    require_of_stage(image.contains(point.pt), "a keypoint of the key frame is not in the image",
-                     "keypoints are in pixels of the frame");
-    require_of_stage(point.octave >= 0 && point.octave < features.levels,
-                     "a keypoint of the key frame has octave " + std::to_string(point.octave) +
-                         " of " + std::to_string(features.levels),
-                     "octaves count from 0 to Features::levels - 1");
-  }
-  require_of_stage(
-      std::ranges::all_of(features.depth,
-                          [](float depth) { return std::isfinite(depth) && depth >= 0; }),
-      "the depth of a feature is negative or no number", "0 stands for no measurement");
-  require_of_stage(keyframe.covariance.allFinite(), "the covariance of the key frame is not finite",
-                   "leave it 0 where it is not known");
-}
-
 }  // namespace
 
 void check_thoroughly(const Frame& frame) {
@@ -66,8 +47,7 @@ void check_thoroughly(const MapEvidence& evidence) {
                 "0 stands for what is not known");
 }
 
-void check_thoroughly(const TrackResult& result, const Frame& frame) {
-  if (result.keyframe) check_keyframe(*result.keyframe, frame);
+void check_thoroughly(const TrackResult& result) {
   if (result.state != TrackState::kTracking || !result.uncertainty) return;
   const Matrix6d& covariance = result.uncertainty->covariance;
   require_of_stage(covariance.allFinite() && covariance.diagonal().minCoeff() >= 0,

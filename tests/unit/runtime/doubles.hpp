@@ -193,7 +193,11 @@ class FakeTracker final : public Tracker {
     }
     result.reference = reference_.id;
     result.reference_from_camera = reference_.world_from_camera.inverse() * pose;
-    result.world_from_camera = pose;
+    // A loop may have moved the reference.
+    result.world_from_camera =
+        reference_.id < map.keyframe_id_end()
+            ? map.world_from_keyframe(reference_.id) * result.reference_from_camera
+            : pose;
     return result;
   }
 

@@ -15,6 +15,7 @@ namespace {
 
 using ::testing::HasSubstr;
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr float kFloatNan = std::numeric_limits<float>::quiet_NaN();
 const cv::Size kSize(4, 3);
 constexpr std::size_t kClasses = 3;
 
@@ -108,9 +109,9 @@ class WrongLabels : public ::testing::TestWithParam<LabelFault> {};
 
 TEST_P(WrongLabels, AreRefused) {
   Segmentation labels = right_labels();
-  ASSERT_EQ(message_of([&] { check_segmentation(labels, kSize, kClasses); }), "");
+  ASSERT_EQ(message_of([&] { check_segmentation(labels, right_frame(), kClasses); }), "");
   GetParam().spoil(labels);
-  EXPECT_THAT(message_of([&] { check_segmentation(labels, kSize, kClasses); }),
+  EXPECT_THAT(message_of([&] { check_segmentation(labels, right_frame(), kClasses); }),
               HasSubstr(GetParam().message));
 }
 
@@ -130,11 +131,13 @@ INSTANTIATE_TEST_SUITE_P(
         LabelFault{"Background", [](Segmentation& s) { s.objects[0].label = 0; },
                    "an object has label 0"},
         LabelFault{"Box", [](Segmentation& s) { s.objects[0].box.x = 3; },
-                   "the box of an object is not in the image"}),
+                   "the box of an object is not in the image"},
+        LabelFault{"Frame", [](Segmentation& s) { s.frame = 6; },
+                   "Segmentation::frame is 6 for frame 0; set it to Frame::index"}),
     [](const auto& test) { return test.param.name; });
 
 TEST(StageResults, LabelsThatAreNotKnownAreRight) {
-  EXPECT_EQ(message_of([] { check_segmentation({}, kSize, 0); }), "");
+  EXPECT_EQ(message_of([] { check_segmentation({}, right_frame(7), 0); }), "");
 }
 
 TEST(StageResults, WrongWeightsAreRefused) {
@@ -199,6 +202,14 @@ TrackResult right_result(const Frame& frame) {
   return result;
 }
 
+std::function<void(TrackResult&)> with_features(const std::function<void(Features&)>& spoil) {
+  return [spoil](TrackResult& result) {
+    Features features = *result.keyframe->features;
+    spoil(features);
+    result.keyframe->features = std::make_shared<const Features>(std::move(features));
+  };
+}
+
 struct TrackFault {
   const char* name;
   std::function<void(TrackResult&)> spoil;
@@ -249,9 +260,54 @@ INSTANTIATE_TEST_SUITE_P(
                    "the pose of the key frame is no rigid motion"},
         TrackFault{"OtherPose", [](TrackResult& r) { r.world_from_camera.translation().x() = 5; },
                    "the key frame has another pose than its frame"},
+        TrackFault{"TwoPoses",
+                   [](TrackResult& r) { r.reference_from_camera.translation().x() = 0.01; },
+                   "reference_from_camera and world_from_camera are two different poses"},
+        TrackFault{"Outside", with_features([](Features& f) { f.keypoints[1].pt.x = 6; }),
+                   "wrong features: a keypoint is not in the image"},
+        TrackFault{"NanPixel", with_features([](Features& f) { f.keypoints[1].pt.y = kFloatNan; }),
+                   "a keypoint is not in the image"},
+        TrackFault{"Octave", with_features([](Features& f) { f.keypoints[0].octave = 8; }),
+                   "a keypoint has octave 8 of 8"},
+        TrackFault{"NegativeOctave", with_features([](Features& f) { f.keypoints[0].octave = -1; }),
+                   "a keypoint has octave -1 of 8"},
+        TrackFault{"Levels", with_features([](Features& f) { f.levels = 65; }),
+                   "no pyramid of 1 to 64 levels"},
+        TrackFault{"ScaleFactor", with_features([](Features& f) { f.scale_factor = 0.5; }),
+                   "no pyramid of 1 to 64 levels, with a factor of 1 to 4"},
+        TrackFault{"Angle", with_features([](Features& f) { f.keypoints[0].angle = kFloatNan; }),
+                   "the size, angle or response of a keypoint"},
+        TrackFault{"NegativeDepth", with_features([](Features& f) { f.depth[0] = -1; }),
+                   "the depth of a feature is negative"},
+        TrackFault{"Covariance", [](TrackResult& r) { r.keyframe->covariance(1, 1) = kNan; },
+                   "the covariance of the key frame is not finite"},
+        TrackFault{"ImpossibleCamera",
+                   [](TrackResult& r) {
+                     r.keyframe->camera = std::make_shared<const Camera>(
+                         Camera{.width = 4, .height = 3, .fx = kNan});
+                   },
+                   "the key frame has no camera"},
         TrackFault{"LostKeyFrame", [](TrackResult& r) { r.state = TrackState::kLost; },
                    "it made a key frame, but is LOST"}),
     [](const auto& test) { return test.param.name; });
+
+TEST(StageResults, ThePoseByAReferenceInTheMapIsThatOfTheResult) {
+  MapEdit map{SparseMap()};
+  KeyFrame keyframe{.id = 0};
+  keyframe.features = std::make_shared<const Features>();
+  keyframe.world_from_camera.translation().x() = 2;
+  map.add_keyframe(std::move(keyframe));
+  TrackResult result{.state = TrackState::kTracking, .reference = 0};
+  const auto message = [&](KeyFrameId next) {
+    return message_of(
+        [&] { check_tracking(result, right_frame(), map.map(), {.next_keyframe = next}); });
+  };
+  EXPECT_THAT(message(1), HasSubstr("are two different poses; world_from_camera = map."));
+  result.world_from_camera.translation().x() = 2;
+  EXPECT_EQ(message(1), "");
+  result.reference = 1;  // still on its way to local mapping: its pose is not known here
+  EXPECT_EQ(message(2), "");
+}
 
 TEST(StageResults, AMapThatStaysAsItIsGetsNoKeyFrame) {
   const Frame frame = right_frame(7);
@@ -295,6 +351,29 @@ TEST(StageResults, AMapThatIsNoNextVersionIsRefused) {
   EXPECT_THAT(message_of([&] { check_refined(before, after); }),
               HasSubstr("ids of the map are gone"));
   EXPECT_THAT(message_of([&] { check_inserted({}, before); }), HasSubstr("key frame 2"));
+}
+
+TEST(StageResults, WhatIsNewInAMapIsFinite) {
+  const auto message = [](const std::function<void(MapEdit&)>& spoil) {
+    MapEdit before(map_with_keyframes(2));
+    KeyFrame seeing{.id = 2};
+    seeing.features = std::make_shared<const Features>(
+        Features{.keypoints = {{}}, .descriptors = {{}}, .depth = {1}});
+    seeing.landmarks = {kNoId};
+    before.add_keyframe(std::move(seeing));
+    before.add_observation(before.add_landmark({.reference = 2}), {.keyframe = 2, .feature = 0});
+    MapEdit after(before.map());
+    after.keyframe(2).track_weights = {255};  // changed
+    spoil(after);
+    return message_of([&] { check_refined(after.map(), before.map()); });
+  };
+  EXPECT_EQ(message([](MapEdit&) {}), "");
+  EXPECT_THAT(message([](MapEdit& map) { map.keyframe(1).world_from_camera(0, 3) = kNan; }),
+              HasSubstr("the pose of key frame 1 is no rigid motion"));
+  EXPECT_THAT(message([](MapEdit& map) { map.keyframe(2).world_from_camera.linear() *= 2; }),
+              HasSubstr("the pose of key frame 2 is no rigid motion"));
+  EXPECT_THAT(message([](MapEdit& map) { map.landmark(0).position_in_world.z() = kNan; }),
+              HasSubstr("the position of landmark 0 is not finite"));
 }
 
 TEST(StageResults, WrongCorrectionsAreRefused) {

@@ -1,5 +1,7 @@
-// Valid values in a saved map: a malicious file may have correct checksums.
+// Valid values of cameras and in saved maps: a malicious file may have correct checksums.
 #pragma once
+
+#include <string>
 
 #include "stillpoint/contracts/camera.hpp"
 #include "stillpoint/contracts/keyframe.hpp"
@@ -9,6 +11,11 @@ namespace stillpoint {
 
 /// Whether all values are finite and could be those of a camera.
 bool possible(const Camera& camera);
+
+/// What is wrong with features of images of that camera; empty: nothing. Keypoints lie in the image
+/// and in the pyramid, which has up to 64 levels and a factor of up to 4 between two; depths are
+/// not negative. There must be as many depths as keypoints.
+std::string fault_of(const Features& features, const Camera& camera);
 
 /// Each throws DamagedMap when a value is not finite or not valid: images larger than 16,384 px,
 /// positions beyond 10,000 km, matrices that are no rotations, features outside the image or the

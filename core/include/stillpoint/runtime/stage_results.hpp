@@ -20,9 +20,9 @@ namespace stillpoint {
 /// Of a source: `index` is the one that comes next, `previous` the frame before, or null.
 STILLPOINT_EXPORT void check_frame(const Frame& frame, std::uint32_t index, const Frame* previous);
 
-/// Of a segmenter or a propagator, for a frame of this size; `classes`: how many labels there are,
-/// the background included. Labels that are not known are right.
-STILLPOINT_EXPORT void check_segmentation(const Segmentation& segmentation, cv::Size frame,
+/// Of a segmenter or a propagator, for a frame; `classes`: how many labels there are, the
+/// background included. Labels that are not known are right.
+STILLPOINT_EXPORT void check_segmentation(const Segmentation& segmentation, const Frame& of,
                                           std::size_t classes);
 
 /// Of a moving check, for frames of this size.
@@ -42,7 +42,8 @@ STILLPOINT_EXPORT void check_prepared(const PreparedFrame* prepared, const Frame
 STILLPOINT_EXPORT void check_tracking(const TrackResult& result, const Frame& frame,
                                       const SparseMap& map, const TrackHints& hints);
 
-/// Of a local mapper that has inserted a key frame, or refined around one.
+/// Of a local mapper that has inserted a key frame, or refined around one: what is new is looked
+/// at.
 STILLPOINT_EXPORT void check_inserted(const SparseMap& map, const SparseMap& before);
 STILLPOINT_EXPORT void check_refined(const SparseMap& map, const SparseMap& before);
 

@@ -20,8 +20,8 @@ STILLPOINT_EXPORT void check_thoroughly(const MovingPoints& moving);
 /// Of a map check.
 STILLPOINT_EXPORT void check_thoroughly(const MapEvidence& evidence);
 
-/// Of a tracker, for a frame: features and covariances.
-STILLPOINT_EXPORT void check_thoroughly(const TrackResult& result, const Frame& frame);
+/// Of a tracker: the uncertainty of the pose.
+STILLPOINT_EXPORT void check_thoroughly(const TrackResult& result);
 
 /// Of a local mapper, or after a correction: links, poses and positions.
 STILLPOINT_EXPORT void check_thoroughly(const SparseMap& map);
