@@ -24,7 +24,7 @@ void ObjectMotionOptions::visit(OptionVisitor& v) {
      .help = "largest decrease per frame; small, since people pause"});
   v("prior_decay", prior_decay,
     {.min = 0, .max = 1, .help = "decay towards the prior per frame, seen or missed"});
-  v("range", range,
+  v("max_log_odds", max_log_odds,
     {.min = 0, .max = 20, .unit = "log-odds", .help = "greatest deviation from the prior"});
   v("min_points", min_points, {.min = 1, .help = "points that an object needs for evidence"});
   v("moves_above", moves_above,
@@ -92,8 +92,8 @@ void ObjectBeliefs::learn(ObjectBelief& belief, const PointCount& count) const {
     belief.log_odds += std::clamp(options_.gain * (share - options_.share), -options_.max_decrease,
                                   options_.max_increase);
   }
-  belief.log_odds =
-      std::clamp(belief.log_odds, belief.prior - options_.range, belief.prior + options_.range);
+  belief.log_odds = std::clamp(belief.log_odds, belief.prior - options_.max_log_odds,
+                               belief.prior + options_.max_log_odds);
   const double p = probability(belief.log_odds);
   belief.moves = belief.moves ? p > options_.static_below : p > options_.moves_above;
 }

@@ -16,7 +16,7 @@ struct ObjectMotionOptions {
   double max_increase = 1.5;  ///< log-odds per frame, most
   double max_decrease = 0.3;  ///< log-odds per frame, most: people who pause go on walking
   double prior_decay = 0.02;  ///< decay towards the prior, per frame, seen or missed
-  double range = 3.5;         ///< log-odds, greatest deviation from the prior
+  double max_log_odds = 3.5;  ///< greatest deviation from the prior
   int min_points = 4;         ///< on an object, for evidence
   double moves_above = 0.7;   ///< probability
   double static_below = 0.4;  ///< probability

@@ -21,12 +21,12 @@ constexpr float kSameSurface = 0.03F;  // of the depth, between neighbouring cel
 // Evidence on the cells of a row.
 struct Verdicts {
   std::vector<float> resting;  // s, age of the oldest view that saw it there, no violation since
-  std::vector<float> came_in;  // views with a free-space violation
-  std::array<std::vector<float>, 3> same;  // views that saw it there, by Trust
+  std::vector<float> free_space_violation;  // views with a free-space violation
+  std::array<std::vector<float>, 3> same;   // views that saw it there, by Trust
 
   void clear(std::size_t cells) {
     resting.assign(cells, 0.0F);
-    came_in.assign(cells, 0.0F);
+    free_space_violation.assign(cells, 0.0F);
     for (std::vector<float>& count : same) count.assign(cells, 0.0F);
   }
 };
@@ -59,7 +59,7 @@ class Judge {
     std::vector<PastView> past_views;
     for (const View* view : views) past_views.push_back(past_view(*view, world_from_camera, time));
     cv::Mat result(depth_.size(), CV_32F);
-    const auto range = static_cast<float>(options_.range);
+    const auto limit = static_cast<float>(options_.max_log_odds);
     for (int y = 0; y < depth_.rows; ++y) {
       verdicts_.clear(row_length_);
       for (const PastView& past : past_views) {
@@ -68,7 +68,7 @@ class Judge {
       }
       auto* out = result.ptr<float>(y);
       for (std::size_t x = 0; x < static_cast<std::size_t>(depth_.cols); ++x)
-        out[x] = std::clamp(evidence_of(x), -range, range);
+        out[x] = std::clamp(evidence_of(x), -limit, limit);
     }
     return result;
   }
@@ -140,8 +140,9 @@ class Judge {
       const cv::v_float32 resting = cv::vx_load(&verdicts_.resting[x]);
       const cv::v_float32 through = measured & (z < near - all(options_.margin) - noise) &
                                     (resting < all(options_.rest_time));
-      const cv::v_float32 came_in = cv::vx_load(&verdicts_.came_in[x]) + (through & one);
-      cv::vx_store(&verdicts_.came_in[x], came_in);
+      const cv::v_float32 free_space_violation =
+          cv::vx_load(&verdicts_.free_space_violation[x]) + (through & one);
+      cv::vx_store(&verdicts_.free_space_violation[x], free_space_violation);
 
       const cv::v_float32 between = (z >= near - tolerance) & (z <= far + tolerance);
       const auto off = [&](const cv::v_float32& surface) {
@@ -151,7 +152,7 @@ class Judge {
       const cv::v_float32 beside =
           edge & off(near) & off(far) & off(cv::v_lut(view.depth.ptr<float>(), place));
       const cv::v_float32 same = measured & between & ~beside;
-      const cv::v_float32 rests = same & (came_in == zero);
+      const cv::v_float32 rests = same & (free_space_violation == zero);
       cv::vx_store(&verdicts_.resting[x], cv::v_max(resting, rests & all(past.age)));
       if (past.is_static_evidence) count_same(x, same, cv::v_lut(view.trust.ptr<int>(), place));
     }
@@ -168,10 +169,10 @@ class Judge {
 
   float evidence_of(std::size_t x) const {
     const double untrusted =
-        verdicts_.resting[x] >= options_.rest_time ? options_.same_untrusted : 0.0;
-    return static_cast<float>(options_.came_in * verdicts_.came_in[x] -
-                              options_.same_mapped * verdicts_.same[kMapped][x] -
-                              options_.same_tracked * verdicts_.same[kTracked][x] -
+        verdicts_.resting[x] >= options_.rest_time ? options_.static_unused : 0.0;
+    return static_cast<float>(options_.free_space_violation * verdicts_.free_space_violation[x] -
+                              options_.static_mapped * verdicts_.same[kMapped][x] -
+                              options_.static_tracked * verdicts_.same[kTracked][x] -
                               untrusted * verdicts_.same[kNotStatic][x]);
   }
 
@@ -190,9 +191,9 @@ class Judge {
 /// Isolated cells are noise at depth discontinuities.
 void remove_specks(cv::Mat& log_odds) {
   const cv::Mat around = cv::Mat::ones(3, 3, CV_8U);
-  cv::Mat came_in = log_odds > 0, opened;
-  cv::morphologyEx(came_in, opened, cv::MORPH_OPEN, around);
-  log_odds.setTo(0, came_in & ~opened);
+  cv::Mat free_space_violation = log_odds > 0, opened;
+  cv::morphologyEx(free_space_violation, opened, cv::MORPH_OPEN, around);
+  log_odds.setTo(0, free_space_violation & ~opened);
   cv::Mat same = log_odds < 0;
   cv::morphologyEx(same, opened, cv::MORPH_OPEN, around);
   log_odds.setTo(0, same & ~opened);
@@ -256,28 +257,28 @@ void VerdictOptions::visit(OptionVisitor& v) {
      .max = 100,
      .unit = "m",
      .help = "distance of the viewpoints from which younger views count, too"});
-  v("came_in", came_in,
+  v("free_space_violation", free_space_violation,
     {.min = 0,
      .max = 100,
      .unit = "log-odds",
      .help = "added for each view that saw free space where the surface is"});
-  v("same_mapped", same_mapped,
+  v("static_mapped", static_mapped,
     {.min = 0,
      .max = 100,
      .unit = "log-odds",
      .help = "subtracted for each view that saw the surface there and used it for the map"});
-  v("same_tracked", same_tracked,
+  v("static_tracked", static_tracked,
     {.min = 0,
      .max = 100,
      .unit = "log-odds",
      .help = "subtracted for each view that saw it there and used it for tracking only"});
-  v("same_untrusted", same_untrusted,
+  v("static_unused", static_unused,
     {.min = 0,
      .max = 100,
      .unit = "log-odds",
      .help =
          "subtracted for each view that saw it there and used it for neither, after rest_time"});
-  v("range", range,
+  v("max_log_odds", max_log_odds,
     {.min = 0,
      .max = 100,
      .unit = "log-odds",

@@ -8,17 +8,17 @@
 namespace stillpoint::map_checks {
 
 struct VerdictOptions {
-  double margin = 0.04;         ///< m, in front of an earlier surface: free-space violation
-  double tolerance = 0.015;     ///< m, around an earlier surface: the same surface
-  double rest_time = 5.0;       ///< s, after which an object that came in and stays is static
-  double min_age = 1.0;         ///< s; younger views from the same place are no evidence
-  double min_parallax = 0.1;    ///< m between the viewpoints; then younger ones are
-  double came_in = 3.0;         ///< log-odds, of each view that saw free space there
-  double same_mapped = 1.5;     ///< log-odds, of each view that saw it there and mapped it
-  double same_tracked = 0.3;    ///< log-odds, of each that only tracked it
-  double same_untrusted = 0.3;  ///< log-odds, of each that did neither
-  double range = 8.0;           ///< log-odds, most
-  double reach = 0.5;           ///< m, region growing of violations over unknown space
+  double margin = 0.04;               ///< m, in front of an earlier surface: free-space violation
+  double tolerance = 0.015;           ///< m, around an earlier surface: the same surface
+  double rest_time = 5.0;             ///< s, after which an object that came in and stays is static
+  double min_age = 1.0;               ///< s; younger views from the same place are no evidence
+  double min_parallax = 0.1;          ///< m between the viewpoints; then younger ones are
+  double free_space_violation = 3.0;  ///< log-odds, of each view that saw free space there
+  double static_mapped = 1.5;         ///< log-odds, of each view that saw it there and mapped it
+  double static_tracked = 0.3;        ///< log-odds, of each that only tracked it
+  double static_unused = 0.3;         ///< log-odds, of each that did neither
+  double max_log_odds = 8.0;
+  double reach = 0.5;  ///< m, region growing of violations over unknown space
 
   void visit(OptionVisitor& visitor);
 };

@@ -27,11 +27,11 @@ float log_odds(double probability) {
 
 OccupancyModel model_of(const OctomapBackend::Options& options) {
   const bool carves = options.model == OctomapBackend::Options::Model::kRays;
-  return {.hit = log_odds(options.hit),
-          .miss = carves ? log_odds(options.miss) : 0.0F,
-          .min = log_odds(options.least),
-          .max = log_odds(options.most),
-          .doubt = log_odds(options.occupied_above) - log_odds(options.hit) - kBelowThreshold};
+  return {.hit = log_odds(options.prob_hit),
+          .miss = carves ? log_odds(options.prob_miss) : 0.0F,
+          .min = log_odds(options.clamping_min),
+          .max = log_odds(options.clamping_max),
+          .doubt = log_odds(options.occupied_above) - log_odds(options.prob_hit) - kBelowThreshold};
 }
 
 ScanOptions scan_options_of(const OctomapBackend::Options& options) {
@@ -65,10 +65,13 @@ void OctomapBackend::Options::visit(OptionVisitor& v) {
   v("range", range, {.min = 0.5, .max = 13, .unit = "m", .help = "surfaces beyond are left out"});
   v.choice("model", model, {{"rays", Model::kRays}, {"hits", Model::kHits}},
            {.help = "whether rays carve free space, or only hits count (the paper, eq. 6)"});
-  v("hit", hit, {.min = 0.51, .max = 0.99, .help = "probability of a voxel hit by a ray"});
-  v("miss", miss, {.min = 0.01, .max = 0.49, .help = "probability of one a ray passes"});
-  v("least", least, {.min = 0.001, .max = 0.49, .help = "lower clamping bound of the probability"});
-  v("most", most, {.min = 0.7, .max = 0.999, .help = "upper clamping bound of the probability"});
+  v("prob_hit", prob_hit,
+    {.min = 0.51, .max = 0.99, .help = "probability of a voxel hit by a ray"});
+  v("prob_miss", prob_miss, {.min = 0.01, .max = 0.49, .help = "probability of one a ray passes"});
+  v("clamping_min", clamping_min,
+    {.min = 0.001, .max = 0.49, .help = "lower clamping bound of the probability"});
+  v("clamping_max", clamping_max,
+    {.min = 0.7, .max = 0.999, .help = "upper clamping bound of the probability"});
   v("occupied_above", occupied_above,
     {.min = 0.01, .max = 0.99, .help = "probability from which a voxel is occupied"});
   v("tolerance", tolerance,
@@ -92,8 +95,8 @@ void OctomapBackend::Options::visit(OptionVisitor& v) {
          "voxels"});
   v("cost_map", cost_map, {.help = "2-D cost map for robots on the floor, saved with the map"});
   v.require(range / resolution <= 500, "range is more than 500 voxels");
-  v.require(least < occupied_above && occupied_above < most,
-            "occupied_above must lie between least and most");
+  v.require(clamping_min < occupied_above && occupied_above < clamping_max,
+            "occupied_above must lie between clamping_min and clamping_max");
 }
 
 OctomapBackend::OctomapBackend(const Options& options, const StageContext& context)

@@ -45,10 +45,10 @@ class OctomapBackend final : public MapBackend {
     double resolution = 0.05;  ///< metres
     double range = 4.0;        ///< metres
     Model model = Model::kRays;
-    double hit = 0.65;            ///< probability that a voxel is occupied when it is hit
-    double miss = 0.3;            ///< likewise, when a ray passes it
-    double least = 0.12;          ///< clamping bounds, so that objects may disappear
-    double most = 0.97;           ///< and appear again
+    double prob_hit = 0.65;       ///< probability that a voxel is occupied when it is hit
+    double prob_miss = 0.3;       ///< likewise, when a ray passes it
+    double clamping_min = 0.12;   ///< clamping bounds, so that objects may disappear
+    double clamping_max = 0.97;   ///< and appear again
     double occupied_above = 0.5;  ///< probability
     double tolerance = 0.5;       ///< voxels that key frames may move before they are fused again
     int stride = 0;               ///< px; 0 = by resolution and range

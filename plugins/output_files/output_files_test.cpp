@@ -175,6 +175,7 @@ TEST_F(OutputFiles, SummaryIsJsonWithTheFiguresOfTheRun) {
   output.frame(Report()());
   RunSummary run = summary();
   run.dropped_frames = 4;
+  run.dropped_reports = 6;
   run.loops_closed = 2;
   run.cpu_seconds = 0.6;
   run.seed = 42;
@@ -189,6 +190,7 @@ TEST_F(OutputFiles, SummaryIsJsonWithTheFiguresOfTheRun) {
   EXPECT_EQ(json["processed_frames"], 6);
   EXPECT_EQ(json["tracked_frames"], 3);
   EXPECT_EQ(json["dropped_frames"], 4);
+  EXPECT_EQ(json["dropped_reports"], 6);
   EXPECT_EQ(json["loops_closed"], 2);
   EXPECT_DOUBLE_EQ(json["coverage"], 0.3);
   EXPECT_EQ(json["times_lost"], 1);

@@ -71,12 +71,12 @@ std::string_view path_of(std::string_view target) { return target.substr(0, targ
 Access::Access(const std::string& address, std::string token)
     : loopback_(is_loopback(address)), token_(std::move(token)) {}
 
-std::string_view Access::refusal(const Knock& knock) const {
-  if (loopback_ && !is_local_name(name_of_host(knock.host)))
+std::string_view Access::refusal(const RequestHead& head) const {
+  if (loopback_ && !is_local_name(name_of_host(head.host)))
     return "this is not a name of the machine that runs Stillpoint";
-  if (!knock.origin.empty() && !is_of_host(knock.origin, knock.host))
+  if (!head.origin.empty() && !is_of_host(head.origin, head.host))
     return "pages of other sites may not look";
-  if (!token_.empty() && !same_secret(token_in(knock.target), token_))
+  if (!token_.empty() && !same_secret(token_in(head.target), token_))
     return "the address lacks the right token; take the one that the run has printed";
   return {};
 }

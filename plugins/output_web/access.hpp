@@ -13,7 +13,7 @@ bool is_loopback(const std::string& address);
 std::string random_token();
 
 /// Of an HTTP request, as they came.
-struct Knock {
+struct RequestHead {
   std::string_view target;  ///< "/live?token=…"
   std::string_view host;    ///< the header; empty: none
   std::string_view origin;  ///< the header, which browsers set; empty: none
@@ -27,12 +27,12 @@ class Access {
   /// An empty token is not asked for.
   Access(const std::string& address, std::string token);
 
-  /// Empty: come in. Otherwise the reason why not.
+  /// Empty: allowed. Otherwise the reason why not.
   ///
   /// Without a token, the host must be a name of this machine: a site whose name is made to lead
   /// here (DNS rebinding) still calls itself by that name. An origin, where there is one, must be
   /// the host itself. The port may be any, because tunnels change it.
-  std::string_view refusal(const Knock& knock) const;
+  std::string_view refusal(const RequestHead& head) const;
 
  private:
   const bool loopback_;

@@ -147,7 +147,7 @@ std::string EventLog::news(Seen& seen, const Request& request) {
   MessageWriter writer;
   writer.number(kProtocol);
   if (!seen.hello && now.latest.frame) {
-    write_text(Record::kHello, hello(*now.latest.frame->camera), writer);
+    write_text(Record::kRunInfo, hello(*now.latest.frame->camera), writer);
     seen.hello = true;
   }
   write_stages(now.stages, now.first_stage, writer);

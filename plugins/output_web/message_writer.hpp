@@ -15,7 +15,7 @@ namespace stillpoint::output_web {
 inline constexpr std::uint8_t kProtocol = 2;
 
 enum class Record : std::uint8_t {
-  kHello = 1,
+  kRunInfo = 1,
   kStages = 2,
   kFrames = 3,
   kTimes = 4,

@@ -13,7 +13,7 @@ TEST_F(LiveView, ShowsARunFromItsBeginning) {
   TestViewer viewer(port(*output));
   const auto records = viewer.asked();
   ASSERT_TRUE(records);
-  const auto hello = nlohmann::json::parse(records->at(Record::kHello).at(0));
+  const auto hello = nlohmann::json::parse(records->at(Record::kRunInfo).at(0));
   EXPECT_EQ(hello["camera"]["width"], 320);
   EXPECT_EQ(hello["classes"][1]["name"], "person");
   EXPECT_EQ(records->at(Record::kStages).at(0).substr(1), "track");
@@ -40,7 +40,7 @@ TEST_F(LiveView, SendsWhatIsNewAndAskedFor) {
   auto records = viewer.next();
   ASSERT_TRUE(records);
   EXPECT_EQ(number_at<std::uint32_t>(records->at(Record::kFrames).at(0), 0), 1u);
-  for (const Record none : {Record::kHello, Record::kStages, Record::kImage, Record::kCloud})
+  for (const Record none : {Record::kRunInfo, Record::kStages, Record::kImage, Record::kCloud})
     EXPECT_FALSE(records->contains(none)) << static_cast<int>(none);
   records = viewer.asked(5);  // now the rest, without a new frame
   ASSERT_TRUE(records);

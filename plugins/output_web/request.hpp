@@ -18,7 +18,7 @@ struct Request {
 };
 
 /// What a viewer makes the run do.
-enum class Command : std::uint8_t { kPause = 1, kGoOn = 2, kStep = 3, kEnd = 4, kSaveMap = 5 };
+enum class Command : std::uint8_t { kPause = 1, kResume = 2, kStep = 3, kEnd = 4, kSaveMap = 5 };
 
 inline constexpr std::size_t kRequestSize = 3;  // bytes, of either
 

@@ -25,13 +25,13 @@ struct ServerSetup {
   std::function<void(LogLevel, std::string_view)> log;
 };
 
-/// A viewer asks and is answered once something is new: who does not read is not written to, and
-/// nothing waits for anybody. All requests are small and limited, and so is the time for them.
+/// A viewer asks and is answered once something is new: one that does not read gets no data, and
+/// the server never blocks. All requests are small and limited, and so is the time for them.
 class Server {
  public:
   /// Throws Error(kUsage) when the address, the port or the file cannot be used.
   Server(ServerSetup setup, EventLog& events);
-  /// Sends what is new and says good-bye, for half a second at most.
+  /// Sends what is new and closes all connections, within half a second.
   ~Server();
   Server(const Server&) = delete;
   Server& operator=(const Server&) = delete;

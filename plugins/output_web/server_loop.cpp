@@ -19,7 +19,7 @@ using boost::system::error_code;
 using namespace std::chrono_literals;
 
 constexpr std::size_t kMostConnections = 64;
-constexpr auto kFarewell = 500ms;
+constexpr auto kCloseTimeout = 500ms;
 constexpr int kNice = 10;  // a tenth of tracking's share while both want to run
 
 tcp::endpoint endpoint_of(const ServerSetup& setup) {
@@ -62,9 +62,9 @@ ServerLoop::ServerLoop(ServerSetup setup, EventLog& events)
 }
 
 ServerLoop::~ServerLoop() {
-  asio::post(context_, [this] { say_goodbye(); });
+  asio::post(context_, [this] { close_gracefully(); });
   thread_.join();
-  farewell_.reset();  // viewers that are left go with the context
+  close_timer_.reset();  // viewers that are left go with the context
 }
 
 void ServerLoop::begin(std::shared_ptr<LiveRun> run) {
@@ -83,11 +83,11 @@ void ServerLoop::leave(Viewer& viewer) {
   viewers_.erase(&viewer);
   if (steering_.leave(&viewer) && !says_goodbye_) tell_steering();
   error_code ignored;
-  if (farewell_ && viewers_.empty()) farewell_->cancel(ignored);
+  if (close_timer_ && viewers_.empty()) close_timer_->cancel(ignored);
 }
 
-bool ServerLoop::obey(Viewer& viewer, Command command) {
-  if (!steering_.obey(&viewer, command)) return false;
+bool ServerLoop::execute(Viewer& viewer, Command command) {
+  if (!steering_.execute(&viewer, command)) return false;
   tell_steering();
   return true;
 }
@@ -156,16 +156,16 @@ void ServerLoop::record(void (Recorder::*what)(EventLog&)) {
 }
 
 // The context runs dry once everybody has gone, or has had the time for it.
-void ServerLoop::say_goodbye() {
+void ServerLoop::close_gracefully() {
   says_goodbye_ = true;
   acceptor_.close();
   retry_.cancel();
   record(&Recorder::finish);
   for (Connection* connection : connections_) connection->cancel();
   if (viewers_.empty()) return;
-  farewell_.emplace(context_, kFarewell);
-  farewell_->async_wait([this](error_code) { context_.stop(); });
-  for (Viewer* viewer : viewers_) viewer->say_goodbye();
+  close_timer_.emplace(context_, kCloseTimeout);
+  close_timer_->async_wait([this](error_code) { context_.stop(); });
+  for (Viewer* viewer : viewers_) viewer->close_gracefully();
 }
 
 }  // namespace stillpoint::output_web

@@ -40,13 +40,13 @@ class ServerLoop {
   const ServerSetup& setup() const { return setup_; }
   EventLog& events() { return events_; }
   bool is_full() const { return viewers_.size() >= static_cast<std::size_t>(setup_.viewers); }
-  bool says_goodbye() const { return says_goodbye_; }
+  bool is_closing() const { return says_goodbye_; }
   void enter(Connection& connection) { connections_.insert(&connection); }
   void leave(Connection& connection) { connections_.erase(&connection); }
   void enter(Viewer& viewer) { viewers_.insert(&viewer); }
   void leave(Viewer& viewer);
   /// False where viewers may only look.
-  bool obey(Viewer& viewer, Command command);
+  bool execute(Viewer& viewer, Command command);
   /// A viewer wants to see it.
   void read_dense_map();
   void warn(std::string_view text) const { setup_.log(LogLevel::kWarning, text); }
@@ -57,7 +57,7 @@ class ServerLoop {
   void offer_to_all();
   void tell_steering();
   void record(void (Recorder::*what)(EventLog&));
-  void say_goodbye();
+  void close_gracefully();
 
   const ServerSetup setup_;
   EventLog& events_;
@@ -67,7 +67,7 @@ class ServerLoop {
   std::set<Connection*> connections_;  // they leave by themselves, at the latest with the context
   std::set<Viewer*> viewers_;
   bool says_goodbye_ = false;
-  std::optional<boost::asio::steady_timer> farewell_;  // gone before the context
+  std::optional<boost::asio::steady_timer> close_timer_;  // gone before the context
   boost::asio::io_context context_{1};
   boost::asio::ip::tcp::acceptor acceptor_;
   const std::uint16_t port_ = acceptor_.local_endpoint().port();

@@ -41,7 +41,7 @@ TEST_F(LiveView, StartsAnewForWhoComesAgain) {
     TestViewer viewer(port(*output));
     const auto records = viewer.asked();
     ASSERT_TRUE(records);
-    EXPECT_TRUE(records->contains(Record::kHello));
+    EXPECT_TRUE(records->contains(Record::kRunInfo));
     EXPECT_TRUE(records->contains(Record::kFrames));
   }
 }

@@ -7,7 +7,7 @@
 
 namespace stillpoint::output_web {
 
-bool Steering::obey(const void* viewer, Command command) {
+bool Steering::execute(const void* viewer, Command command) {
   if (!allowed_) return false;
   if (!run_) return true;
   switch (command) {
@@ -15,7 +15,7 @@ bool Steering::obey(const void* viewer, Command command) {
       if (!pause_) pause_ = run_->pause();
       pausing_viewer_ = viewer;
       break;
-    case Command::kGoOn:
+    case Command::kResume:
       pause_.reset();
       break;
     case Command::kStep:

@@ -18,7 +18,7 @@ class Steering {
 
   void begin(std::shared_ptr<LiveRun> run) { run_ = std::move(run); }
   /// False where viewers may only look. Before begin(), nothing happens.
-  bool obey(const void* viewer, Command command);
+  bool execute(const void* viewer, Command command);
   /// A pause ends with the viewer that has asked for it. Whether that was so.
   bool leave(const void* viewer);
 

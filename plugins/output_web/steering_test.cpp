@@ -43,7 +43,7 @@ TEST_F(Steered, PausesStepsAndGoesOn) {
   EXPECT_TRUE(state_after(viewer, Command::kPause)["paused"]);
   EXPECT_TRUE(state_after(viewer, Command::kPause)["paused"]);  // it is already
   EXPECT_TRUE(state_after(viewer, Command::kStep)["paused"]);
-  EXPECT_FALSE(state_after(viewer, Command::kGoOn)["paused"]);
+  EXPECT_FALSE(state_after(viewer, Command::kResume)["paused"]);
   EXPECT_FALSE(state_after(viewer, Command::kStep)["paused"]);  // means nothing now
   EXPECT_EQ(run->calls(), (Calls{"pause", "step", "go on"}));
 }
@@ -53,7 +53,7 @@ TEST_F(Steered, AllViewersSeeItAndMayGoOn) {
   EXPECT_FALSE(state(second)["paused"]);
   tell(first, Command::kPause);
   EXPECT_TRUE(state(second)["paused"]);
-  EXPECT_FALSE(state_after(second, Command::kGoOn)["paused"]);
+  EXPECT_FALSE(state_after(second, Command::kResume)["paused"]);
 }
 
 TEST_F(Steered, GoesOnWhenTheViewerThatPausedHasGone) {
@@ -104,7 +104,7 @@ TEST_F(Steered, BearsAFloodOfCommands) {
   for (int round = 0; round < 500; ++round) {
     tell(flooding, Command::kPause);
     tell(flooding, Command::kStep);
-    tell(flooding, Command::kGoOn);
+    tell(flooding, Command::kResume);
   }
   EXPECT_FALSE(state(flooding)["paused"]);
   EXPECT_EQ(run->calls().size(), 1500u);

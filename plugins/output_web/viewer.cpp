@@ -38,7 +38,7 @@ void Viewer::offer() {
   send(*asked_);
 }
 
-void Viewer::say_goodbye() {
+void Viewer::close_gracefully() {
   if (!open_) return beast::get_lowest_layer(socket_).cancel();
   send({.image = true, .map = true, .cloud = true, .voxels = wants_voxels_});
   if (!writing_) close(websocket::close_code::going_away);
@@ -50,14 +50,14 @@ void Viewer::read() {
   });
 }
 
-// Who asks again before an answer has come, or says what nobody may, is no page of ours.
+// A second request before the answer, or an invalid one, closes the connection.
 void Viewer::take_request() {
   const auto bytes = buffer_.cdata();
   const auto said = parse_request({static_cast<const std::uint8_t*>(bytes.data()), bytes.size()});
   buffer_.consume(buffer_.size());
   if (!said || !socket_.got_binary()) return close(websocket::close_code::policy_error);
   if (const auto* command = std::get_if<Command>(&*said)) {
-    if (!loop_.obey(*this, *command)) return close(websocket::close_code::policy_error);
+    if (!loop_.execute(*this, *command)) return close(websocket::close_code::policy_error);
   } else {
     if (asked_) return close(websocket::close_code::policy_error);
     asked_ = std::get<Request>(*said);
@@ -86,7 +86,7 @@ void Viewer::send(const Request& request) {
 
 void Viewer::written() {
   writing_ = false;
-  if (loop_.says_goodbye()) return say_goodbye();
+  if (loop_.is_closing()) return close_gracefully();
   offer();
 }
 

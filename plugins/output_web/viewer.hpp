@@ -26,7 +26,7 @@ class Viewer : public std::enable_shared_from_this<Viewer> {
   /// Answers if it has asked, and something is new.
   void offer();
   /// Everything that is new, asked for or not, then the end.
-  void say_goodbye();
+  void close_gracefully();
 
  private:
   void read();

@@ -14,8 +14,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kNice = 10;     // a tenth of tracking's share of the processor
-constexpr double kRest = 20;  // times what saving and reading took
+constexpr int kNice = 10;                  // a tenth of tracking's share of the processor
+constexpr double kMinIntervalFactor = 20;  // of the time that saving and reading took
 
 // Tracking comes first. On Linux, the nice value belongs to a thread.
 void lower_priority() {
@@ -56,7 +56,7 @@ std::optional<DenseFiles> DenseFilesReader::next(double time, DenseFilesWanted w
   Read read = read_.get();
   if (read.files) {
     retry_period_ = kFirstRetry;
-    next_ = std::max(next_, time + kRest * read.took.count());
+    next_ = std::max(next_, time + kMinIntervalFactor * read.took.count());
   } else {
     next_ = std::min(next_, time + retry_period_);
     retry_period_ *= 2;  // there may be no dense map at all

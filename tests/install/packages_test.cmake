@@ -88,6 +88,14 @@ expect_in_output("100% tests passed, 0 tests failed out of 1")
 run(${program} run ${work}/packaged/pipeline.yaml --quiet --dataset ${recording} --set source.limit=3
   -o ${work}/packaged/out)
 
+# The example that pushes its own images, as its README builds it.
+run(${CMAKE_COMMAND} -S ${SOURCE_DIR}/sdk/examples/push_frames -B ${work}/packaged_push -G ${GENERATOR}
+  -D CMAKE_CXX_COMPILER=${CXX_COMPILER} -D CMAKE_PREFIX_PATH=${root}/usr
+  -D CMAKE_CXX_COMPILER_LAUNCHER=${CXX_LAUNCHER})
+run(${CMAKE_COMMAND} --build ${work}/packaged_push)
+run(${work}/packaged_push/push_frames)
+expect_in_output("after 1.97 s at 0.29")
+
 unpack(stillpoint-doc)
 find_program(python python3 REQUIRED)
 run(${python} -B ${SOURCE_DIR}/tests/docs/check_links.py ${root}/usr/share/doc/stillpoint-doc)
@@ -96,7 +104,8 @@ if(PYTHON)
   unpack(python3-stillpoint)
   expect_depends(python3-stillpoint stillpoint python3-numpy)
   run(${CMAKE_COMMAND} -E env PYTHONPATH=${root}/usr/lib/python3/dist-packages
-    ${PYTHON} -c "import stillpoint; print(stillpoint.Engine)")
+    ${PYTHON} ${SOURCE_DIR}/sdk/examples/push_arrays/push_arrays.py)
+  expect_in_output("90 of 90 frames tracked, error 0.")
 endif()
 
 # The demo, with a recording that is there already: making the whole one takes minutes.

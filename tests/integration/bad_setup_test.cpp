@@ -63,6 +63,16 @@ TEST_F(BadSetup, TextsThatBeginWithAComma) {
                  "not valid YAML: a value is missing");
   expect_refused(run("orb_baseline", on_recording({"--camera", file.string()})),
                  file.string() + ":1:1: error: not valid YAML: a value is missing");
+  const Outcome study = call({"ablate", file.string(), "-o", out().string()});
+  expect_refused(study, file.string() + ":1:1: error: not valid YAML");
+  expect_refused(call({"simulate", file.string(), "-o", out().string()}),
+                 file.string() + ":1:1: error: not valid YAML");
+  // A recording's own camera.
+  const fs::path recording = folder_.path() / "recording";
+  fs::copy(simulated_recording(), recording, fs::copy_options::recursive);
+  fs::copy_file(file, recording / "camera.yaml", fs::copy_options::overwrite_existing);
+  expect_refused(run("orb_baseline", {"--dataset", recording.string()}),
+                 (recording / "camera.yaml").string() + ":1:1: error: not valid YAML");
 }
 
 TEST_F(BadSetup, KeysThatAreNestedTooDeeply) {

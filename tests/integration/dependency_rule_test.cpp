@@ -125,6 +125,24 @@ TEST(DependencyRule, PluginsKnowTheSdkAndNotEachOther) {
   }
 }
 
+// What is built against the installed package has nothing else; the Python module also evaluates.
+TEST(DependencyRule, TheSdkKnowsWhatIsInstalled) {
+  for (const std::string& folder : folders_in(kRoot / "sdk")) {
+    std::vector<std::string> forbidden = prefixes_of(kRoot / "tools");
+    if (folder == "python") std::erase(forbidden, "evaluation/");
+    for (const char* parent : {"plugins", "core/libraries"})
+      for (const std::string& prefix : prefixes_of(kRoot / parent)) forbidden.push_back(prefix);
+    expect_none_begins(kRoot / "sdk" / folder, forbidden);
+  }
+}
+
+// A path upwards would go round the rules above. Within core/src there are two such folders, of
+// parts that are not in the libraries.
+TEST(DependencyRule, HeadersAreNamedFromTheirRoot) {
+  for (const char* folder : {"core/include", "core/libraries", "plugins", "tools", "sdk", "tests"})
+    expect_none_begins(kRoot / folder, {"../"});
+}
+
 TEST(DependencyRule, ToolsDoNotKnowPlugins) {
   expect_none_begins(kRoot / "tools", prefixes_of(kRoot / "plugins"));
 }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "ablate_fixture.hpp"
+#include "stillpoint/engine/folder_lock.hpp"
 #include "support/full_disk.hpp"
 
 namespace stillpoint::testing {
@@ -177,6 +178,14 @@ TEST_F(Ablate, AFolderHoldsOneStudy) {
   const Outcome damaged = call({"ablate", namesake, "-o", out().string()});
   EXPECT_EQ(damaged.exit_code, 2);
   EXPECT_THAT(damaged.err, HasSubstr("study.json: does not say whose folder this is; remove it"));
+}
+
+TEST_F(Ablate, AFolderIsOfOneProcessAtATime) {
+  ASSERT_EQ(ablate(kShort).exit_code, 0);
+  const FolderLock lock(out());
+  const Outcome refused = ablate(kShort);
+  EXPECT_EQ(refused.exit_code, 2);
+  EXPECT_THAT(refused.err, HasSubstr("another run or study is writing into this folder"));
 }
 
 TEST_F(Ablate, TheFirstRepeatKeepsPicturesOfItsWorstFrames) {

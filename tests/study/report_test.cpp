@@ -6,6 +6,7 @@
 #include "study/latex_report.hpp"
 #include "study/markdown_report.hpp"
 #include "study/markdown_table.hpp"
+#include "study/table_cells.hpp"
 
 namespace stillpoint::study {
 namespace {
@@ -75,12 +76,12 @@ TEST_F(Report, AsMarkdown) {
       "\n"
       "## Compared with plain, recording by recording\n"
       "\n"
-      "| variant | better | worse | by coverage | ATE ratio | CPU ratio | effect | p      | "
-      "corrected p |\n"
-      "|---------|--------|-------|-------------|-----------|-----------|--------|--------|"
-      "-------------|\n"
-      "| better  | 0      | 2     | 1           | 2.00      | –         | -1.00  | 0.5000 | "
-      "0.5000      |\n"
+      "| variant | recordings | better | worse | by coverage | ATE ratio | CPU ratio | effect | "
+      "p      | corrected p |\n"
+      "|---------|------------|--------|-------|-------------|-----------|-----------|--------|"
+      "--------|-------------|\n"
+      "| better  | 2          | 0      | 2     | 1           | 2.00      | –         | -1.00  | "
+      "0.5000 | 0.5000      |\n"
       "\n"
       "Ratios: median (quartiles); below 1 the variant has the smaller error, or takes less "
       "time. By coverage: recordings on which one of the two failed, covered less or lost its "
@@ -245,9 +246,32 @@ TEST_F(PublishedReport, AsLatex) {
                           "\\textit{0.1500} & \\textit{0.0500} \\\\\n"
                           "    \\addlinespace\n"
                           "    walking\\_empty & plain & \\textbf{0.0150} & "));
-  for (const char* label : {"ate", "ate_m", "comparison", "times"})
+  for (const char* label : {"ate", "ate_m", "comparison", "improvement", "times"})
     EXPECT_THAT(tables, ::testing::HasSubstr("\\label{tab:demo-" + std::string(label) + "}"));
   EXPECT_THAT(tables, ::testing::Not(::testing::HasSubstr("rpe")));
+}
+
+TEST_F(PublishedReport, AsLatexWhatHasFailedIsSaid) {
+  for (const std::size_t run : {2, 3}) {  // both of `better` on `walking`
+    results_.results[run] = CellResult();
+    results_.results[run]->exit_code = 1;
+  }
+  const std::string tables = latex_report(results_, "demo");
+  EXPECT_THAT(tables, ::testing::HasSubstr("-- {\\scriptsize [failed]}"));
+  EXPECT_THAT(tables, ::testing::HasSubstr("Variant & $n$ & Better & Worse & By coverage &"));
+  EXPECT_THAT(tables, ::testing::HasSubstr("    better & 2 & 0 & 2 & 1 &"));
+}
+
+// A median of the coverage would hide the run that was lost half of the time.
+TEST_F(Report, TheCoverageOfAllRunsIsSaid) {
+  Study study = two_by_two(3);
+  study.sequences.resize(1);
+  StudyResults results{.study = study, .cells = cells_of(study), .results = {}, .command = ""};
+  for (const double coverage : {100.0, 100.0, 100.0, 100.0, 40.0, 100.0})
+    results.results.emplace_back(result_with(0.1, coverage));
+  EXPECT_EQ(coverage_note(results, 0, 0), "");
+  EXPECT_EQ(coverage_note(results, 0, 1), ", coverage 40.0–100.0 %");
+  EXPECT_THAT(latex_report(results, "demo"), ::testing::HasSubstr("[40.0--100.0\\,\\%]"));
 }
 
 TEST_F(Report, TheBestOfASequenceCoversAsMuchAsTheOthers) {

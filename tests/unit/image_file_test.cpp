@@ -87,6 +87,11 @@ TEST(ImageFile, RefusesImagesThatNoCameraGives) {
   Bytes bmp = encoded(".bmp", {32, 32});
   bmp[21] = 0x80;  // -2^31 + 32
   EXPECT_THAT(refusal_of(bmp), HasSubstr("2147483616 x 32"));
+  Bytes jpeg = encoded(".jpg", {32, 32});
+  const Bytes frame_header = {0xff, 0xc0};  // then length (2), bits (1), height (2), width (2)
+  const auto header = std::ranges::search(jpeg, frame_header).begin();
+  std::ranges::copy(Bytes{0x7d, 0x00, 0x7d, 0x00}, header + 5);
+  EXPECT_THAT(refusal_of(jpeg), HasSubstr("32000 x 32000"));
   const std::string pnm = "P6 99999999999999999999 1 255\n";
   EXPECT_THAT(refusal_of(Bytes(pnm.begin(), pnm.end())), HasSubstr("2147483647 x 1"));
 }

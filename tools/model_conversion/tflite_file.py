@@ -121,5 +121,5 @@ class Model:
             self.tensors = [Tensor(table, buffers) for table in graph.tables(0)]
             self.inputs, self.outputs = graph.vector(1, 'i'), graph.vector(2, 'i')
             self.operators = [Operator(table, codes) for table in graph.tables(3)]
-        except (struct.error, IndexError) as error:
+        except (struct.error, IndexError, UnicodeDecodeError) as error:
             raise ValueError(f'{path}: the file is truncated or damaged') from error

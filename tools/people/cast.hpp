@@ -20,8 +20,8 @@ struct Sources {
 
 class Cast {
  public:
-  /// Draws who comes, and lights them as the recording is where they go. Throws Error(kData) when
-  /// there are too few photographs.
+  /// Chooses photographs at random, and matches their lighting to the recording. Throws
+  /// Error(kData) when there are too few photographs.
   Cast(const RecordingPlan& plan, const BaseRecording& base, const Sources& sources);
 
   /// All layers, the people first, at a time of the base (s), as the exposure of a colour image

@@ -16,8 +16,8 @@ constexpr double kWidest = 0.6;        // heights from the middle
 // Shares of a standing person's height; whoever sits has the thighs towards the camera.
 constexpr double kKnees = 0.27;
 constexpr double kHips = 0.51;
-constexpr double kFolded = 0.85;  // share of the thighs that sitting hides
-constexpr double kLap = 0.2;      // m by which the knees of who sits are nearer
+constexpr double kFolded = 0.85;     // share of the thighs that sitting hides
+constexpr double kThighDepth = 0.2;  // m by which a seated person's knees are nearer
 
 /// The height in the standing picture that is seen `up` of the height above the floor.
 double unfolded(double up, double seated) {
@@ -27,8 +27,8 @@ double unfolded(double up, double seated) {
   return up + (kHips - kKnees) - thigh;
 }
 
-double lap_at(double own_up, double seated) {
-  return kLap * seated * std::clamp((kHips - own_up) / (kHips - kKnees), 0.0, 1.0);
+double nearer_by(double own_up, double seated) {
+  return kThighDepth * seated * std::clamp((kHips - own_up) / (kHips - kKnees), 0.0, 1.0);
 }
 
 }  // namespace
@@ -176,7 +176,8 @@ Figure::Traced Figure::trace(const Pose& level_from_camera, const Rays& rays, do
       traced.map.at<cv::Vec2f>(y - box.y, x - box.x) = {
           static_cast<float>(own.x() * scale + 0.5 * cut.alpha.cols - 0.5),
           static_cast<float>((1 - own.y()) * scale - 0.5)};
-      traced.layer.z.at<float>(y, x) = static_cast<float>(at.z() - lap_at(own.y(), stance.seated));
+      traced.layer.z.at<float>(y, x) =
+          static_cast<float>(at.z() - nearer_by(own.y(), stance.seated));
     }
   }
   return traced;

@@ -25,10 +25,15 @@ Table comparison_table(const Study& study, const std::vector<PairedComparison>& 
   if (comparisons.empty()) return {};
   Table table{.title = "Compared with " + study.baseline + ", recording by recording",
               .note = kComparisonNote,
-              .header = {"variant", "better", "worse", "by coverage", "ATE ratio", "CPU ratio",
-                         "effect", "p", "corrected p"}};
+              .header = {"variant", "recordings", "better", "worse", "by coverage", "ATE ratio",
+                         "CPU ratio", "effect", "p", "corrected p"}};
+  if (study.new_noise && study.repeats > 1)
+    table.note +=
+        " Repeats have noise of their own and count as recordings. They share a scene, so "
+        "p is smaller than for as many scenes.";
   for (const PairedComparison& one : comparisons) {
     table.rows.push_back({{.text = study.variants[one.variant].name},
+                          count_cell(one.recordings),
                           count_cell(one.better),
                           count_cell(one.worse),
                           count_cell(one.incomplete),

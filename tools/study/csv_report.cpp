@@ -28,24 +28,6 @@ std::string row(const Study& study, const Cell& cell, const std::optional<CellRe
   return text + "\n";
 }
 
-struct WithoutResult {
-  std::size_t failed = 0;
-  std::size_t missing = 0;
-};
-
-WithoutResult without_result(const StudyResults& results, std::size_t sequence,
-                             std::size_t variant) {
-  WithoutResult count;
-  const auto [first, last] = results.cells_of(sequence, variant);
-  for (std::size_t i = first; i < last; ++i) {
-    if (!results.results[i])
-      ++count.missing;
-    else if (results.results[i]->failed())
-      ++count.failed;
-  }
-  return count;
-}
-
 }  // namespace
 
 std::string csv_report(const StudyResults& results) {
@@ -67,7 +49,7 @@ std::string csv_summary(const StudyResults& results) {
   const std::string origin = csv_field(join(lines, " | "));
   for (std::size_t sequence = 0; sequence < study.sequences.size(); ++sequence)
     for (std::size_t variant = 0; variant < study.variants.size(); ++variant) {
-      const auto [failed, missing] = without_result(results, sequence, variant);
+      const auto [failed, missing] = results.without_result(sequence, variant);
       for (std::size_t metric = 0; metric < kMetricCount; ++metric) {
         const auto spread = results.spread(sequence, variant, static_cast<MetricId>(metric));
         if (!spread) continue;

@@ -49,6 +49,7 @@ class LatexReport {
     std::vector<LatexTable> tables = {ate_table()};
     for (const ErrorFigures& figures : error_figures()) tables.push_back(error_table(figures));
     tables.push_back(comparison_table());
+    tables.push_back(improvement_table());
     tables.push_back(time_table());
     for (const LatexTable& table : tables)
       if (!table.rows.empty()) text += latex_table(table);
@@ -86,10 +87,13 @@ class LatexReport {
 
   /// A part of a sequence, or of the runs: its error says less than that of the whole.
   std::string partial_note(std::size_t sequence, std::size_t variant) const {
-    const auto coverage = results_.spread(sequence, variant, kCoverage);
-    const std::string percent = coverage ? fixed(coverage->median, 1) : "100.0";
-    std::string note = percent == "100.0" ? "" : percent + "\\,\\%";
+    std::string note;
+    if (const auto coverage = results_.spread(sequence, variant, kCoverage)) {
+      const std::string least = fixed(coverage->min, 1), most = fixed(coverage->max, 1);
+      if (least != "100.0") note = (least == most ? least : least + "--" + most) + "\\,\\%";
+    }
     const auto error = results_.spread(sequence, variant, kAte);
+    if (!error && results_.without_result(sequence, variant).first > 0) note = "failed";
     if (error && error->count < static_cast<std::size_t>(study_.repeats))
       note += (note.empty() ? "" : ", ") + std::to_string(error->count) + " of " +
               std::to_string(study_.repeats);
@@ -109,7 +113,8 @@ class LatexReport {
                      .caption = "Absolute trajectory error, RMSE (m)." +
                                 runs_note("Median (smallest--largest)") +
                                 " In brackets: coverage, where it is below 100\\,\\%, and how many "
-                                "runs a figure is of, where not all have one. Bold: the "
+                                "runs a figure is of, where not all have one, or that all have "
+                                "failed. Bold: the "
                                 "smallest of its row, among those that cover the same." +
                                 published_note(systems) + missing_note(),
                      .columns = "l",
@@ -126,6 +131,29 @@ class LatexReport {
       for (const Published* system : systems)
         row.push_back(latex_published(*system, original_of(study_.sequences[sequence]), kAte));
       table.rows.push_back(std::move(row));
+    }
+    return table;
+  }
+
+  /// Equation 7 of the DS-SLAM paper, as in its Tables I to III.
+  LatexTable improvement_table() const {
+    LatexTable table{.label = label("improvement"),
+                     .caption = "Improvement of the absolute trajectory error over " +
+                                latex_text(study_.baseline) + " (\\%)." +
+                                runs_note("Median (smallest--largest)") + missing_note(),
+                     .columns = "l",
+                     .header = {"Sequence"},
+                     .rows = {}};
+    add_systems({}, table);
+    for (std::size_t sequence = 0; sequence < study_.sequences.size(); ++sequence) {
+      std::vector<std::string> row = {latex_text(study_.sequences[sequence].name)};
+      for (std::size_t variant = 0; variant < study_.variants.size(); ++variant) {
+        const auto percent = improvement_percent(results_, sequence, variant);
+        row.push_back(latex_spread(percent, 1) +
+                      (percent ? partial_note(sequence, variant) : std::string()));
+      }
+      if (std::any_of(row.begin() + 1, row.end(), [](const auto& t) { return t != kEmpty; }))
+        table.rows.push_back(std::move(row));
     }
     return table;
   }
@@ -180,18 +208,21 @@ class LatexReport {
     LatexTable table{
         .label = label("comparison"),
         .caption = "Compared with " + latex_text(study_.baseline) +
-                   ", recording by recording. Ratios: median (quartiles); effect: matched-pairs "
+                   ", recording by recording ($n$ of them; by coverage: those decided by a "
+                   "failure or the coverage). Ratios: median (quartiles); effect: matched-pairs "
                    "rank-biserial correlation, 1 where the variant is always better; $p$: "
                    "Wilcoxon's signed-rank test of the absolute trajectory error, two-sided, "
                    "corrected after Holm." +
                    missing_note(),
-        .columns = "lrrrrrr",
-        .header = {"Variant", "Better", "Worse", "ATE ratio", "CPU ratio", "Effect", "$p$"},
+        .columns = "lrrrrrrrr",
+        .header = {"Variant", "$n$", "Better", "Worse", "By coverage", "ATE ratio", "CPU ratio",
+                   "Effect", "$p$"},
         .rows = {}};
     for (const PairedComparison& one : compare_with_baseline(results_)) {
       const std::string p = one.corrected_p < 0.0001 ? "$<$0.0001" : fixed(one.corrected_p, 4);
       table.rows.push_back({latex_text(study_.variants[one.variant].name),
-                            std::to_string(one.better), std::to_string(one.worse),
+                            std::to_string(one.recordings), std::to_string(one.better),
+                            std::to_string(one.worse), std::to_string(one.incomplete),
                             ratio(one.ate_ratio), ratio(one.time_ratio), fixed(one.effect, 2),
                             one.is_significant() ? bold(p) : p});
     }

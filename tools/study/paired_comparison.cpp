@@ -105,7 +105,8 @@ class Pairs {
 };
 
 PairedComparison comparison_of(std::size_t variant, const std::vector<Pair>& pairs) {
-  PairedComparison result{.variant = variant, .ate_ratio = {}, .time_ratio = {}};
+  PairedComparison result{
+      .variant = variant, .recordings = pairs.size(), .ate_ratio = {}, .time_ratio = {}};
   std::vector<double> advantages, ratios, times;
   for (const Pair& pair : pairs) {
     advantages.push_back(pair.advantage);

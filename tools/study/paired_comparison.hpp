@@ -17,8 +17,9 @@ namespace stillpoint::study {
 /// failed, or covers less by more than 1 % of the frames, or lost its way where the other did not,
 /// is the worse one, by more than any error.
 struct PairedComparison {
-  std::size_t variant = 0;  ///< index into the study's
-  std::size_t better = 0;   ///< recordings on which the variant is better than the baseline
+  std::size_t variant = 0;     ///< index into the study's
+  std::size_t recordings = 0;  ///< that both have been run on
+  std::size_t better = 0;      ///< recordings of these on which the variant is better
   std::size_t worse = 0;
   std::size_t incomplete = 0;        ///< recordings of these decided by coverage, not by error
   std::optional<Spread> ate_ratio;   ///< to the baseline's, of the other recordings

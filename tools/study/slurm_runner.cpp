@@ -21,9 +21,10 @@ namespace {
 
 using SlurmClock = std::chrono::steady_clock;
 
-constexpr double kLookShare = 0.01;  // of the time that the study has taken passes between looks…
-constexpr double kMinLook = 1.0;     // … but this many seconds at least: squeue loads the cluster
-constexpr double kMaxLook = 30.0;
+// Between two calls of squeue, which loads the cluster:
+constexpr double kPollShare = 0.01;      // of the time that the study has taken so far …
+constexpr double kMinPollSeconds = 1.0;  // … within these limits
+constexpr double kMaxPollSeconds = 30.0;
 constexpr double kLateFiles = 60.0;  // seconds: network file systems show new files this late
 constexpr int kFailed = 1;
 constexpr int kTooLong = 124;  // as timeout(1) says it
@@ -169,7 +170,8 @@ class SlurmRunner {
   }
 
   void wait() {
-    const double seconds = std::clamp(kLookShare * seconds_from(start_), kMinLook, kMaxLook);
+    const double seconds =
+        std::clamp(kPollShare * seconds_from(start_), kMinPollSeconds, kMaxPollSeconds);
     std::mutex mutex;
     std::unique_lock lock(mutex);
     std::condition_variable_any().wait_for(lock, stop_, std::chrono::duration<double>(seconds),

@@ -93,6 +93,17 @@ std::size_t StudyResults::missing() const {
   return static_cast<std::size_t>(std::ranges::count_if(results, [](const auto& r) { return !r; }));
 }
 
+std::pair<std::size_t, std::size_t> StudyResults::without_result(std::size_t sequence,
+                                                                 std::size_t variant) const {
+  std::size_t failed = 0, missing = 0;
+  const auto [first, last] = cells_of(sequence, variant);
+  for (std::size_t i = first; i < last; ++i) {
+    missing += results[i] ? 0 : 1;
+    failed += results[i] && results[i]->failed() ? 1 : 0;
+  }
+  return {failed, missing};
+}
+
 std::optional<double> dynamic_penalty(const StudyResults& results, std::size_t sequence,
                                       std::size_t variant) {
   const std::vector<Sequence>& sequences = results.study.sequences;

@@ -41,6 +41,9 @@ struct StudyResults {
   const CellResult* find(const Cell& cell) const;
   std::size_t failed() const;
   std::size_t missing() const;
+  /// Of the repeats, those that have failed, and those that are missing.
+  std::pair<std::size_t, std::size_t> without_result(std::size_t sequence,
+                                                     std::size_t variant) const;
 };
 
 /// ATE on a sequence ÷ ATE on the sequence without anything that moves, in the same study, with the

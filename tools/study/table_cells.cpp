@@ -33,8 +33,10 @@ TableCell number_cell(double value, int digits) {
 
 std::string coverage_note(const StudyResults& results, std::size_t sequence, std::size_t variant) {
   const auto coverage = results.spread(sequence, variant, kCoverage);
-  const std::string percent = coverage ? fixed(coverage->median, 1) : "100.0";
-  return percent == "100.0" ? "" : ", coverage " + percent + " %";
+  if (!coverage) return "";
+  const std::string least = fixed(coverage->min, 1), most = fixed(coverage->max, 1);
+  if (least == "100.0") return "";
+  return ", coverage " + (least == most ? least : least + "–" + most) + " %";
 }
 
 std::string count_note(const Spread& spread, int repeats) {

@@ -48,7 +48,7 @@ void SemanticVoxel::hit(const VoxelLook& look, bool known, const OccupancyModel&
   if (look.labelled) classes_.add(look.label);
 }
 
-// What was there is gone once nothing more can be taken away: its looks must not come back.
+// At the lower clamping bound, colour and class are reset: the surface is gone.
 void SemanticVoxel::pass(const OccupancyModel& model) {
   value = std::max(value + model.miss, model.min);
   if (value > model.min) return;

@@ -272,8 +272,10 @@ TEST_F(MapFile, NoSqlOfTheFileIsRun) {
     expect_refused("its tables are not those of a map");
   }
   save_map(small_map(), file_);
-  execute("PRAGMA user_version = -1");
-  expect_refused("it has no version");
+  for (const char* version : {"-1", "0"}) {
+    execute(std::string("PRAGMA user_version = ") + version);
+    expect_refused("it has no version");
+  }
 }
 
 TEST_F(MapFile, WhatCannotBeWrittenIsSaid) {

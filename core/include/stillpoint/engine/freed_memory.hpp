@@ -15,9 +15,9 @@ namespace stillpoint {
 inline void keep_freed_memory() {
 #ifdef __GLIBC__
   constexpr int kLargestBlock = 32 << 20;  // bytes; the most that glibc accepts
-  constexpr int kLargestRest = 1 << 30;    // bytes
+  constexpr int kTrimThreshold = 1 << 30;  // bytes
   mallopt(M_MMAP_THRESHOLD, kLargestBlock);
-  mallopt(M_TRIM_THRESHOLD, kLargestRest);
+  mallopt(M_TRIM_THRESHOLD, kTrimThreshold);
 #endif
 }
 
