@@ -1,4 +1,4 @@
-// A run as its outputs can reach it while it goes: for viewers.
+// A run as its outputs can reach it while it goes: for those that show it to somebody.
 #pragma once
 
 #include <filesystem>
