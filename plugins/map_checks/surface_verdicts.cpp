@@ -20,13 +20,13 @@ constexpr float kSameSurface = 0.03F;  // of the depth, between neighbouring cel
 
 // Evidence on the cells of a row.
 struct Verdicts {
-  std::vector<float> resting;  // s, age of the oldest view that saw it there, no violation since
-  std::vector<float> free_space_violation;  // views with a free-space violation
-  std::array<std::vector<float>, 3> same;   // views that saw it there, by Trust
+  std::vector<float> resting;     // s, age of the oldest view that saw it there, no violation since
+  std::vector<float> violations;  // views with a free-space violation
+  std::array<std::vector<float>, 3> same;  // views that saw it there, by Trust
 
   void clear(std::size_t cells) {
     resting.assign(cells, 0.0F);
-    free_space_violation.assign(cells, 0.0F);
+    violations.assign(cells, 0.0F);
     for (std::vector<float>& count : same) count.assign(cells, 0.0F);
   }
 };
@@ -141,8 +141,8 @@ class Judge {
       const cv::v_float32 through = measured & (z < near - all(options_.margin) - noise) &
                                     (resting < all(options_.rest_time));
       const cv::v_float32 free_space_violation =
-          cv::vx_load(&verdicts_.free_space_violation[x]) + (through & one);
-      cv::vx_store(&verdicts_.free_space_violation[x], free_space_violation);
+          cv::vx_load(&verdicts_.violations[x]) + (through & one);
+      cv::vx_store(&verdicts_.violations[x], free_space_violation);
 
       const cv::v_float32 between = (z >= near - tolerance) & (z <= far + tolerance);
       const auto off = [&](const cv::v_float32& surface) {
@@ -168,12 +168,11 @@ class Judge {
   }
 
   float evidence_of(std::size_t x) const {
-    const double untrusted =
-        verdicts_.resting[x] >= options_.rest_time ? options_.static_unused : 0.0;
-    return static_cast<float>(options_.free_space_violation * verdicts_.free_space_violation[x] -
+    const double unused = verdicts_.resting[x] >= options_.rest_time ? options_.static_unused : 0.0;
+    return static_cast<float>(options_.free_space_violation * verdicts_.violations[x] -
                               options_.static_mapped * verdicts_.same[kMapped][x] -
                               options_.static_tracked * verdicts_.same[kTracked][x] -
-                              untrusted * verdicts_.same[kNotStatic][x]);
+                              unused * verdicts_.same[kNotStatic][x]);
   }
 
   const cv::Mat& depth_;

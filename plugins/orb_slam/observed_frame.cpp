@@ -17,6 +17,7 @@ constexpr double kMinNewWeight = 0.02;  // least weight of a new landmark
 float depth_at(const cv::Mat& depth, cv::Point2f pixel) {
   const int u = cvRound(pixel.x), v = cvRound(pixel.y);
   const float centre = depth.at<float>(v, u);
+  if (!(centre > 0)) return 0.0f;  // nothing measured; some sources say it by NaN
   const float limit = kMaxDepthStep * centre;
   for (int y = std::max(v - kDepthWindow, 0); y <= std::min(v + kDepthWindow, depth.rows - 1);
        ++y) {

@@ -4,9 +4,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <string>
 
 #include "stillpoint/contracts/features.hpp"
 #include "stillpoint/contracts/landmark.hpp"
+#include "stillpoint/error.hpp"
 
 namespace stillpoint::orb_slam {
 
@@ -15,9 +17,9 @@ class ScalePyramid {
  public:
   static constexpr int kMaxLevels = 16;
 
-  /// Of up to kMaxLevels levels; require_orb() says so.
+  /// Throws Error(kStage) for more levels: features of another tracker, or of a map that it made.
   explicit ScalePyramid(const Features& features)
-      : levels_(features.levels), log_factor_(std::log(features.scale_factor)) {
+      : levels_(checked(features.levels)), log_factor_(std::log(features.scale_factor)) {
     scale_[0] = 1.0;
     for (int i = 1; i < levels_; ++i) scale_[i] = scale_[i - 1] * features.scale_factor;
   }
@@ -42,6 +44,14 @@ class ScalePyramid {
   }
 
  private:
+  static int checked(int levels) {
+    if (levels >= 1 && levels <= kMaxLevels) return levels;
+    throw Error(Fault::kStage,
+                "features of " + std::to_string(levels) + " pyramid levels, not of 1 to " +
+                    std::to_string(kMaxLevels),
+                "", "take tracker and local mapper of one plugin, and maps that they have made");
+  }
+
   int levels_;
   double log_factor_;
   std::array<double, kMaxLevels> scale_{};

@@ -146,9 +146,9 @@ std::string EventLog::news(Seen& seen, const Request& request) {
   if (now.empty()) return {};
   MessageWriter writer;
   writer.number(kProtocol);
-  if (!seen.hello && now.latest.frame) {
-    write_text(Record::kRunInfo, hello(*now.latest.frame->camera), writer);
-    seen.hello = true;
+  if (!seen.run_info && now.latest.frame) {
+    write_text(Record::kRunInfo, run_info(*now.latest.frame->camera), writer);
+    seen.run_info = true;
   }
   write_stages(now.stages, now.first_stage, writer);
   if (request.map && now.latest.map && now.latest.map != seen.map) {
@@ -204,7 +204,7 @@ EventLog::Snapshot EventLog::snapshot(Seen& seen, const Request& request) const 
   return now;
 }
 
-std::string EventLog::hello(const Camera& camera) const {
+std::string EventLog::run_info(const Camera& camera) const {
   Json classes = Json::array();
   for (std::size_t id = 0; id < run_.classes.size(); ++id)
     classes.push_back(

@@ -20,7 +20,7 @@ namespace stillpoint::output_web {
 
 /// What a viewer has got already.
 struct Seen {
-  bool hello = false;
+  bool run_info = false;
   bool end = false;
   std::size_t stages = 0, frames = 0, times = 0, clouds = 0, loops = 0, steering = 0;
   std::size_t fitted_frames = 0;  ///< that the last fit of the truth was made of
@@ -57,7 +57,7 @@ class EventLog {
   void add_times(const std::vector<StageTime>& times);
   void add_loop(const FrameReport& report);
   Snapshot snapshot(Seen& seen, const Request& request) const;
-  std::string hello(const Camera& camera) const;
+  std::string run_info(const Camera& camera) const;
   const std::string& picture(const FrameReport& report);
 
   const Run run_;

@@ -13,9 +13,9 @@ TEST_F(LiveView, ShowsARunFromItsBeginning) {
   TestViewer viewer(port(*output));
   const auto records = viewer.asked();
   ASSERT_TRUE(records);
-  const auto hello = nlohmann::json::parse(records->at(Record::kRunInfo).at(0));
-  EXPECT_EQ(hello["camera"]["width"], 320);
-  EXPECT_EQ(hello["classes"][1]["name"], "person");
+  const auto info = nlohmann::json::parse(records->at(Record::kRunInfo).at(0));
+  EXPECT_EQ(info["camera"]["width"], 320);
+  EXPECT_EQ(info["classes"][1]["name"], "person");
   EXPECT_EQ(records->at(Record::kStages).at(0).substr(1), "track");
   EXPECT_EQ(number_at<float>(records->at(Record::kTimes).at(0), 5), 5.f);
   const std::string& frames = records->at(Record::kFrames).at(0);

@@ -81,7 +81,7 @@ void ServerLoop::notify() {
 
 void ServerLoop::leave(Viewer& viewer) {
   viewers_.erase(&viewer);
-  if (steering_.leave(&viewer) && !says_goodbye_) tell_steering();
+  if (steering_.leave(&viewer) && !closing_) tell_steering();
   error_code ignored;
   if (close_timer_ && viewers_.empty()) close_timer_->cancel(ignored);
 }
@@ -157,7 +157,7 @@ void ServerLoop::record(void (Recorder::*what)(EventLog&)) {
 
 // The context runs dry once everybody has gone, or has had the time for it.
 void ServerLoop::close_gracefully() {
-  says_goodbye_ = true;
+  closing_ = true;
   acceptor_.close();
   retry_.cancel();
   record(&Recorder::finish);

@@ -40,7 +40,7 @@ class ServerLoop {
   const ServerSetup& setup() const { return setup_; }
   EventLog& events() { return events_; }
   bool is_full() const { return viewers_.size() >= static_cast<std::size_t>(setup_.viewers); }
-  bool is_closing() const { return says_goodbye_; }
+  bool is_closing() const { return closing_; }
   void enter(Connection& connection) { connections_.insert(&connection); }
   void leave(Connection& connection) { connections_.erase(&connection); }
   void enter(Viewer& viewer) { viewers_.insert(&viewer); }
@@ -66,7 +66,7 @@ class ServerLoop {
   std::optional<Recorder> recorder_;
   std::set<Connection*> connections_;  // they leave by themselves, at the latest with the context
   std::set<Viewer*> viewers_;
-  bool says_goodbye_ = false;
+  bool closing_ = false;
   std::optional<boost::asio::steady_timer> close_timer_;  // gone before the context
   boost::asio::io_context context_{1};
   boost::asio::ip::tcp::acceptor acceptor_;

@@ -227,6 +227,25 @@ TEST_F(RunIntoFolder, PicturesOfTheUserStayInTheFolderOfARunWithoutPictures) {
   EXPECT_EQ(count_poses(out() / "same/trajectory.txt"), 3u);
 }
 
+TEST_F(RunIntoFolder, PicturesAreThoseOfTheFoldersThatARunHasNamed) {
+  const auto run_with = [&](const std::string& folder) {
+    return run("same", "orb_baseline",
+               {"--dataset", simulated_recording().string(), "--set", "source.limit=2", "--set",
+                "outputs=[{type: images, every: 1, folder: " + folder + "}]"});
+  };
+  ASSERT_EQ(run_with("pics").exit_code, 0);
+  const fs::path own = out() / "same/pics/000001.jpg", mine = out() / "same/images/000001.jpg";
+  ASSERT_TRUE(fs::exists(own));
+  fs::create_directories(mine.parent_path());
+  std::ofstream(mine) << "the user's";
+  EXPECT_EQ(run_with("others").exit_code, 0);
+  EXPECT_FALSE(fs::exists(own));
+  EXPECT_EQ(text_of(mine), "the user's");
+  EXPECT_EQ(run_with("images").exit_code, 2);
+  EXPECT_EQ(text_of(mine), "the user's");
+  EXPECT_TRUE(fs::exists(out() / "same/others/000001.jpg"));
+}
+
 TEST_F(RunIntoFolder, EarlierDenseMapDoesNotOutliveItsRun) {
   const auto run_with = [&](const std::string& backend) {
     const Outcome outcome = run("same", "orb_baseline",

@@ -260,6 +260,19 @@ TEST_F(PublishedReport, AsLatexWhatHasFailedIsSaid) {
   EXPECT_THAT(tables, ::testing::HasSubstr("-- {\\scriptsize [failed]}"));
   EXPECT_THAT(tables, ::testing::HasSubstr("Variant & $n$ & Better & Worse & By coverage &"));
   EXPECT_THAT(tables, ::testing::HasSubstr("    better & 2 & 0 & 2 & 1 &"));
+  // 100 (1 - 0.02 / 0.01), of the one run that has a partner.
+  EXPECT_THAT(tables, ::testing::HasSubstr("    Sequence & better \\\\\n    \\midrule\n    "
+                                           "walking\\_empty & $-$100.0 {\\scriptsize [1 of 2]}"));
+}
+
+TEST_F(Report, NegativeImprovementsKeepTheirSigns) {
+  Study study = two_by_two(2);
+  study.baseline = "plain";
+  study.sequences.resize(1);
+  StudyResults results{.study = study, .cells = cells_of(study), .results = {}, .command = ""};
+  for (const double ate : {0.1, 0.1, 0.12, 0.105}) results.results.emplace_back(result_with(ate));
+  EXPECT_THAT(latex_report(results, "demo"),
+              ::testing::HasSubstr("$-$12.5 {\\scriptsize ($-$20.0 to $-$5.0)}"));
 }
 
 // A median of the coverage would hide the run that was lost half of the time.

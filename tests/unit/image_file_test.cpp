@@ -90,6 +90,7 @@ TEST(ImageFile, RefusesImagesThatNoCameraGives) {
   Bytes jpeg = encoded(".jpg", {32, 32});
   const Bytes frame_header = {0xff, 0xc0};  // then length (2), bits (1), height (2), width (2)
   const auto header = std::ranges::search(jpeg, frame_header).begin();
+  ASSERT_NE(header, jpeg.end());
   std::ranges::copy(Bytes{0x7d, 0x00, 0x7d, 0x00}, header + 5);
   EXPECT_THAT(refusal_of(jpeg), HasSubstr("32000 x 32000"));
   const std::string pnm = "P6 99999999999999999999 1 255\n";

@@ -11,6 +11,7 @@
 #include <fstream>
 #include <iterator>
 #include <regex>
+#include <set>
 #include <string>
 #include <string_view>
 #include <system_error>
@@ -19,6 +20,7 @@
 
 #include "stillpoint/error.hpp"
 #include "stillpoint/support/atomic_file.hpp"
+#include "stillpoint/support/input_file.hpp"
 
 namespace stillpoint {
 namespace {
@@ -74,16 +76,17 @@ bool is_log_of_a_run(const fs::path& file) {
 }
 
 /// Files that a killed run has left.
-std::vector<fs::path> unfinished_in(const fs::path& run) {
+std::vector<fs::path> unfinished_in(const fs::path& run, std::set<std::string> folders) {
   std::vector<fs::path> files;
   std::error_code none;
-  for (const char* folder : {".", "map", "images"})
+  folders.insert({".", "map"});
+  for (const std::string& folder : folders)
     for (const auto& entry : fs::directory_iterator(run / folder, none))
       if (is_unfinished(entry.path())) files.push_back(entry.path());
   return files;
 }
 
-/// All but log and pictures, by their names: nothing else in these folders is the program's.
+/// All but log and pictures, by their names: nothing else there is the program's.
 std::vector<fs::path> results_in(const fs::path& run) {
   std::vector<fs::path> files;
   for (const char* name : kResults) files.push_back(run / name);
@@ -91,28 +94,37 @@ std::vector<fs::path> results_in(const fs::path& run) {
   return files;
 }
 
-std::vector<fs::path> pictures_in(const fs::path& run) {
+std::vector<fs::path> pictures_in(const fs::path& run, const std::set<std::string>& folders) {
   std::vector<fs::path> files;
   std::error_code none;
-  for (const auto& entry : fs::directory_iterator(run / "images", none))
-    if (is_picture(entry.path())) files.push_back(entry.path());
+  for (const std::string& folder : folders)
+    for (const auto& entry : fs::directory_iterator(run / folder, none))
+      if (is_picture(entry.path())) files.push_back(entry.path());
   return files;
 }
 
-/// Whether a run of this effective pipeline writes pictures. Without it, pictures in its folder are
-/// the user's.
-bool writes_pictures(const YAML::Node& pipeline) {
-  const YAML::Node outputs = pipeline["outputs"];
-  return std::any_of(outputs.begin(), outputs.end(), [](const YAML::Node& output) {
-    return output["type"].as<std::string>() == "images";
-  });
+/// Those that a run of this effective pipeline writes numbered pictures into; pictures in others
+/// are the user's.
+std::set<std::string> picture_folders(const YAML::Node& pipeline) {
+  std::set<std::string> folders;
+  for (const YAML::Node& output : pipeline["outputs"])
+    if (output["type"].as<std::string>() == "images")
+      folders.insert(output["folder"].as<std::string>("images"));
+  return folders;
 }
 
-bool has_written_pictures(const fs::path& run) {
+/// Of a run that was here before.
+std::set<std::string> earlier_picture_folders(const fs::path& run) {
   try {
-    return writes_pictures(YAML::LoadFile(run / kPipeline));
-  } catch (const YAML::Exception&) {  // none, or none of a run
-    return false;
+    std::set<std::string> folders = picture_folders(YAML::Load(read_input_file(run / kPipeline)));
+    std::erase_if(folders, [](const fs::path& folder) {  // in a file that somebody has changed
+      return folder.is_absolute() || folder.string().find("..") != std::string::npos;
+    });
+    return folders;
+  } catch (const YAML::Exception&) {
+    return {};
+  } catch (const Error&) {  // no such file
+    return {};
   }
 }
 
@@ -145,16 +157,18 @@ RunFolder::RunFolder(fs::path path, std::string effective_yaml, Console& console
   lock_.emplace(path_);
   if (::access(path_.c_str(), W_OK) != 0) fail(path_, std::strerror(errno));
   holds_earlier_run_ = is_log_of_a_run(path_ / kLog);
-  const bool holds_its_pictures = holds_earlier_run_ && has_written_pictures(path_);
   if (!holds_earlier_run_) {
     require_none_of({path_ / kLog});
     require_none_of(results_in(path_));
   }
-  if (!holds_its_pictures && writes_pictures(YAML::Load(effective_yaml_)))
-    require_none_of(pictures_in(path_));
-  add_earlier(results_in(path_));
-  add_earlier(unfinished_in(path_));
-  if (holds_its_pictures) add_earlier(pictures_in(path_));
+  const auto earlier =
+      holds_earlier_run_ ? earlier_picture_folders(path_) : std::set<std::string>();
+  std::set<std::string> others = picture_folders(YAML::Load(effective_yaml_));
+  std::erase_if(others, [&](const std::string& folder) { return earlier.contains(folder); });
+  require_none_of(pictures_in(path_, others));
+  add_earlier(unfinished_in(path_, earlier));
+  add_earlier(pictures_in(path_, earlier));
+  add_earlier(results_in(path_));  // last: pipeline.yaml says where the pictures are
   require_replaceable();
 }
 
@@ -164,16 +178,13 @@ RunFolder::~RunFolder() {
 }
 
 void RunFolder::begin() {
-  write_pipeline();  // first: a full disk is met before anything is removed
+  AtomicFile pipeline(path_ / kPipeline);
+  pipeline.stream() << effective_yaml_;
+  pipeline.flush();  // a full disk is met before anything is removed
   begin_log();
   begun_ = true;
   remove_earlier_files();
-}
-
-void RunFolder::write_pipeline() const {
-  AtomicFile file(path_ / kPipeline);
-  file.stream() << effective_yaml_;
-  file.commit();
+  pipeline.commit();  // last: the earlier one says which pictures are those of a run
 }
 
 void RunFolder::begin_log() {

@@ -36,8 +36,8 @@ class RunFolder {
 
   /// Whether an earlier run has left its log.
   bool holds_earlier_run() const { return holds_earlier_run_; }
-  /// Once a frame is through, and so all that the run needs is good: writes pipeline.yaml, begins
-  /// the log and removes results of an earlier run. Throws Error when that is not possible.
+  /// Once a frame is through, and so all that the run needs is good: begins the log, removes
+  /// results of an earlier run and writes pipeline.yaml. Throws Error when that is not possible.
   void begin();
   bool has_begun() const { return begun_; }
 
@@ -51,7 +51,6 @@ class RunFolder {
   void require_none_of(const std::vector<std::filesystem::path>& files) const;
   void add_earlier(const std::vector<std::filesystem::path>& files);
   void require_replaceable() const;
-  void write_pipeline() const;
   void begin_log();
   void remove_earlier_files() const;
 

@@ -27,10 +27,7 @@ Table comparison_table(const Study& study, const std::vector<PairedComparison>& 
               .note = kComparisonNote,
               .header = {"variant", "recordings", "better", "worse", "by coverage", "ATE ratio",
                          "CPU ratio", "effect", "p", "corrected p"}};
-  if (study.new_noise && study.repeats > 1)
-    table.note +=
-        " Repeats have noise of their own and count as recordings. They share a scene, so "
-        "p is smaller than for as many scenes.";
+  if (const std::string note = dependence_note(study); !note.empty()) table.note += " " + note;
   for (const PairedComparison& one : comparisons) {
     table.rows.push_back({{.text = study.variants[one.variant].name},
                           count_cell(one.recordings),

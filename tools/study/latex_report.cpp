@@ -16,18 +16,26 @@ namespace {
 using evaluation::fixed;
 
 constexpr const char* kEmpty = "--";
+constexpr const char* kBracketsNote =
+    " In brackets: coverage, where it is below 100\\,\\%, and how many runs a figure is of, where "
+    "not all have one; failed: no run has come to its end.";
 
 std::string bold(const std::string& text) { return "\\textbf{" + text + "}"; }
 std::string italic(const std::string& text) { return "\\textit{" + text + "}"; }
 
+std::string number(double value, int digits) {
+  const std::string text = fixed(value, digits);
+  return text.starts_with('-') ? "$-$" + text.substr(1) : text;
+}
+
 /// "0.0021 {\scriptsize (0.0020--0.0022)}"
 std::string latex_spread(const std::optional<Spread>& spread, int digits, bool best = false) {
   if (!spread) return kEmpty;
-  const std::string median = fixed(spread->median, digits);
+  const std::string median = number(spread->median, digits);
   std::string text = best ? bold(median) : median;
   if (spread->count > 1)
-    text +=
-        " {\\scriptsize (" + fixed(spread->min, digits) + "--" + fixed(spread->max, digits) + ")}";
+    text += " {\\scriptsize (" + number(spread->min, digits) + (spread->min < 0 ? " to " : "--") +
+            number(spread->max, digits) + ")}";
   return text;
 }
 
@@ -85,18 +93,19 @@ class LatexReport {
     return text;
   }
 
-  /// A part of a sequence, or of the runs: its error says less than that of the whole.
-  std::string partial_note(std::size_t sequence, std::size_t variant) const {
+  /// A part of a sequence, or of the runs that `figure` is of: it says less than that of the whole.
+  std::string partial_note(std::size_t sequence, std::size_t variant,
+                           const std::optional<Spread>& figure) const {
     std::string note;
     if (const auto coverage = results_.spread(sequence, variant, kCoverage)) {
       const std::string least = fixed(coverage->min, 1), most = fixed(coverage->max, 1);
       if (least != "100.0") note = (least == most ? least : least + "--" + most) + "\\,\\%";
     }
-    const auto error = results_.spread(sequence, variant, kAte);
-    if (!error && results_.without_result(sequence, variant).first > 0) note = "failed";
-    if (error && error->count < static_cast<std::size_t>(study_.repeats))
-      note += (note.empty() ? "" : ", ") + std::to_string(error->count) + " of " +
-              std::to_string(study_.repeats);
+    const auto repeats = static_cast<std::size_t>(study_.repeats);
+    if (figure && figure->count < repeats)
+      note += (note.empty() ? "" : ", ") + std::to_string(figure->count) + " of " +
+              std::to_string(repeats);
+    if (!figure && results_.without_result(sequence, variant).first == repeats) note = "failed";
     return note.empty() ? "" : " {\\scriptsize [" + note + "]}";
   }
 
@@ -111,11 +120,8 @@ class LatexReport {
     const auto systems = published_with(study_, kAte, kAte + 1);
     LatexTable table{.label = label("ate"),
                      .caption = "Absolute trajectory error, RMSE (m)." +
-                                runs_note("Median (smallest--largest)") +
-                                " In brackets: coverage, where it is below 100\\,\\%, and how many "
-                                "runs a figure is of, where not all have one, or that all have "
-                                "failed. Bold: the "
-                                "smallest of its row, among those that cover the same." +
+                                runs_note("Median (smallest--largest)") + kBracketsNote +
+                                " Bold: the smallest of its row, among those that cover the same." +
                                 published_note(systems) + missing_note(),
                      .columns = "l",
                      .header = {"Sequence"},
@@ -124,10 +130,11 @@ class LatexReport {
     for (std::size_t sequence = 0; sequence < study_.sequences.size(); ++sequence) {
       const auto best = best_variants(results_, sequence, kAte);
       std::vector<std::string> row = {latex_text(study_.sequences[sequence].name)};
-      for (std::size_t variant = 0; variant < study_.variants.size(); ++variant)
-        row.push_back(latex_spread(results_.spread(sequence, variant, kAte), metrics()[kAte].digits,
-                                   best[variant]) +
-                      partial_note(sequence, variant));
+      for (std::size_t variant = 0; variant < study_.variants.size(); ++variant) {
+        const auto error = results_.spread(sequence, variant, kAte);
+        row.push_back(latex_spread(error, metrics()[kAte].digits, best[variant]) +
+                      partial_note(sequence, variant, error));
+      }
       for (const Published* system : systems)
         row.push_back(latex_published(*system, original_of(study_.sequences[sequence]), kAte));
       table.rows.push_back(std::move(row));
@@ -140,20 +147,26 @@ class LatexReport {
     LatexTable table{.label = label("improvement"),
                      .caption = "Improvement of the absolute trajectory error over " +
                                 latex_text(study_.baseline) + " (\\%)." +
-                                runs_note("Median (smallest--largest)") + missing_note(),
+                                runs_note("Median (smallest--largest)") + kBracketsNote +
+                                missing_note(),
                      .columns = "l",
                      .header = {"Sequence"},
                      .rows = {}};
-    add_systems({}, table);
+    std::vector<std::size_t> others;
+    for (std::size_t variant = 0; variant < study_.variants.size(); ++variant)
+      if (study_.variants[variant].name != study_.baseline) others.push_back(variant);
+    for (const std::size_t variant : others)
+      table.header.push_back(latex_text(study_.variants[variant].name));
+    table.columns += std::string(others.size(), 'r');
     for (std::size_t sequence = 0; sequence < study_.sequences.size(); ++sequence) {
       std::vector<std::string> row = {latex_text(study_.sequences[sequence].name)};
-      for (std::size_t variant = 0; variant < study_.variants.size(); ++variant) {
+      bool any = false;
+      for (const std::size_t variant : others) {
         const auto percent = improvement_percent(results_, sequence, variant);
-        row.push_back(latex_spread(percent, 1) +
-                      (percent ? partial_note(sequence, variant) : std::string()));
+        row.push_back(latex_spread(percent, 1) + partial_note(sequence, variant, percent));
+        any |= percent.has_value();
       }
-      if (std::any_of(row.begin() + 1, row.end(), [](const auto& t) { return t != kEmpty; }))
-        table.rows.push_back(std::move(row));
+      if (any) table.rows.push_back(std::move(row));
     }
     return table;
   }
@@ -205,6 +218,7 @@ class LatexReport {
   }
 
   LatexTable comparison_table() const {
+    const std::string dependence = dependence_note(study_);
     LatexTable table{
         .label = label("comparison"),
         .caption = "Compared with " + latex_text(study_.baseline) +
@@ -213,7 +227,7 @@ class LatexReport {
                    "rank-biserial correlation, 1 where the variant is always better; $p$: "
                    "Wilcoxon's signed-rank test of the absolute trajectory error, two-sided, "
                    "corrected after Holm." +
-                   missing_note(),
+                   std::string(dependence.empty() ? "" : " ") + dependence + missing_note(),
         .columns = "lrrrrrrrr",
         .header = {"Variant", "$n$", "Better", "Worse", "By coverage", "ATE ratio", "CPU ratio",
                    "Effect", "$p$"},

@@ -146,4 +146,13 @@ std::vector<PairedComparison> compare_with_baseline(const StudyResults& results)
   return comparisons;
 }
 
+std::string dependence_note(const Study& study) {
+  const bool simulated = std::ranges::any_of(
+      study.sequences, [](const Sequence& sequence) { return !sequence.scene.empty(); });
+  if (!simulated || !study.new_noise || study.repeats == 1) return "";
+  return "Repeats of a scene have noise of their own and count as recordings: p is smaller than "
+         "for "
+         "as many scenes.";
+}
+
 }  // namespace stillpoint::study

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "study/study_results.hpp"
@@ -18,7 +19,7 @@ namespace stillpoint::study {
 /// is the worse one, by more than any error.
 struct PairedComparison {
   std::size_t variant = 0;     ///< index into the study's
-  std::size_t recordings = 0;  ///< that both have been run on
+  std::size_t recordings = 0;  ///< on which one of the two has an error
   std::size_t better = 0;      ///< recordings of these on which the variant is better
   std::size_t worse = 0;
   std::size_t incomplete = 0;        ///< recordings of these decided by coverage, not by error
@@ -33,5 +34,8 @@ struct PairedComparison {
 
 /// Of every variant but the baseline that shares a recording with it. Empty without a baseline.
 std::vector<PairedComparison> compare_with_baseline(const StudyResults& results);
+
+/// That recordings are not independent, where they are not; else empty.
+std::string dependence_note(const Study& study);
 
 }  // namespace stillpoint::study

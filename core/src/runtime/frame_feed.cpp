@@ -5,6 +5,7 @@
 #include <mutex>
 #include <utility>
 
+#include "stillpoint/engine/stage_guard.hpp"
 #include "stillpoint/runtime/read_only_images.hpp"
 #include "stillpoint/runtime/stage_results.hpp"
 #include "stillpoint/runtime/thorough_checks.hpp"
@@ -61,7 +62,8 @@ FrameFeed::~FrameFeed() {
 
 void FrameFeed::end() {
   if (thread_.joinable()) thread_.join();
-  if (failure_) stop_.fail(failure_);  // also where a stop came before next() could tell
+  // A stop may have come before next() could throw it. What else fails then is the stop's doing.
+  if (failure_ && StageGuard::has_ended_a_call()) stop_.fail(failure_);
 }
 
 FramePtr FrameFeed::next() {

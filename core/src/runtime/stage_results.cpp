@@ -18,8 +18,11 @@
 namespace stillpoint {
 namespace {
 
-constexpr double kLargestSkew = 1e-3;   // of a rotation matrix from an orthonormal one
-constexpr double kSamePose = 1e-4;      // relative difference of two matrices, also of floats
+constexpr double kLargestSkew = 1e-3;  // of a rotation matrix from an orthonormal one
+constexpr double kSamePose = 1e-6;     // relative difference of two matrices
+// The same, of products: with matrices that are as skew as they may be, and their transposes for
+// their inverses.
+constexpr double kSameProduct = 2 * kLargestSkew;
 constexpr float kFarthestMedian = 200;  // metres; a room's is above that in millimetres
 
 /// `what` is in the plural: "the labels".
@@ -120,7 +123,9 @@ void check_keyframe(const KeyFrame& keyframe, const Frame& frame, const SparseMa
   require_of_stage(keyframe.time == frame.time,
                    "the time of the key frame is not that of its frame",
                    "set KeyFrame::time to Frame::time");
-  require_of_stage(keyframe.camera && possible(*keyframe.camera), "the key frame has no camera",
+  require_of_stage(keyframe.camera != nullptr, "the key frame has no camera",
+                   "give it that of the frame");
+  require_of_stage(possible(*keyframe.camera), "the camera of the key frame has impossible values",
                    "give it that of the frame");
   require_of_stage(keyframe.features != nullptr, "the key frame has no features",
                    "a tracker without point features gives an empty Features");
@@ -156,27 +161,27 @@ void check_keyframe(const KeyFrame& keyframe, const Frame& frame, const SparseMa
 /// The pose by the reference, which trajectories follow, is that of the result.
 void check_reference(const TrackResult& result, const Pose& world_from_reference) {
   const Pose pose = world_from_reference * result.reference_from_camera;
-  require_of_stage(pose.isApprox(result.world_from_camera, kSamePose),
+  require_of_stage(pose.isApprox(result.world_from_camera, kSameProduct),
                    "reference_from_camera and world_from_camera are two different poses",
                    "world_from_camera = map.world_from_keyframe(reference) * "
                    "reference_from_camera");
 }
 
-/// Key frames that `before` does not have, or not as they are now, and the landmarks they see.
+/// Key frames and landmarks that `before` does not have, or not as they are now.
 void check_changes(const SparseMap& map, const SparseMap& before) {
   for (KeyFrameId id = 0; id < map.keyframe_id_end(); ++id) {
     const KeyFrame* keyframe = map.keyframe(id);
-    if (!keyframe || (id < before.keyframe_id_end() && keyframe == before.keyframe(id))) continue;
-    if (!is_pose(keyframe->world_from_camera))
-      require_of_stage(false, "the pose of key frame " + std::to_string(id) + " is no rigid motion",
-                       "it must be finite, with an orthonormal rotation");
-    for (const LandmarkId seen : keyframe->landmarks) {
-      const Landmark* landmark = map.landmark(seen);
-      if (landmark && !landmark->position_in_world.allFinite())
-        require_of_stage(false,
-                         "the position of landmark " + std::to_string(seen) + " is not finite",
-                         "remove landmarks whose position is not known");
-    }
+    if (!keyframe || keyframe == before.keyframe(id) || is_pose(keyframe->world_from_camera))
+      continue;
+    require_of_stage(false, "the pose of key frame " + std::to_string(id) + " is no rigid motion",
+                     "it must be finite, with an orthonormal rotation");
+  }
+  for (LandmarkId id = 0; id < map.landmark_id_end(); ++id) {
+    const Landmark* landmark = map.landmark(id);
+    if (!landmark || landmark == before.landmark(id) || landmark->position_in_world.allFinite())
+      continue;
+    require_of_stage(false, "the position of landmark " + std::to_string(id) + " is not finite",
+                     "remove landmarks whose position is not known");
   }
 }
 

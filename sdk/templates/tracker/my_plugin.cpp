@@ -69,7 +69,8 @@ stillpoint::PreparedFramePtr MyPlugin::prepare(stillpoint::FramePtr frame) {
     std::memcpy(features.descriptors.emplace_back().data(), descriptors.ptr(i),
                 sizeof(stillpoint::Descriptor));
     const cv::Point2f& at = features.keypoints[static_cast<std::size_t>(i)].pt;
-    features.depth.push_back(prepared->frame->depth.at<float>(cvRound(at.y), cvRound(at.x)));
+    const float depth = prepared->frame->depth.at<float>(cvRound(at.y), cvRound(at.x));
+    features.depth.push_back(depth > 0 ? depth : 0);  // some sources say by NaN: not measured
   }
   return prepared;
 }

@@ -223,6 +223,19 @@ TEST_P(EngineInBothModes, AStopBeforeTheRunProcessesNothing) {
   EXPECT_TRUE(f.output->before_first_frame);
 }
 
+// A camera that is interrupted with the run, or a damaged image that nobody will use.
+TEST(Engine, WhatTheSourceThrowsAfterAStopIsNoFailure) {
+  EngineFixture f(1000);
+  std::stop_source stop;
+  f.calls.failing = "source 4";
+  f.calls.hook = [&](const std::string& entry) {
+    if (entry == f.calls.failing) stop.request_stop();
+  };
+  Engine(f.stages(), runtime(Mode::kThreaded), {}).run(stop.get_token());
+  EXPECT_EQ(f.output->failure, "");
+  EXPECT_FALSE(f.output->complete);
+}
+
 TEST_P(EngineInBothModes, BeforeOutputsIsCalledOnceAndBeforeEveryOutput) {
   for (const std::uint32_t frames : {0, 3}) {
     EngineFixture f(frames);

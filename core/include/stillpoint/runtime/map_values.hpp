@@ -1,4 +1,5 @@
-// Valid values of cameras and in saved maps: a malicious file may have correct checksums.
+// Which values cameras, features and saved maps can have: a malicious file may have correct
+// checksums.
 #pragma once
 
 #include <string>
@@ -14,7 +15,7 @@ bool possible(const Camera& camera);
 
 /// What is wrong with features of images of that camera; empty: nothing. Keypoints lie in the image
 /// and in the pyramid, which has up to 64 levels and a factor of up to 4 between two; depths are
-/// not negative. There must be as many depths as keypoints.
+/// not negative.
 std::string fault_of(const Features& features, const Camera& camera);
 
 /// Each throws DamagedMap when a value is not finite or not valid: images larger than 16,384 px,
