@@ -319,54 +319,6 @@ TEST_P(StageThatHangs, IsNamedAndGivenUpByTheSecondCtrlC) {
   expect_saved(program.finish());
 }
 
-struct Hanging {
-  const char* role;  // what messages call the stage
-  const char* setting;
-};
-
-/// Hangs on the thread of its kind.
-class StageOfAnyKind : public BadPlugins,
-                       public ::testing::WithParamInterface<std::tuple<const char*, Hanging>> {};
-
-INSTANTIATE_TEST_SUITE_P(
-    Modes, StageOfAnyKind,
-    ::testing::Combine(::testing::Values("inline", "threaded"),
-                       ::testing::Values(Hanging{"source", "source={type: hangs}"},
-                                         Hanging{"segmentation", "segmenter={type: hangs}"},
-                                         Hanging{"local mapping", "local_mapper={type: hangs}"},
-                                         Hanging{"loop closing", "loop_closer={type: hangs}"},
-                                         Hanging{"dense mapping", "map_backend={type: hangs}"},
-                                         Hanging{"output",
-                                                 "outputs=[{type: hangs}, {type: summary}]"},
-                                         Hanging{"output",
-                                                 "outputs=[{type: hangs, when_full: drop}, "
-                                                 "{type: summary}]"})),
-    [](const auto& test) {
-      std::string name = std::to_string(test.index) + "_" + std::get<1>(test.param).role;
-      std::ranges::replace(name, ' ', '_');
-      return name;
-    });
-
-TEST_P(StageOfAnyKind, ThatHangsIsNamedAndGivenUpByTheSecondCtrlC) {
-  const auto& [mode, hanging] = GetParam();
-  const std::string stage = std::string(hanging.role) + " (hangs)";
-  std::vector<std::string> arguments = {"--set", hanging.setting,
-                                        "--set", std::string("runtime.mode=") + mode,
-                                        "--set", "runtime.stage_timeout=0.1"};
-  if (hanging.role != std::string("source")) arguments = on_recording(arguments);
-  arguments.insert(arguments.begin(), {"run", "orb_baseline", "-o", out().string()});
-  Program program(std::move(arguments), with_plugins());
-  ASSERT_TRUE(program.wait_for("warning: " + stage + " has not returned for "));
-  program.send(SIGINT);
-  ASSERT_TRUE(program.wait_for("Ctrl-C again gives it up"));
-  program.send(SIGINT);
-  const Outcome outcome = program.finish();
-  EXPECT_EQ(outcome.exit_code, kStageFailed) << outcome.signal;
-  EXPECT_THAT(outcome.err, HasSubstr("error: " + stage + " failed on frame "));
-  const std::string failure = json_file(out() / "summary.json")["failure"];
-  EXPECT_THAT(failure, HasSubstr("it did not return and was given up"));
-}
-
 TEST_P(StageThatHangs, IsNamedInItsDestructor) {
   Program program(command("orb_baseline", in_the_destructor()), with_plugins());
   EXPECT_TRUE(program.wait_for("the destructor of moving_checker (misbehaves) has not returned"));
