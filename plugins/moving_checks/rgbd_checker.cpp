@@ -20,7 +20,6 @@ constexpr double kTrustRate = 0.3;        // of the way to 0 or 1 per frame
 constexpr double kMinTrustWeight = 0.05;  // so that a wrong static scene can be corrected
 constexpr double kInheritRadius = 80.0;   // px, within which points of a surface share trust
 constexpr double kInheritDepth = 0.03;    // 1/m, likewise
-constexpr double kDefaultDepth = 2.0;     // metres, of points without depth: the middle of a room
 // The prediction is uncertain far from the inliers that determine the camera's motion.
 constexpr double kMaxUncertainty = 1.5;  // of epsilon; beyond, a point is not classified
 constexpr double kSigmas = 3.0;          // of the prediction, added to the threshold
@@ -78,6 +77,11 @@ void RgbdChecker::Options::visit(OptionVisitor& v) {
     {.min = 0, .max = 1, .help = "with a smaller inlier share the check is not reliable"});
   v("min_depth", min_depth,
     {.min = 0.01, .unit = "m", .help = "a point without depth is at least this far"});
+  v("usual_depth", usual_depth,
+    {.min = 0.1,
+     .unit = "m",
+     .help = "where points without depth are likely to be; how well their motion is predicted "
+             "depends on it"});
   v("max_ambiguity", max_ambiguity,
     {.min = 0,
      .unit = "px",
@@ -183,7 +187,7 @@ void RgbdChecker::judge(std::vector<Observation>& observations, const RigidMotio
     const Moved at_near = moved(o.match.previous, near, pose, camera);
     const bool placed = at_far.in_front && at_near.in_front &&
                         (known || (at_far.pixel - at_near.pixel).norm() <= options_.max_ambiguity);
-    const double z = known ? 1.0 / o.from.inverse_depth : kDefaultDepth;
+    const double z = known ? 1.0 / o.from.inverse_depth : options_.usual_depth;
     uncertainty.push_back(pixel_uncertainty(
         motion, camera, camera.unproject(o.match.current.x, o.match.current.y, z)));
     o.judged = placed && o.from.kind != Surface::Kind::kEdge && o.to.kind != Surface::Kind::kEdge &&

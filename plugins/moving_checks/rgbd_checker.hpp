@@ -27,6 +27,7 @@ class RgbdChecker final : public MovingChecker {
     int min_matches = 20;
     double min_agreement = 0.4;
     double min_depth = 0.5;      ///< m, of points without depth
+    double usual_depth = 2.0;    ///< m, of points without depth
     double max_ambiguity = 1.0;  ///< px
 
     void visit(OptionVisitor& v);

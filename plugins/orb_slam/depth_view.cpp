@@ -13,7 +13,6 @@ constexpr int kStep = 2;   // px between the samples of a cell
 constexpr int kReach = 2;  // cells around a patch's own that its plane is fitted to
 constexpr int kSamplesPerCell = (kCell / kStep) * (kCell / kStep);
 constexpr float kSumOfSquares = 50.0F;  // of column (or row) over 5 × 5 cells around the middle
-constexpr float kMaxMisfit = 0.003F;    // 1/m, cell mean off the plane; more is a discontinuity
 
 // Mean inverse depth (1/m) and least static weight of a cell; weight 0 unless all of it is
 // measured.
@@ -49,7 +48,13 @@ struct InversePlane {
   float weight = 0.0F;
 };
 
-InversePlane fit(const std::vector<Cell>& cells, int columns, int column, int row) {
+// 1/m that a cell's mean may be off the plane; more is a discontinuity. Six standard deviations of
+// the mean of 16 samples, and no less than those of a Kinect: better sensors do not make surfaces
+// flatter.
+float max_misfit(float surface_noise) { return std::max(0.003F, 1.5F * surface_noise); }
+
+InversePlane fit(const std::vector<Cell>& cells, int columns, int column, int row,
+                 float max_misfit) {
   InversePlane plane{.weight = 1.0F};
   const auto cell = [&](int dx, int dy) -> const Cell& {
     return cells[static_cast<std::size_t>((row + dy) * columns + column + dx)];
@@ -70,7 +75,7 @@ InversePlane fit(const std::vector<Cell>& cells, int columns, int column, int ro
   for (int dy = -kReach; dy <= kReach; ++dy)
     for (int dx = -kReach; dx <= kReach; ++dx)
       if (std::abs(plane.middle + static_cast<float>(dx) * plane.by_column +
-                   static_cast<float>(dy) * plane.by_row - cell(dx, dy).inverse_depth) > kMaxMisfit)
+                   static_cast<float>(dy) * plane.by_row - cell(dx, dy).inverse_depth) > max_misfit)
         return {};
   return plane;
 }
@@ -90,11 +95,12 @@ DepthView::DepthView(const Frame& frame, const StaticWeights& weights)
           cell_at(frame.depth, weights.track, column * kCell, row * kCell);
 
   patches_.resize(cells.size());
+  const float misfit = max_misfit(noise_);
   // Mean of a cell's sample positions, which are the even pixels.
   constexpr float kMiddle = (kCell - kStep) / 2.0F;
   for (int row = kReach; row < rows_ - kReach; ++row) {
     for (int column = kReach; column < columns_ - kReach; ++column) {
-      const InversePlane plane = fit(cells, columns_, column, row);
+      const InversePlane plane = fit(cells, columns_, column, row, misfit);
       if (plane.weight <= 0 || plane.middle <= 0) continue;
       const Eigen::Vector2f pixel(static_cast<float>(column * kCell) + kMiddle,
                                   static_cast<float>(row * kCell) + kMiddle);

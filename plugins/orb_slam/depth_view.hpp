@@ -34,6 +34,8 @@ class DepthView {
   /// the image or there is none.
   const PlanePatch* at(const Eigen::Vector3f& point) const;
 
+  /// Standard deviation of the inverse depth of one pixel, 1/m (Camera::surface_noise).
+  float surface_noise() const { return noise_; }
   /// Standard deviations of a patch: of its distance along its normal (metres) and of the direction
   /// of its normal (radians).
   float distance_sigma(const PlanePatch& patch) const;

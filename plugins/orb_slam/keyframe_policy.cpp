@@ -7,7 +7,8 @@
 namespace stillpoint::orb_slam {
 namespace {
 
-constexpr int kMinFramesBetweenHeld = 5;  // minimum; unstable corners would ask for one every time
+constexpr int kMinFramesBetweenByDepth =
+    5;  // minimum; unstable corners would ask for one every time
 
 // Landmarks of the reference key frame that others observe as well; in a young map, all of them.
 int established_landmarks(const KeyFrame& keyframe, const SparseMap& map) {
@@ -82,7 +83,7 @@ TrackingQuality tracking_quality(const ObservedFrame& frame, const SparseMap& ma
 bool needs_keyframe(const TrackingQuality& q, TrackHints hints, const KeyFrameOptions& options) {
   const bool needs_close =
       q.close_tracked < options.min_close && q.close_untracked > options.max_close_untracked;
-  if (q.held_by_depth) return needs_close && q.frames_since_last >= kMinFramesBetweenHeld;
+  if (q.depth_registered) return needs_close && q.frames_since_last >= kMinFramesBetweenByDepth;
   if (q.inliers < options.min_inliers) return false;
   // If the camera has not moved, landmarks are missing because a person occludes them.
   const double least =

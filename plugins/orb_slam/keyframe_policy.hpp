@@ -28,7 +28,7 @@ struct TrackingQuality {
   int close_untracked = 0;    ///< features with near depth and none, which could become one
   int frames_since_last = 0;  ///< since the last key frame
   double motion = 0;  ///< since the reference: translation in median depths + rotation in radians
-  bool held_by_depth = false;  ///< the pose does not depend on landmarks
+  bool depth_registered = false;  ///< the pose does not depend on landmarks
 };
 
 TrackingQuality tracking_quality(const ObservedFrame& frame, const SparseMap& map, int inliers,

@@ -28,8 +28,8 @@ bool is_within_drift(const SparseMap& map, const LoopMatch& loop, double max_dri
 }  // namespace
 
 void OrbLoopCloser::Options::visit(OptionVisitor& v) {
-  v("pause", pause,
-    {.min = 0, .unit = "key frames", .help = "least number between two loop closures"});
+  v("min_keyframes_between", min_keyframes_between,
+    {.min = 0, .help = "least number of key frames between two loop closures"});
   v("max_drift", max_drift,
     {.min = 0,
      .help = "share of the path since the place was left, plus 0.5 m: greatest correction"});
@@ -43,7 +43,7 @@ OrbLoopCloser::OrbLoopCloser(Options options, const StageContext&) : options_(op
 std::optional<MapCorrection> OrbLoopCloser::close(const SparseMap& map, KeyFrameId latest,
                                                   std::stop_token stop) {
   const std::vector<KeyFrameId> candidates = candidates_.find(map, latest);
-  if (last_loop_ && latest < *last_loop_ + static_cast<KeyFrameId>(options_.pause))
+  if (last_loop_ && latest < *last_loop_ + static_cast<KeyFrameId>(options_.min_keyframes_between))
     return std::nullopt;
   for (const KeyFrameId place : candidates) {
     if (stop.stop_requested()) return std::nullopt;

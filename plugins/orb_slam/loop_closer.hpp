@@ -17,7 +17,7 @@ namespace stillpoint::orb_slam {
 class OrbLoopCloser final : public LoopCloser {
  public:
   struct Options {
-    int pause = 10;
+    int min_keyframes_between = 10;
     double max_drift = 0.05;
     int adjust_iterations = 10;
 

@@ -7,13 +7,16 @@
 namespace stillpoint::orb_slam {
 namespace {
 
-constexpr int kStride = 2;             // every other patch of every other row
-constexpr float kMinCosine = 0.87F;    // between normals: 30 degrees
-constexpr float kModelSigma = 0.004F;  // metres: imperfect planarity and depth registration
-constexpr float kBounds = 3.0F;        // standard deviations
-constexpr double kNoiseMargin = 2.0;   // times the spurious information from the noise of normals
+constexpr int kStride = 2;            // every other patch of every other row
+constexpr float kMinCosine = 0.87F;   // between normals: 30 degrees
+constexpr float kBounds = 3.0F;       // standard deviations
+constexpr double kNoiseMargin = 2.0;  // times the spurious information from the noise of normals
 
 using Vector6f = Eigen::Matrix<float, 6, 1>;
+
+// Standard deviation in metres of what is no noise of single pixels: walls that are not quite flat,
+// and the distortion of depth, which grows with the noise of the sensor (a Kinect's is 0.002).
+float model_sigma(const DepthView& view) { return std::max(0.004F, 2.0F * view.surface_noise()); }
 
 struct Sums {
   Matrix6d hessian = Matrix6d::Zero();
@@ -44,7 +47,8 @@ void add(const DepthView& current, const PlanePatch& patch, const Other& other,
   if (normal.dot(patch.normal) < kMinCosine) return;
   const float off = plane.normal.dot(in_other - plane.point);
   const float own = current.distance_sigma(patch), theirs = other.view->distance_sigma(plane);
-  const float variance = own * own + theirs * theirs + kModelSigma * kModelSigma;
+  const float model = model_sigma(current);
+  const float variance = own * own + theirs * theirs + model * model;
   if (std::abs(off) > std::max(reach, kBounds * std::sqrt(variance))) return;
   ++result.inlier_count;
 

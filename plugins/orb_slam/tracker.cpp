@@ -16,7 +16,7 @@ constexpr int kMinMotionMatches = 20;  // fewer: search again in a wider window
 constexpr int kMinMotionInliers = 20;  // fewer, or a smaller share: do not trust the prediction
 constexpr double kMinMotionShare = 0.5;
 // An image with so many features, of which so small a share matches the last frame, shows another
-// place; unless the last frame, held by depth, had no texture.
+// place; unless the last frame, which was registered by depth, had no texture.
 constexpr int kManyFeatures = 500;
 constexpr double kMinMatchedShare = 0.1;
 
@@ -63,7 +63,7 @@ TrackResult OrbTracker::track(PreparedFramePtr prepared, const StaticWeights& we
   moving_area_.update(weights, current_.frame->time);
   if (!first_keyframe_) begin_with(map);
   visible_.clear();
-  depth_hold_.begin(current_.frame, weights);
+  depth_registration_.begin(current_.frame, weights);
   prediction_.reset();
   if (map.empty())
     return !hints.localise_only && start() ? tracked(map, hints)
@@ -97,7 +97,7 @@ bool OrbTracker::start() {
 
 // Whether the surfaces in view alone would constrain a pose.
 bool OrbTracker::surfaces_suffice() {
-  return options_.hold_by_depth && is_well_constrained(depth_hold_.information_of_view());
+  return options_.register_depth && is_well_constrained(depth_registration_.information_of_view());
 }
 
 // Mapping may have moved, fused or removed what the last frame refers to.
@@ -158,7 +158,7 @@ bool OrbTracker::track_local_map(const SparseMap& map) {
   inliers_ = solve(map);
   bridged_ = inliers_ < options_.min_inliers;
   if (!bridged_) {
-    if (!is_well_constrained(current_.information)) hold_by_depth(map);
+    if (!is_well_constrained(current_.information)) register_depth(map);
     return true;
   }
   // A view with hardly any landmarks: tracked on the points of the last frame, it becomes a key
@@ -171,20 +171,20 @@ bool OrbTracker::track_local_map(const SparseMap& map) {
 // Where neither the last frame nor the map gives enough inliers: starts from the prediction and
 // uses surfaces and whatever landmarks match.
 bool OrbTracker::track_with_depth(const SparseMap& map) {
-  if (!options_.hold_by_depth || !last_.frame) return false;
+  if (!options_.register_depth || !last_.frame) return false;
   predict_pose();
   const int matches = match_last_frame(map);
   const auto usable = std::ranges::count_if(
       current_.track_weights, [](auto weight) { return weight >= ObservedFrame::kMinWeight; });
-  if (!last_held_ && usable >= kManyFeatures &&
+  if (!last_used_depth_ && usable >= kManyFeatures &&
       matches < kMinMatchedShare * static_cast<double>(usable))
     return false;
-  if (!hold_by_depth(map)) return false;
+  if (!register_depth(map)) return false;
   current_.drop_outliers();
-  if (current_.matched() < kMinHeldLandmarks) match_neighbour(map);
+  if (current_.matched() < kMinLandmarksWithDepth) match_neighbour(map);
   search_local_map(map);
   bridged_ = false;
-  return hold_by_depth(map);
+  return register_depth(map);
 }
 
 // Landmarks that come into view again after there were none: the pose may have drifted meanwhile,
@@ -196,11 +196,12 @@ void OrbTracker::match_neighbour(const SparseMap& map) {
                   2 * options_.motion_window, 1);
 }
 
-bool OrbTracker::hold_by_depth(const SparseMap& map) {
-  if (!options_.hold_by_depth) return false;
+bool OrbTracker::register_depth(const SparseMap& map) {
+  if (!options_.register_depth) return false;
   const QuadraticCost motion =
       prediction_ ? motion_prior(*prediction_, seconds_since_last()) : QuadraticCost();
-  if (!depth_hold_.hold(current_, map, motion, [&](const PoseTerm& term) { solve(map, term); }))
+  if (!depth_registration_.refine(current_, map, motion,
+                                  [&](const PoseTerm& term) { solve(map, term); }))
     return false;
   inliers_ = current_.inlier_count();
   return true;
@@ -223,14 +224,14 @@ TrackResult OrbTracker::tracked(const SparseMap& map, TrackHints hints) {
   result.matches = current_.matched();
   result.inliers = inliers_;
   result.uncertainty = last_uncertainty_ = uncertainty(map);
-  result.held_by_depth = depth_hold_.held();
+  result.depth_registered = depth_registration_.refined();
   result.tracked = describe(current_);
 
   TrackingQuality quality = tracking_quality(
       current_, map, inliers_, static_cast<int>(current_.frame->index - last_keyframe_index_),
       options_.keyframe);
-  quality.held_by_depth = depth_hold_.held();
-  const bool unknown_view = (bridged_ || depth_hold_.shows_new_surfaces()) &&
+  quality.depth_registered = depth_registration_.refined();
+  const bool unknown_view = (bridged_ || depth_registration_.shows_new_surfaces()) &&
                             last_keyframe_ == kNoId;  // the last one is in the map
   const bool keep = !hints.localise_only && (map.empty() || unknown_view ||
                                              needs_keyframe(quality, hints, options_.keyframe));
@@ -251,7 +252,7 @@ TrackResult OrbTracker::tracked(const SparseMap& map, TrackHints hints) {
 
   update_velocity();
   state_ = TrackState::kTracking;
-  last_held_ = depth_hold_.held();
+  last_used_depth_ = depth_registration_.refined();
   last_ = std::move(current_);
   return result;
 }
@@ -271,7 +272,7 @@ void OrbTracker::update_velocity() {
     return;
   }
   velocity_.update(current_.world_from_camera.inverse() * last_.world_from_camera,
-                   seconds_since_last(), depth_hold_.held());
+                   seconds_since_last(), depth_registration_.refined());
 }
 
 TrackResult OrbTracker::not_tracked(TrackState state) {
@@ -290,8 +291,9 @@ KeyFrame OrbTracker::make_keyframe(KeyFrameId id) {
                     .frame = current_.frame->index,
                     .time = current_.frame->time,
                     .world_from_camera = current_.world_from_camera,
-                    .covariance = depth_hold_.held() || bridged_ ? last_uncertainty_.covariance
-                                                                 : Matrix6d(Matrix6d::Zero()),
+                    .covariance = depth_registration_.refined() || bridged_
+                                      ? last_uncertainty_.covariance
+                                      : Matrix6d(Matrix6d::Zero()),
                     .camera = current_.frame->camera,
                     .features = current_.features,
                     .track_weights = current_.track_weights,
@@ -305,7 +307,7 @@ KeyFrame OrbTracker::make_keyframe(KeyFrameId id) {
             [](const auto& a, const auto& b) { return a.landmark < b.landmark; });
   evidence_.clear();
   last_keyframe_index_ = current_.frame->index;
-  if (options_.hold_by_depth) depth_hold_.add_keyframe(keyframe.id);
+  if (options_.register_depth) depth_registration_.add_keyframe(keyframe.id);
   return keyframe;
 }
 

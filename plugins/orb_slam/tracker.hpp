@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "orb_slam/constant_velocity.hpp"
-#include "orb_slam/depth_hold.hpp"
+#include "orb_slam/depth_registration.hpp"
 #include "orb_slam/local_map.hpp"
 #include "orb_slam/moving_area.hpp"
 #include "orb_slam/observed_frame.hpp"
@@ -41,7 +41,7 @@ class OrbTracker final : public Tracker {
   void search_local_map(const SparseMap& map);
   bool track_with_depth(const SparseMap& map);
   void match_neighbour(const SparseMap& map);
-  bool hold_by_depth(const SparseMap& map);
+  bool register_depth(const SparseMap& map);
 
   TrackResult tracked(const SparseMap& map, TrackHints hints);
   TrackResult not_tracked(TrackState state);
@@ -62,8 +62,8 @@ class OrbTracker final : public Tracker {
   TrackState state_ = TrackState::kWaiting;
   int inliers_ = 0;       // landmarks
   bool bridged_ = false;  // the pose of this frame needed temporary points
-  DepthHold depth_hold_;
-  bool last_held_ = false;
+  DepthRegistration depth_registration_;
+  bool last_used_depth_ = false;
   PoseUncertainty last_uncertainty_;  // of this frame, once it is tracked; before, of `last_`
 
   std::optional<KeyFrameId> first_keyframe_;  // of this recording: others came with the map

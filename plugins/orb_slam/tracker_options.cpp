@@ -29,7 +29,7 @@ void TrackerOptions::visit(OptionVisitor& v) {
     {.min = 1,
      .max = 4,
      .help = "times `features` at most, to make up for masked parts of the image"});
-  v("hold_by_depth", hold_by_depth,
+  v("register_depth", register_depth,
     {.help = "registers depth where landmarks do not constrain the pose"});
   keyframe.visit(v);
 }

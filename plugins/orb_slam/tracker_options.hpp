@@ -18,7 +18,7 @@ struct TrackerOptions {
   double local_window = 3.0;
   double probation = 0.0;
   double max_feature_factor = 1.0;
-  bool hold_by_depth = true;
+  bool register_depth = true;
 
   void visit(OptionVisitor& visitor);
 };

@@ -129,7 +129,7 @@ TEST_F(TrackerTest, APlainCornerIsHeldByDepth) {
     const TrackResult result = step(see_planes({kAhead, kRight, kFloor}, truth, next_++, 0.002));
     expect_at(result, truth);
     EXPECT_FALSE(result.uncertainty->poorly_constrained());
-    EXPECT_EQ(result.held_by_depth, i > 0);
+    EXPECT_EQ(result.depth_registered, i > 0);
   }
 }
 
@@ -141,7 +141,7 @@ TEST_F(TrackerTest, ASlideAlongAWallIsReported) {
     const Pose truth = pose_at({0.01 * i, 0, 0.01 * (i - 6)});
     const TrackResult result = step(see_planes({{{0, 0, 1}, 3.0}}, truth, next_++, 0.002));
     ASSERT_EQ(result.state, TrackState::kTracking);
-    EXPECT_TRUE(result.held_by_depth);
+    EXPECT_TRUE(result.depth_registered);
     EXPECT_TRUE(result.uncertainty->poorly_constrained());
     EXPECT_GT(result.uncertainty->covariance(0, 0), 0.5) << "along the wall";
     EXPECT_LT(result.uncertainty->covariance(2, 2), 0.01 * 0.01) << "away from it";
@@ -153,12 +153,12 @@ TEST_F(TrackerTest, WhereLandmarksSufficeDepthIsNotAsked) {
   std::vector<Pose> poses;
   for (int i = 0; i < 8; ++i) {
     const TrackResult result = step(pose_at({0.05 * i, 0, 0}));
-    EXPECT_FALSE(result.held_by_depth);
+    EXPECT_FALSE(result.depth_registered);
     EXPECT_LT(result.uncertainty->metres(), 0.01);
     poses.push_back(result.world_from_camera);
   }
   OrbTracker::Options without;
-  without.hold_by_depth = false;
+  without.register_depth = false;
   const auto same = anew(without);
   for (std::size_t i = 0; i < poses.size(); ++i) EXPECT_EQ(same[i].matrix(), poses[i].matrix());
 }

@@ -57,7 +57,7 @@ void SummaryOutput::finish(const RunSummary& summary) {
        summary.segmentation_failures > 0 ? Json(summary.segmentation_failure) : Json()},
       {"coverage", tracking.coverage()},
       {"times_lost", tracking.times_lost},
-      {"depth_held_frames", tracking.held_by_depth},
+      {"depth_registered_frames", tracking.depth_registered},
       {"poorly_constrained_frames", tracking.poorly_constrained},
       {"keyframes", summary.map.keyframe_count()},
       {"landmarks", summary.map.landmark_count()},

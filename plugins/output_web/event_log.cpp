@@ -60,7 +60,7 @@ void EventLog::add(const FrameReport& report) {
                             .reference = result.reference,
                             .reference_from_camera = result.reference_from_camera,
                             .world_from_camera = result.world_from_camera,
-                            .held_by_depth = result.held_by_depth},
+                            .depth_registered = result.depth_registered},
                    .features = result.features,
                    .matches = result.matches,
                    .inliers = result.inliers,

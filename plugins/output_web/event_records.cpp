@@ -30,7 +30,7 @@ void write_frames(std::span<const FrameEntry> frames, MessageWriter& writer) {
   if (frames.empty()) return;
   writer.begin(Record::kFrames);
   for (const FrameEntry& frame : frames) {
-    const int flags = (frame.keyframe ? 1 : 0) | (frame.pose.held_by_depth ? 2 : 0) |
+    const int flags = (frame.keyframe ? 1 : 0) | (frame.pose.depth_registered ? 2 : 0) |
                       (frame.pose.poorly_constrained ? 4 : 0) | (frame.true_position ? 8 : 0);
     writer.number(frame.pose.frame);
     writer.number(frame.pose.time);

@@ -7,8 +7,11 @@
 namespace stillpoint::propagator_flow_depth {
 namespace {
 
+// An object's parts are less than 15 cm apart in depth, and people keep more distance to what is
+// behind them: that is the size of people, not of the sensor or the room. A Kinect's noise is less
+// up to 8 m.
 constexpr float kBin = 0.05f;                 // metres
-constexpr std::size_t kBins = 400;            // 20 m
+constexpr std::size_t kBins = 400;            // 20 m; the last one has all beyond
 constexpr int kGap = 3;                       // bins
 constexpr double kShare = 0.005;              // of the measurements that a bin needs to count
 constexpr std::size_t kMinMeasurements = 20;  // measurements

@@ -132,10 +132,10 @@ TEST_F(LabelImageSegmenterTest, ErrorsLastAsLongAsAsked) {
 
 TEST_F(LabelImageSegmenterTest, LegsHolesAndFloorAsAsked) {
   write(1.0, room_labels());
-  options_.errors.missing_legs = 0.5;
+  options_.errors.missing_lower_part = 0.5;
   EXPECT_EQ(open().segment(frame_at(1.0)).objects[0].box,
             cv::Rect(kPersonBox.x, kPersonBox.y, kPersonBox.width, kPersonBox.height / 2));
-  options_.errors.missing_legs = 0;
+  options_.errors.missing_lower_part = 0;
   options_.errors.floor = 2;
   EXPECT_EQ(open().segment(frame_at(1.0)).objects[0].box,
             cv::Rect(kPersonBox.x - kPersonBox.width / 2, kPersonBox.y, 2 * kPersonBox.width,
@@ -163,7 +163,7 @@ TEST_F(LabelImageSegmenterTest, OutlinesMoveByPixels) {
 
 TEST_F(LabelImageSegmenterTest, OutlinesWobbleWithinBounds) {
   write(1.0, room_labels());
-  options_.errors.wobble = 4;
+  options_.errors.outline_error = 4;
   LabelImageSegmenter segmenter = open();
   cv::Mat inner, outer;
   const cv::Mat person = room_labels() == kPerson;
@@ -195,7 +195,7 @@ TEST_F(LabelImageSegmenterTest, AddsObjectsThatAreNotThere) {
 
 TEST_F(LabelImageSegmenterTest, ErrorsDependOnSeedAndFrameOnly) {
   write(1.0, room_labels());
-  options_.errors = {.miss_rate = 0.5, .wobble = 3, .false_objects = 0.5};
+  options_.errors = {.miss_rate = 0.5, .outline_error = 3, .false_objects = 0.5};
   LabelImageSegmenter forwards = open();
   LabelImageSegmenter backwards = open();
   LabelImageSegmenter other = open(2);

@@ -36,9 +36,9 @@ void NetworkErrorOptions::visit(OptionVisitor& v) {
      .max = 100,
      .unit = "px",
      .help = "outlines lie outside the true ones; < 0 inside"});
-  v("wobble", wobble,
+  v("outline_error", outline_error,
     {.min = 0, .max = 100, .unit = "px", .help = "outlines lie off at random by up to so much"});
-  v("missing_legs", missing_legs,
+  v("missing_lower_part", missing_lower_part,
     {.min = 0, .max = 1, .help = "share of each object's height that is missing at its lower end"});
   v("holes", holes,
     {.min = 0, .max = 1000, .help = "in each object, each as wide as a seventh of it"});
@@ -59,10 +59,11 @@ cv::Mat NetworkErrors::apply(const cv::Mat& labels, std::uint32_t frame,
   find_objects(truth, min_object_pixels);
   const std::uint32_t period = period_of(frame);
   cv::RNG misses = frame_random(seed_, Purpose::kMisses, period);
-  const bool shifts_outlines = options_.boundary != 0 || options_.wobble > 0;
+  const bool shifts_outlines = options_.boundary != 0 || options_.outline_error > 0;
   const cv::Mat shift = shifts_outlines ? outline_shift(labels.size(), frame) : cv::Mat();
   cv::RNG holes = frame_random(seed_, Purpose::kHoles, frame);
-  const int room = static_cast<int>(std::ceil(std::abs(options_.boundary) + options_.wobble)) + 2;
+  const int room =
+      static_cast<int>(std::ceil(std::abs(options_.boundary) + options_.outline_error)) + 2;
 
   cv::Mat result(labels.size(), CV_8UC1, cv::Scalar(0));
   const cv::Rect image({}, labels.size());
@@ -83,7 +84,7 @@ cv::Mat NetworkErrors::apply(const cv::Mat& labels, std::uint32_t frame,
 }
 
 void NetworkErrors::degrade(cv::Mat& mask, const cv::Rect& box, cv::RNG& random) const {
-  const int legs = cvRound(options_.missing_legs * box.height);
+  const int legs = cvRound(options_.missing_lower_part * box.height);
   if (legs > 0) mask.rowRange(box.br().y - legs, mask.rows).setTo(0);
   for (int i = 0; i < options_.holes; ++i) {
     const cv::Point centre(random.uniform(box.x, box.br().x), random.uniform(box.y, box.br().y));
@@ -95,11 +96,11 @@ void NetworkErrors::degrade(cv::Mat& mask, const cv::Rect& box, cv::RNG& random)
 }
 
 cv::Mat NetworkErrors::outline_shift(cv::Size size, std::uint32_t frame) const {
-  if (options_.wobble == 0) return {size, CV_32F, cv::Scalar(options_.boundary)};
+  if (options_.outline_error == 0) return {size, CV_32F, cv::Scalar(options_.boundary)};
   cv::Mat coarse(size.height / kWobbleCell + 2, size.width / kWobbleCell + 2, CV_32F);
   cv::RNG random = frame_random(seed_, Purpose::kOutlines, frame);
-  random.fill(coarse, cv::RNG::UNIFORM, options_.boundary - options_.wobble,
-              options_.boundary + options_.wobble);
+  random.fill(coarse, cv::RNG::UNIFORM, options_.boundary - options_.outline_error,
+              options_.boundary + options_.outline_error);
   cv::Mat shift;
   cv::resize(coarse, shift, size, 0, 0, cv::INTER_LINEAR);
   return shift;

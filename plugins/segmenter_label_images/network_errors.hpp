@@ -12,8 +12,8 @@ namespace stillpoint::segmenter_label_images {
 struct NetworkErrorOptions {
   double miss_rate = 0.0;              ///< probability that an object is missed
   int boundary = 0;                    ///< px outwards (or inwards, < 0) that outlines lie off
-  double wobble = 0.0;                 ///< px up to which outlines lie off at random
-  double missing_legs = 0.0;           ///< share of an object's height that its lower end lacks
+  double outline_error = 0.0;          ///< px up to which outlines lie off at random
+  double missing_lower_part = 0.0;     ///< share of an object's height that its lower end lacks
   int holes = 0;                       ///< in each object
   double floor = 0.0;                  ///< widths of the object: floor labelled as the object
   double false_objects = 0.0;          ///< probability of a false object
@@ -34,8 +34,8 @@ class NetworkErrors {
     return frame / static_cast<std::uint32_t>(options_.error_frames);
   }
   bool any() const {
-    return options_.miss_rate > 0 || options_.boundary != 0 || options_.wobble > 0 ||
-           options_.missing_legs > 0 || options_.holes > 0 || options_.floor > 0 ||
+    return options_.miss_rate > 0 || options_.boundary != 0 || options_.outline_error > 0 ||
+           options_.missing_lower_part > 0 || options_.holes > 0 || options_.floor > 0 ||
            options_.false_objects > 0;
   }
   /// Objects are the connected parts of each class; those below `min_object_pixels` are left out.

@@ -63,7 +63,7 @@ Voxels fused(const std::filesystem::path& recording, double edge, double miss_ra
   LabelImageSegmenter::Options options;
   options.path = recording / "labels";
   options.errors.miss_rate = miss_rate;
-  options.errors.wobble = 2;
+  options.errors.outline_error = 2;
   LabelImageSegmenter segmenter(options, StageContext{});
   ScanBricks scan({.resolution = edge, .range = kRange, .carve = false});
   Voxels voxels;

@@ -74,7 +74,7 @@ void propagation(benchmark::State& state, const std::string& name, bool propagat
   cv::setNumThreads(1);
   LabelImageSegmenter::Options labels;
   labels.errors.miss_rate = static_cast<double>(state.range(1)) / 100;
-  labels.errors.wobble = static_cast<double>(state.range(2));
+  labels.errors.outline_error = static_cast<double>(state.range(2));
   const int latency = static_cast<int>(state.range(0));
   SegmentationOptions schedule{.schedule = SegmentationOptions::Schedule::kLatest,
                                .latency = latency};
@@ -113,7 +113,7 @@ void propagation(benchmark::State& state, const std::string& name, bool propagat
 }
 
 void cases(benchmark::internal::Benchmark* b) {
-  b->Unit(benchmark::kMillisecond)->Iterations(1)->ArgNames({"latency", "miss%", "wobble"});
+  b->Unit(benchmark::kMillisecond)->Iterations(1)->ArgNames({"latency", "miss%", "outline_error"});
   for (const int latency : {0, 1, 3, 6})
     for (const int miss : {0, 10}) b->Args({latency, miss, 0});
   b->Args({3, 10, 2});

@@ -123,20 +123,20 @@ class Darkness : public ::testing::Test {
 };
 
 TEST_F(Darkness, IsLostAndFoundAgain) {
-  const auto summary = run("tracker.hold_by_depth=false", "lost 1 time\n", 0.006);
+  const auto summary = run("tracker.register_depth=false", "lost 1 time\n", 0.006);
   EXPECT_TRUE(summary["complete"]);
   EXPECT_EQ(summary["times_lost"], 1);
-  EXPECT_EQ(summary["depth_held_frames"], 0);
+  EXPECT_EQ(summary["depth_registered_frames"], 0);
   EXPECT_EQ(summary["frames"], kSimulatedFrames);
   const int tracked = summary["tracked_frames"];
   EXPECT_LE(tracked, kSimulatedFrames - kDark);
   EXPECT_GE(tracked, kSimulatedFrames - kDark - 2);
 }
 
-TEST_F(Darkness, DepthHoldsTheCamera) {
-  const auto summary = run("tracker.hold_by_depth=true", "lost 0 times\n", 0.015);
+TEST_F(Darkness, RegisteredDepthGivesThePose) {
+  const auto summary = run("tracker.register_depth=true", "lost 0 times\n", 0.015);
   EXPECT_EQ(summary["tracked_frames"], kSimulatedFrames);
-  EXPECT_GE(summary["depth_held_frames"], kDark);
+  EXPECT_GE(summary["depth_registered_frames"], kDark);
 }
 
 }  // namespace

@@ -20,7 +20,7 @@ constexpr double kAccuracy = 0.006;  // metres
 // Labels of the simulator with the errors of a network.
 const std::vector<std::string> kImitatedNetwork = {"--set", "segmenter.type=label_images",
                                                    "--set", "segmenter.miss_rate=0.1",
-                                                   "--set", "segmenter.wobble=2"};
+                                                   "--set", "segmenter.outline_error=2"};
 
 class MovingObjects : public ::testing::Test {
  protected:

@@ -133,7 +133,7 @@ class Relocalisation : public ::testing::Test {
   void expect_found_again(const Replay& replay, int first) {
     replay.finish();
     // What depth alone can hold is not lost.
-    expect_found(run("orb_baseline", replay.path(), {"--set", "tracker.hold_by_depth=false"}),
+    expect_found(run("orb_baseline", replay.path(), {"--set", "tracker.register_depth=false"}),
                  {.recording = replay.path(),
                   .world_from_estimate = first_pose(replay.path()),
                   .first = first,

@@ -149,7 +149,7 @@ TEST_F(Run, NothingTrackedIsSaid) {
   const auto run_with = [&](const std::string& points) {
     return run("run", "orb_baseline",
                {"--dataset", simulated_recording().string(), "--set", "source.limit=3", "--set",
-                "tracker.hold_by_depth=false", "--set", "tracker.min_start_points=" + points});
+                "tracker.register_depth=false", "--set", "tracker.min_start_points=" + points});
   };
   EXPECT_THAT(run_with("100000").err, HasSubstr("warning: no frame was tracked"));
   EXPECT_THAT(run_with("100").err, ::testing::Not(HasSubstr("no frame was tracked")));

@@ -217,7 +217,7 @@ void Pipeline::record(const FrameReportPtr& report) {
                     .reference = result.reference,
                     .reference_from_camera = result.reference_from_camera,
                     .world_from_camera = result.world_from_camera,
-                    .held_by_depth = result.held_by_depth,
+                    .depth_registered = result.depth_registered,
                     .poorly_constrained = result.state == TrackState::kTracking &&
                                           result.uncertainty &&
                                           result.uncertainty->poorly_constrained()});

@@ -63,7 +63,7 @@ TrackingStatistics tracking_statistics(const RunSummary& summary) {
   for (const TrackedPose& pose : summary.poses) {
     if (pose.state == TrackState::kTracking) ++result.tracked;
     if (pose.state == TrackState::kLost && last == TrackState::kTracking) ++result.times_lost;
-    result.held_by_depth += pose.held_by_depth ? 1 : 0;
+    result.depth_registered += pose.depth_registered ? 1 : 0;
     result.poorly_constrained += pose.poorly_constrained ? 1 : 0;
     last = pose.state;
   }

@@ -54,7 +54,7 @@ struct TrackedPose {
   KeyFrameId reference = kNoId;
   Pose reference_from_camera = Pose::Identity();
   Pose world_from_camera = Pose::Identity();  ///< at the time of tracking
-  bool held_by_depth = false;                 ///< as in TrackResult
+  bool depth_registered = false;              ///< as in TrackResult
   bool poorly_constrained = false;            ///< as in PoseUncertainty
 };
 

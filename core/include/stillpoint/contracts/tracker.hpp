@@ -39,7 +39,7 @@ struct TrackResult {
   int matches = 0;                             ///< with a landmark
   int inliers = 0;                             ///< of those, fitting the pose
   std::optional<PoseUncertainty> uncertainty;  ///< of the pose; nothing: not known
-  bool held_by_depth = false;                  ///< landmarks alone did not constrain the pose
+  bool depth_registered = false;               ///< landmarks alone did not constrain the pose
   std::vector<TrackedFeature> tracked;         ///< per feature
   std::optional<KeyFrame> keyframe;            ///< to be inserted
 };

@@ -49,7 +49,7 @@ struct TrackingStatistics {
   std::size_t processed = 0;
   std::size_t tracked = 0;
   std::size_t times_lost = 0;          ///< changes from tracking to lost
-  std::size_t held_by_depth = 0;       ///< of those tracked
+  std::size_t depth_registered = 0;    ///< of those tracked
   std::size_t poorly_constrained = 0;  ///< of those tracked
   double coverage() const {
     return frames == 0 ? 0.0 : static_cast<double>(tracked) / static_cast<double>(frames);

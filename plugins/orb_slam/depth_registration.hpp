@@ -11,7 +11,7 @@
 namespace stillpoint::orb_slam {
 
 /// Registers one frame after the other to the depth of recent key frames.
-class DepthHold {
+class DepthRegistration {
  public:
   /// Solves the frame's pose from its landmarks and an additional cost term.
   using Solve = std::function<void(const PoseTerm& term)>;
@@ -26,11 +26,11 @@ class DepthHold {
   /// Solves the pose with the surfaces and the motion prior `motion`, starting from the frame's own
   /// pose. Landmark matches that are too few or inconsistent with the surfaces are removed. Returns
   /// false, and leaves the frame unchanged, when its depth is inconsistent with the key frames'.
-  bool hold(ObservedFrame& frame, const SparseMap& map, const QuadraticCost& motion,
-            const Solve& solve);
+  bool refine(ObservedFrame& frame, const SparseMap& map, const QuadraticCost& motion,
+              const Solve& solve);
 
-  bool held() const { return registration_.has_value(); }
-  /// The pose is held by depth, but key frames cover too few of the surfaces in view.
+  bool refined() const { return registration_.has_value(); }
+  /// The depth has refined the pose, but key frames cover too few of the surfaces in view.
   bool shows_new_surfaces() const;
 
   /// The frame has become a key frame.
@@ -47,6 +47,6 @@ class DepthHold {
 };
 
 /// Least number of landmarks to use together with surfaces; fewer may all be outliers.
-inline constexpr int kMinHeldLandmarks = 12;
+inline constexpr int kMinLandmarksWithDepth = 12;
 
 }  // namespace stillpoint::orb_slam

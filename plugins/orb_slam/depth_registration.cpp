@@ -1,4 +1,4 @@
-#include "orb_slam/depth_hold.hpp"
+#include "orb_slam/depth_registration.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -17,7 +17,7 @@ double reach(int round) { return std::max(0.12 * std::pow(0.6, round), 0.02); }
 
 bool landmarks_agree(const ObservedFrame& frame) {
   const int inlier_count = frame.inlier_count();
-  return inlier_count >= kMinHeldLandmarks && inlier_count >= kMinAgreement * frame.matched();
+  return inlier_count >= kMinLandmarksWithDepth && inlier_count >= kMinAgreement * frame.matched();
 }
 
 bool is_sound(const PlaneRegistration& registration) {
@@ -27,14 +27,14 @@ bool is_sound(const PlaneRegistration& registration) {
 
 }  // namespace
 
-void DepthHold::begin(FramePtr frame, const StaticWeights& weights) {
+void DepthRegistration::begin(FramePtr frame, const StaticWeights& weights) {
   frame_ = std::move(frame);
   weights_ = weights;
   view_.reset();
   registration_.reset();
 }
 
-Matrix6d DepthHold::information_of_view() {
+Matrix6d DepthRegistration::information_of_view() {
   const PlacedView self{&view()};
   const PlaneRegistration registration =
       register_planes(view(), {&self, 1}, Pose::Identity(), reach(0));
@@ -42,13 +42,13 @@ Matrix6d DepthHold::information_of_view() {
                                              : Matrix6d(Matrix6d::Zero());
 }
 
-bool DepthHold::hold(ObservedFrame& frame, const SparseMap& map, const QuadraticCost& motion,
-                     const Solve& solve) {
+bool DepthRegistration::refine(ObservedFrame& frame, const SparseMap& map,
+                               const QuadraticCost& motion, const Solve& solve) {
   const DepthAnchor::Neighbours around = anchor_.around(view(), frame.world_from_camera, map);
   if (around.views.empty()) return false;
   const ObservedFrame before = frame;
   if (frame.reference == kNoId) frame.reference = around.nearest;
-  if (frame.matched() < kMinHeldLandmarks) frame.clear_matches();
+  if (frame.matched() < kMinLandmarksWithDepth) frame.clear_matches();
   PlaneRegistration registration;
   const PoseTerm surfaces_and_motion = [&](const Pose& camera_from_world, int round) {
     registration = register_planes(view(), around.views, camera_from_world, reach(round));
@@ -71,11 +71,11 @@ bool DepthHold::hold(ObservedFrame& frame, const SparseMap& map, const Quadratic
   return true;
 }
 
-bool DepthHold::shows_new_surfaces() const {
+bool DepthRegistration::shows_new_surfaces() const {
   return registration_ && registration_->known() < kMaxKnownOfNewView;
 }
 
-const DepthView& DepthHold::view() {
+const DepthView& DepthRegistration::view() {
   if (!view_) view_.emplace(*frame_, weights_);
   return *view_;
 }
