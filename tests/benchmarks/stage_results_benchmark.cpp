@@ -9,7 +9,8 @@
 #include <vector>
 
 #include "stillpoint/contracts/sparse_map.hpp"
-#include "stillpoint/runtime/stage_results.hpp"
+#include "stillpoint/runtime/mapping_results.hpp"
+#include "stillpoint/runtime/perception_results.hpp"
 #include "stillpoint/runtime/thorough_checks.hpp"
 
 namespace stillpoint {

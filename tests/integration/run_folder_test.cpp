@@ -259,8 +259,52 @@ TEST_F(RunIntoFolder, EarlierDenseMapDoesNotOutliveItsRun) {
   run_with(".type=voxel_cloud");
   EXPECT_FALSE(std::filesystem::exists(map / "map.ot"));
   EXPECT_TRUE(std::filesystem::exists(map / "cloud.ply"));
+  EXPECT_EQ(text_of(map / "files.txt"), "cloud.ply\n");
   run_with("=null");
   EXPECT_FALSE(std::filesystem::exists(map));
+}
+
+// As a back end of another plugin would leave them.
+TEST_F(RunIntoFolder, FilesOfAnyBackEndDoNotOutliveTheirRunButThoseOfTheUserDo) {
+  const auto run_again = [&] {
+    const Outcome outcome =
+        run("same", "orb_baseline",
+            {"--dataset", simulated_recording().string(), "--set", "source.limit=3"});
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  };
+  run_again();
+  const fs::path map = out() / "same/map", beside = out() / "beside.bin";
+  fs::create_directories(map / "parts/of");
+  const auto theirs = {map / "world.bin", map / "parts/of/it.bin"};
+  const auto of_the_user = {map / "notes.txt", beside, out() / "same/own.bin"};
+  for (const auto& files : {theirs, of_the_user})
+    for (const fs::path& file : files) std::ofstream(file) << "1";
+  std::ofstream(map / "files.txt") << "world.bin\nparts/of/it.bin\n../own.bin\n"
+                                   << beside.string() << "\n\n.\n";
+  run_again();
+  for (const fs::path& file : theirs) EXPECT_FALSE(fs::exists(file)) << file;
+  EXPECT_FALSE(fs::exists(map / "parts"));
+  for (const fs::path& file : of_the_user) EXPECT_TRUE(fs::exists(file)) << file;
+}
+
+TEST_F(RunIntoFolder, FilesThatOutputsNameDoNotOutliveTheirRun) {
+  const auto run_with = [&](const std::string& outputs) {
+    return run("same", "orb_baseline",
+               {"--dataset", simulated_recording().string(), "--set", "source.limit=2", "--set",
+                "outputs=[" + outputs + "]"});
+  };
+  const fs::path named = out() / "same/poses/a.txt", mine = out() / "same/b.txt";
+  ASSERT_EQ(run_with("{type: trajectory, file: poses/a.txt}").exit_code, 0);
+  ASSERT_TRUE(fs::exists(named));
+  std::ofstream(mine) << "the user's";
+  const Outcome refused = run_with("{type: trajectory, file: b.txt}");
+  EXPECT_EQ(refused.exit_code, 2);
+  EXPECT_THAT(refused.err, HasSubstr("b.txt: is no file of an earlier run, and would be replaced"));
+  ASSERT_TRUE(fs::exists(named));
+  EXPECT_EQ(run_with("{type: trajectory, file: trajectory.txt}").exit_code, 0);
+  EXPECT_FALSE(fs::exists(named));
+  EXPECT_FALSE(fs::exists(named.parent_path()));
+  EXPECT_EQ(text_of(mine), "the user's");
 }
 
 }  // namespace

@@ -4,9 +4,11 @@ Activations change from NHWC to NCHW. Quantised weights are dequantised; the sat
 quantised activation becomes a Clip, which the network was trained with."""
 
 import struct
+from math import prod
 
 from . import onnx_file
 from .onnx_file import Node
+from .tflite_file import Model
 
 BINARY = {'ADD': 'Add', 'MUL': 'Mul', 'SUB': 'Sub'}
 UNARY = {'LOGISTIC': 'Sigmoid', 'RELU': 'Relu'}
@@ -17,6 +19,8 @@ ACTIVATION_RANGE = {0: (None, None), 1: (0.0, None), 2: (-1.0, 1.0), 3: (0.0, 6.
 
 def transpose(values, shape, order):
     """A flat array with its axes in another order, and its new shape."""
+    if len(values) != prod(shape):
+        raise ValueError(f'{len(values)} values have shape {shape}')
     strides = [1] * len(shape)
     for axis in range(len(shape) - 2, -1, -1):
         strides[axis] = strides[axis + 1] * shape[axis + 1]
@@ -339,3 +343,14 @@ def fold_image_pooling(nodes, constants):
     kept = {name: value for name, value in constants.items()
             if name not in (conv.inputs[1], upsample.inputs[1])}
     return folded, kept | {'wpool': part(pooled), 'waspp': part(half - pooled)}
+
+
+def convert(source, target, size=None, opset=11, skip_padding=False, outputs=None, comment=''):
+    """Makes the ONNX file `target` of the TensorFlow Lite file `source`. Throws ValueError when it is
+    damaged or of a kind that cannot be converted; OSError."""
+    try:
+        conversion = Conversion(Model(source), size, opset, skip_padding)
+        conversion.write(target, outputs or conversion.default_outputs(), comment)
+    except (ArithmeticError, LookupError, TypeError, struct.error) as error:
+        raise ValueError(f'{source}: a damaged network, or one of a kind that cannot be converted '
+                         f'({type(error).__name__}: {error})') from error

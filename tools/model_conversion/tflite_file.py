@@ -12,6 +12,21 @@ FLOAT32, FLOAT16, INT32, UINT8, INT64, INT8 = 0, 1, 2, 3, 4, 9
 FORMATS = {FLOAT32: 'f', FLOAT16: 'e', INT32: 'i', UINT8: 'B', INT64: 'q', INT8: 'b'}
 
 
+class Bytes:
+    """The file. Parts of it may be read more than once, but a damaged one could have everything refer
+    to the same large part: all that is read together is limited to some eight times its size."""
+
+    def __init__(self, data):
+        self.data, self.left = data, 8 * len(data) + 1000
+
+    def unpack(self, form, position):
+        size = struct.calcsize(form)
+        self.left -= size
+        if position < 0 or self.left < 0:
+            raise struct.error('beyond the limits of the file')
+        return struct.unpack_from(form, self.data, position)
+
+
 class Table:
     """A flatbuffer table; fields are numbered as in the schema."""
 
@@ -19,7 +34,7 @@ class Table:
         self.data, self.position = data, position
 
     def _unpack(self, code, position):
-        return struct.unpack_from('<' + code, self.data, position)[0]
+        return self.data.unpack('<' + code, position)[0]
 
     def _field(self, index):
         vtable = self.position - self._unpack('i', self.position)
@@ -45,7 +60,7 @@ class Table:
             return ()
         start = self._target(field)
         count = self._unpack('I', start)
-        return struct.unpack_from(f'<{count}{code}', self.data, start + 4)
+        return self.data.unpack(f'<{count}{code}', start + 4)
 
     def text(self, index):
         return bytes(self.vector(index, 'B')).decode()
@@ -102,7 +117,7 @@ class Operator:
         self.name = OPERATORS.get(number, f'operator {number}')
         self.inputs = table.vector(1, 'i')
         self.output = table.vector(2, 'i')[0]
-        self.options = table.table(4) or Table(struct.pack('<iHH', 4, 4, 0), 0)  # all defaults
+        self.options = table.table(4) or Table(Bytes(struct.pack('<iHH', 4, 4, 0)), 0)
         self.custom_options = bytes(table.vector(5, 'B'))
 
     def __str__(self):
@@ -111,12 +126,13 @@ class Operator:
 
 class Model:
     def __init__(self, path):
-        with open(path, 'rb') as file:
-            data = file.read()
+        with open(path, 'rb') as stream:
+            data = stream.read()
         if data[4:8] != b'TFL3':
             raise ValueError(f'{path}: this is no TensorFlow Lite file')
         try:
-            root = Table(data, struct.unpack_from('<I', data)[0])
+            file = Bytes(data)
+            root = Table(file, file.unpack('<I', 0)[0])
             graph, codes, buffers = root.tables(2)[0], root.tables(1), root.tables(4)
             self.tensors = [Tensor(table, buffers) for table in graph.tables(0)]
             self.inputs, self.outputs = graph.vector(1, 'i'), graph.vector(2, 'i')

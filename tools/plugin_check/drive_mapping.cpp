@@ -5,8 +5,8 @@
 #include <stop_token>
 
 #include "plugin_check/frame_drive.hpp"
+#include "stillpoint/runtime/mapping_results.hpp"
 #include "stillpoint/runtime/null_stages.hpp"
-#include "stillpoint/runtime/stage_results.hpp"
 #include "stillpoint/runtime/thorough_checks.hpp"
 
 namespace stillpoint::plugin_check {

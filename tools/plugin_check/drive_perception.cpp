@@ -3,7 +3,7 @@
 #include <opencv2/core.hpp>
 
 #include "plugin_check/frame_drive.hpp"
-#include "stillpoint/runtime/stage_results.hpp"
+#include "stillpoint/runtime/perception_results.hpp"
 #include "stillpoint/runtime/thorough_checks.hpp"
 
 namespace stillpoint::plugin_check {

@@ -74,6 +74,7 @@ bool run_and_print(Stages stages, const PipelineConfig& config, RunFolder& folde
   // A camera that does not fit, or a network that cannot be used, must not cost the results of an
   // earlier run.
   stages.before_outputs = [&folder] { folder.begin(); };
+  stages.map_saved = [&folder](const auto& files) { folder.list_map(files); };
   const auto table = std::make_shared<RunTable>();
   stages.outputs.push_back({{table, "table"}});
   const auto end = [&] {

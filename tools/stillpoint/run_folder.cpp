@@ -31,7 +31,12 @@ constexpr const char* kLog = "log.txt";
 constexpr const char* kPipeline = "pipeline.yaml";
 constexpr const char* kResults[] = {kPipeline,    "trajectory.txt", "keyframes.txt", "timings.csv",
                                     "frames.csv", "summary.json",   "run.mcap",      "sparse.map"};
+constexpr const char* kMapList = "files.txt";  // in map: what the back end has written
 constexpr const char* kMaps[] = {"map.ot", "map.bt", "map.ply", "map.pgm", "map.yaml", "cloud.ply"};
+
+// Outputs whose option `file` names what they write.
+constexpr std::string_view kWithFile[] = {"trajectory", "keyframes", "frames",
+                                          "timings",    "summary",   "mcap"};
 
 bool is_number(std::string_view text) {
   return !text.empty() && text.find_first_not_of("0123456789") == std::string_view::npos;
@@ -86,11 +91,30 @@ std::vector<fs::path> unfinished_in(const fs::path& run, std::set<std::string> f
   return files;
 }
 
-/// All but log and pictures, by their names: nothing else there is the program's.
+/// Those with fixed names, but for the log.
 std::vector<fs::path> results_in(const fs::path& run) {
   std::vector<fs::path> files;
   for (const char* name : kResults) files.push_back(run / name);
   for (const char* name : kMaps) files.push_back(run / "map" / name);
+  return files;
+}
+
+std::set<std::string> fixed_names() { return {std::begin(kResults), std::end(kResults)}; }
+
+/// Of a name in a file that somebody may have changed.
+bool is_below_its_folder(const fs::path& path) {
+  return !path.empty() && path.is_relative() &&
+         std::ranges::none_of(path, [](const fs::path& part) { return part == ".."; });
+}
+
+/// What the map back end of an earlier run has written, which may be of a plugin with files of its
+/// own.
+std::vector<fs::path> map_files_in(const fs::path& run) {
+  std::vector<fs::path> files;
+  std::ifstream list(run / "map" / kMapList);
+  for (std::string name; std::getline(list, name);)
+    if (is_below_its_folder(name)) files.push_back(run / "map" / name);
+  if (!files.empty()) files.push_back(run / "map" / kMapList);
   return files;
 }
 
@@ -103,29 +127,47 @@ std::vector<fs::path> pictures_in(const fs::path& run, const std::set<std::strin
   return files;
 }
 
-/// Those that a run of this effective pipeline writes numbered pictures into; pictures in others
-/// are the user's.
-std::set<std::string> picture_folders(const YAML::Node& pipeline) {
-  std::set<std::string> folders;
-  for (const YAML::Node& output : pipeline["outputs"])
-    if (output["type"].as<std::string>() == "images")
-      folders.insert(output["folder"].as<std::string>("images"));
-  return folders;
+/// What the outputs of a pipeline write under names that it gives them.
+struct NamedResults {
+  std::set<std::string> files;
+  std::set<std::string> picture_folders;  // with numbered pictures
+};
+
+NamedResults results_of(const YAML::Node& effective_pipeline) {
+  NamedResults named;
+  for (const YAML::Node& output : effective_pipeline["outputs"]) {
+    const auto type = output["type"].as<std::string>();
+    if (type == "images")
+      named.picture_folders.insert(output["folder"].as<std::string>("images"));
+    else if (std::ranges::find(kWithFile, type) != std::end(kWithFile) && output["file"])
+      named.files.insert(output["file"].as<std::string>());
+  }
+  for (auto* names : {&named.files, &named.picture_folders})
+    std::erase_if(*names, [](const std::string& name) { return !is_below_its_folder(name); });
+  return named;
 }
 
 /// Of a run that was here before.
-std::set<std::string> earlier_picture_folders(const fs::path& run) {
+NamedResults earlier_results(const fs::path& run) {
   try {
-    std::set<std::string> folders = picture_folders(YAML::Load(read_input_file(run / kPipeline)));
-    std::erase_if(folders, [](const fs::path& folder) {  // in a file that somebody has changed
-      return folder.is_absolute() || folder.string().find("..") != std::string::npos;
-    });
-    return folders;
+    return results_of(YAML::Load(read_input_file(run / kPipeline)));
   } catch (const YAML::Exception&) {
     return {};
   } catch (const Error&) {  // no such file
     return {};
   }
+}
+
+std::vector<fs::path> files_in(const fs::path& run, const std::set<std::string>& names) {
+  std::vector<fs::path> files;
+  for (const std::string& name : names) files.push_back(run / name);
+  return files;
+}
+
+/// Names in `names` that are not in `known`.
+std::set<std::string> without(std::set<std::string> names, const std::set<std::string>& known) {
+  std::erase_if(names, [&](const std::string& name) { return known.contains(name); });
+  return names;
 }
 
 [[noreturn]] void fail(const fs::path& path, const std::string& reason) {
@@ -161,14 +203,15 @@ RunFolder::RunFolder(fs::path path, std::string effective_yaml, Console& console
     require_none_of({path_ / kLog});
     require_none_of(results_in(path_));
   }
-  const auto earlier =
-      holds_earlier_run_ ? earlier_picture_folders(path_) : std::set<std::string>();
-  std::set<std::string> others = picture_folders(YAML::Load(effective_yaml_));
-  std::erase_if(others, [&](const std::string& folder) { return earlier.contains(folder); });
-  require_none_of(pictures_in(path_, others));
-  add_earlier(unfinished_in(path_, earlier));
-  add_earlier(pictures_in(path_, earlier));
-  add_earlier(results_in(path_));  // last: pipeline.yaml says where the pictures are
+  const NamedResults earlier = holds_earlier_run_ ? earlier_results(path_) : NamedResults();
+  const NamedResults own = results_of(YAML::Load(effective_yaml_));
+  require_none_of(pictures_in(path_, without(own.picture_folders, earlier.picture_folders)));
+  require_none_of(files_in(path_, without(without(own.files, earlier.files), fixed_names())));
+  add_earlier(unfinished_in(path_, earlier.picture_folders));
+  add_earlier(pictures_in(path_, earlier.picture_folders));
+  add_earlier(files_in(path_, earlier.files));
+  if (holds_earlier_run_) add_earlier(map_files_in(path_));
+  add_earlier(results_in(path_));  // last: pipeline.yaml says where the others are
   require_replaceable();
 }
 
@@ -222,8 +265,21 @@ void RunFolder::remove_earlier_files() const {
     if (fs::last_write_time(file, error) != written || error) continue;
     fs::remove(file, error);
     if (error) fail(file, error.message());
-    if (file.parent_path() != path_) fs::remove(file.parent_path(), error);  // once it is empty
+    remove_empty_folders(file.parent_path());
   }
+}
+
+// From `folder` upwards, below the run's own.
+void RunFolder::remove_empty_folders(fs::path folder) const {
+  std::error_code not_empty;
+  for (; folder != path_ && fs::remove(folder, not_empty); folder = folder.parent_path()) continue;
+}
+
+void RunFolder::list_map(const std::vector<fs::path>& files) const {
+  if (files.empty()) return;
+  AtomicFile list(path_ / "map" / kMapList);
+  for (const fs::path& file : files) list.stream() << file.generic_string() << '\n';
+  list.commit();
 }
 
 std::vector<std::string> RunFolder::contents() const {
@@ -257,7 +313,8 @@ void RunFolder::require_none_of(const std::vector<fs::path>& files) const {
 void RunFolder::add_earlier(const std::vector<fs::path>& files) {
   std::error_code error;
   for (const fs::path& file : files)
-    if (const auto written = fs::last_write_time(file, error); !error)
+    if (const auto written = fs::last_write_time(file, error);
+        !error && !fs::is_directory(file, error))
       earlier_files_.emplace_back(file, written);
 }
 

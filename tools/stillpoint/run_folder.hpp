@@ -40,6 +40,8 @@ class RunFolder {
   /// results of an earlier run and writes pipeline.yaml. Throws Error when that is not possible.
   void begin();
   bool has_begun() const { return begun_; }
+  /// What the dense map was saved as, below the folder `map`: the next run removes these files.
+  void list_map(const std::vector<std::filesystem::path>& files) const;
 
   const std::filesystem::path& path() const { return path_; }
   /// Into log.txt; warnings and errors also to the console. May be called from any thread.
@@ -53,6 +55,7 @@ class RunFolder {
   void require_replaceable() const;
   void begin_log();
   void remove_earlier_files() const;
+  void remove_empty_folders(std::filesystem::path folder) const;
 
   std::filesystem::path path_;
   std::string effective_yaml_;

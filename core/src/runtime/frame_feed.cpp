@@ -6,8 +6,8 @@
 #include <utility>
 
 #include "stillpoint/engine/stage_guard.hpp"
+#include "stillpoint/runtime/perception_results.hpp"
 #include "stillpoint/runtime/read_only_images.hpp"
-#include "stillpoint/runtime/stage_results.hpp"
 #include "stillpoint/runtime/thorough_checks.hpp"
 
 namespace stillpoint {

@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "stillpoint/runtime/stage_results.hpp"
+#include "stillpoint/runtime/perception_results.hpp"
 #include "stillpoint/runtime/thorough_checks.hpp"
 
 namespace stillpoint {

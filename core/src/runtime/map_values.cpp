@@ -52,6 +52,12 @@ bool possible(const Camera& camera) {
          within(camera.surface_noise, kLeastNoise, kMostNoise);
 }
 
+bool is_rigid_motion(const Pose& pose) {
+  const Eigen::Matrix3d rotation = pose.linear();
+  return pose.matrix().allFinite() && rotation.determinant() > 0 &&  // no mirror image
+         (rotation * rotation.transpose() - Eigen::Matrix3d::Identity()).norm() < kLargestSkew;
+}
+
 std::string fault_of(const Features& features, const Camera& camera) {
   if (!within(features.levels, 1, kMostLevels) || !within(features.scale_factor, 1, kMostScale))
     return "it has no pyramid of 1 to 64 levels, with a factor of 1 to 4";

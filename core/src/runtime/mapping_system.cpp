@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "stillpoint/engine/stage_guard.hpp"
-#include "stillpoint/runtime/stage_results.hpp"
+#include "stillpoint/runtime/mapping_results.hpp"
 #include "stillpoint/runtime/thorough_checks.hpp"
 
 namespace stillpoint {

@@ -7,8 +7,10 @@
 #include <utility>
 
 #include "stillpoint/engine/stage_error.hpp"
+#include "stillpoint/runtime/folder_contents.hpp"
+#include "stillpoint/runtime/mapping_results.hpp"
+#include "stillpoint/runtime/perception_results.hpp"
 #include "stillpoint/runtime/read_only_images.hpp"
-#include "stillpoint/runtime/stage_results.hpp"
 #include "stillpoint/runtime/thorough_checks.hpp"
 
 namespace stillpoint {
@@ -88,6 +90,7 @@ Pipeline::Pipeline(Stages stages, const RuntimeOptions& runtime,
       map_directory_(std::move(stages.map_directory)),
       localise_only_(stages.localise_only),
       before_outputs_(stages.before_outputs ? std::move(stages.before_outputs) : [] {}),
+      map_saved_(std::move(stages.map_saved)),
       classes_(classes_of(stages.segmenter)),
       clock_(clock ? std::move(clock) : std::make_shared<SteadyClock>()),
       wall_start_(SteadyClock().now()),
@@ -239,11 +242,16 @@ void Pipeline::finish_outputs() {
   SourceReport source;
   if (feed_) keep_failure_of([&] { source = feed_->report(); });
   const std::vector<StageTime> times = times_.take();
-  if (!map_directory_.empty() && begun)
-    keep_failure_of([&] { map_is_saved_ = mapping_.save(map_directory_); });
+  if (!map_directory_.empty() && begun) save_dense_map_of_run();
   const auto last = begun ? &Output::finish : &Output::ended_before_first_frame;
   for (OutputStage& output : outputs_)
     output.finish(last, [&] { return summary(*map, source, times); });
+}
+
+void Pipeline::save_dense_map_of_run() {
+  const FolderContents before(map_directory_);
+  keep_failure_of([&] { map_is_saved_ = mapping_.save(map_directory_); });
+  if (map_saved_) keep_failure_of([&] { map_saved_(before.written_since()); });
 }
 
 RunSummary Pipeline::summary(const SparseMap& map, const SourceReport& source,

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "stillpoint/engine/stage_guard.hpp"
-#include "stillpoint/runtime/stage_results.hpp"
+#include "stillpoint/runtime/perception_results.hpp"
 #include "stillpoint/support/objects.hpp"
 
 namespace stillpoint {

@@ -263,7 +263,10 @@ class FakeBackend final : public MapBackend {
     for (const MovedKeyFrame& m : moved)
       if (poses.contains(m.keyframe)) poses[m.keyframe] = m.world_from_camera;
   }
-  void save(const std::filesystem::path&) override { calls_.write("save", 0); }
+  void save(const std::filesystem::path& directory) override {
+    calls_.write("save", 0);
+    if (while_saving) while_saving(directory);
+  }
   std::vector<LabelledPoint> occupied() const override {
     if (fails_once.exchange(false)) throw std::logic_error("a broken cell");
     return std::vector<LabelledPoint>(poses.size());
@@ -272,6 +275,7 @@ class FakeBackend final : public MapBackend {
   std::map<KeyFrameId, Pose> poses;
   mutable std::atomic<bool> fails_once = false;  // in occupied()
   std::function<void()> while_integrating;
+  std::function<void(const std::filesystem::path&)> while_saving;
 
  private:
   CallLog& calls_;

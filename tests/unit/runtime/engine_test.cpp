@@ -3,10 +3,14 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <set>
+#include <stdexcept>
 #include <thread>
+#include <vector>
 
 #include "engine_fixture.hpp"
+#include "support/recording_writer.hpp"
 
 namespace stillpoint {
 namespace {
@@ -267,6 +271,29 @@ TEST_P(EngineInBothModes, WhatFailsBeforeTheOutputsEndsTheRunForThemBeforeItsFir
     EXPECT_TRUE(f.output->before_first_frame);
     EXPECT_EQ(f.calls.entries("output"), Strings());
     EXPECT_EQ(f.calls.entries("save"), Strings()) << "no dense map beside that of an earlier run";
+  }
+}
+
+TEST_P(EngineInBothModes, TheFilesOfTheDenseMapAreNamedAlsoWhereItsBackEndFails) {
+  for (const bool fails : {false, true}) {
+    const testing::TemporaryFolder folder;
+    folder.write("map/the_users", "");
+    EngineFixture f(3);
+    f.backend->while_saving = [&](const std::filesystem::path& directory) {
+      folder.write("map/parts/first", "");
+      EXPECT_EQ(directory, folder.path() / "map");
+      if (fails) throw std::runtime_error("no more");
+    };
+    Stages stages = f.stages();
+    stages.map_directory = folder.path() / "map";
+    std::vector<std::filesystem::path> files;
+    stages.map_saved = [&](const auto& written) { files = written; };
+    Engine engine(std::move(stages), runtime(GetParam()), {});
+    if (fails)
+      EXPECT_THROW(engine.run(), Error);
+    else
+      engine.run();
+    EXPECT_EQ(files, std::vector<std::filesystem::path>{"parts/first"});
   }
 }
 

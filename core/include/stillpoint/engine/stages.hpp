@@ -52,6 +52,9 @@ struct Stages {
   /// Called once by the thread that tracks: when the first frame is through, before an output has
   /// it, or at the end of a source without a frame. What it throws ends the run. May be empty.
   std::function<void()> before_outputs;
+  /// Called once by the thread that finishes, when the dense map has been saved, also where that
+  /// has failed: which files its back end has written, relative to map_directory. May be empty.
+  std::function<void(const std::vector<std::filesystem::path>&)> map_saved;
 };
 
 }  // namespace stillpoint

@@ -7,11 +7,18 @@
 #include "stillpoint/contracts/camera.hpp"
 #include "stillpoint/contracts/keyframe.hpp"
 #include "stillpoint/contracts/landmark.hpp"
+#include "stillpoint/pose_math.hpp"
 
 namespace stillpoint {
 
 /// Whether all values are finite and could be those of a camera.
 bool possible(const Camera& camera);
+
+/// Greatest norm of R Rᵀ - 1 of a pose that a plugin gives.
+inline constexpr double kLargestSkew = 1e-3;
+
+/// Whether a pose is finite and a rigid motion: no scale, no mirror image.
+bool is_rigid_motion(const Pose& pose);
 
 /// What is wrong with features of images of that camera; empty: nothing. Keypoints lie in the image
 /// and in the pyramid, which has up to 64 levels and a factor of up to 4 between two; depths are

@@ -48,6 +48,7 @@ class Pipeline {
   void record(const FrameReportPtr& report);
   void end_threads();
   void finish_outputs();
+  void save_dense_map_of_run();
   RunSummary summary(const SparseMap& map, const SourceReport& source,
                      const std::vector<StageTime>& times);
   int dropped_reports() const;
@@ -58,6 +59,7 @@ class Pipeline {
   const std::filesystem::path map_directory_;
   const bool localise_only_;
   const std::function<void()> before_outputs_;
+  const std::function<void(const std::vector<std::filesystem::path>&)> map_saved_;
   const ClassNames classes_;
   const std::shared_ptr<PaceClock> clock_;
   const double wall_start_;

@@ -1,195 +1,18 @@
-// Results as a plugin written carelessly would give them: each is refused, with what is wrong and
-// what to do.
-#include "stillpoint/runtime/stage_results.hpp"
+// Poses, key frames, maps and corrections as a plugin written carelessly would give them: each is
+// refused, with what is wrong and what to do.
+#include "stillpoint/runtime/mapping_results.hpp"
 
 #include <gmock/gmock.h>
 
 #include <functional>
-#include <limits>
 #include <opencv2/core.hpp>
 
-#include "stillpoint/error.hpp"
+#include "wrong_results.hpp"
 
 namespace stillpoint {
 namespace {
 
 using ::testing::HasSubstr;
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-constexpr float kFloatNan = std::numeric_limits<float>::quiet_NaN();
-const cv::Size kSize(4, 3);
-constexpr std::size_t kClasses = 3;
-
-std::string message_of(const std::function<void()>& check) {
-  try {
-    check();
-  } catch (const Error& error) {
-    EXPECT_EQ(error.fault(), Fault::kStage);
-    return error.what();
-  }
-  return "";
-}
-
-Frame right_frame(std::uint32_t index = 0) {
-  return {.index = index,
-          .time = 5.0 + index,
-          .bgr = cv::Mat(kSize, CV_8UC3, cv::Scalar::all(0)),
-          .gray = cv::Mat(kSize, CV_8UC1, cv::Scalar(0)),
-          .depth = cv::Mat(kSize, CV_32FC1, cv::Scalar(1)),
-          .camera = std::make_shared<const Camera>(Camera{.width = 4, .height = 3})};
-}
-
-struct FrameFault {
-  const char* name;
-  std::function<void(Frame&)> spoil;
-  const char* message;
-};
-
-class WrongFrame : public ::testing::TestWithParam<FrameFault> {};
-
-TEST_P(WrongFrame, IsRefused) {
-  const Frame previous = right_frame(6);
-  Frame frame = right_frame(7);
-  ASSERT_EQ(message_of([&] { check_frame(frame, 7, &previous); }), "");
-  GetParam().spoil(frame);
-  EXPECT_THAT(message_of([&] { check_frame(frame, 7, &previous); }), HasSubstr(GetParam().message));
-}
-
-INSTANTIATE_TEST_SUITE_P(
-    StageResults, WrongFrame,
-    ::testing::Values(
-        FrameFault{"Index", [](Frame& f) { f.index = 9; }, "has index 9; indices count from 0"},
-        FrameFault{"NanFocalLength",
-                   [](Frame& f) {
-                     f.camera = std::make_shared<Camera>(Camera{4, 3, kNan});
-                   },
-                   "the camera of the frame has impossible values; focal lengths lie"},
-        FrameFault{"NoNoise",
-                   [](Frame& f) {
-                     f.camera = std::make_shared<Camera>(
-                         Camera{.width = 4, .height = 3, .surface_noise = 0});
-                   },
-                   "the camera of the frame has impossible values; focal lengths lie"},
-        FrameFault{"NanTime", [](Frame& f) { f.time = kNan; }, "time of the frame is not finite"},
-        FrameFault{"Backwards", [](Frame& f) { f.time = 10.5; }, "0.500000 s older than the one"},
-        FrameFault{"NoImage", [](Frame& f) { f.gray.release(); }, "the frame has no image"},
-        FrameFault{"NoDepth", [](Frame& f) { f.depth.release(); }, "images of a frame differ"},
-        FrameFault{"DepthType", [](Frame& f) { f.depth = cv::Mat(kSize, CV_16UC1, 1.0); },
-                   "the depth image is of CV_16UC1; it must be of CV_32FC1"},
-        FrameFault{"ColourType", [](Frame& f) { f.bgr = cv::Mat(kSize, CV_8UC4); },
-                   "the colour image is of CV_8UC4"},
-        FrameFault{"NoCamera", [](Frame& f) { f.camera = nullptr; }, "the frame has no camera"},
-        FrameFault{"OtherCamera", [](Frame& f) { f.camera = std::make_shared<const Camera>(); },
-                   "the images have 4 x 3 pixels, the camera 640 x 480"},
-        FrameFault{"OtherSize",
-                   [](Frame& f) {
-                     f.camera = std::make_shared<const Camera>(Camera{.width = 2, .height = 2});
-                     f.bgr = cv::Mat(2, 2, CV_8UC3);
-                     f.gray = cv::Mat(2, 2, CV_8UC1);
-                     f.depth = cv::Mat(2, 2, CV_32FC1);
-                   },
-                   "another size than those before"}),
-    [](const auto& test) { return test.param.name; });
-
-Segmentation right_labels() {
-  Segmentation labels{.labels = cv::Mat::zeros(kSize, CV_8UC1),
-                      .instances = cv::Mat::zeros(kSize, CV_8UC1)};
-  labels.labels(cv::Rect(1, 1, 2, 1)).setTo(2);
-  labels.instances(cv::Rect(1, 1, 2, 1)).setTo(1);
-  labels.objects = {{.label = 2, .box = {1, 1, 2, 1}, .pixels = 2}};
-  return labels;
-}
-
-struct LabelFault {
-  const char* name;
-  std::function<void(Segmentation&)> spoil;
-  const char* message;
-};
-
-class WrongLabels : public ::testing::TestWithParam<LabelFault> {};
-
-TEST_P(WrongLabels, AreRefused) {
-  Segmentation labels = right_labels();
-  ASSERT_EQ(message_of([&] { check_segmentation(labels, right_frame(), kClasses); }), "");
-  GetParam().spoil(labels);
-  EXPECT_THAT(message_of([&] { check_segmentation(labels, right_frame(), kClasses); }),
-              HasSubstr(GetParam().message));
-}
-
-INSTANTIATE_TEST_SUITE_P(
-    StageResults, WrongLabels,
-    ::testing::Values(
-        LabelFault{"Size", [](Segmentation& s) { s.labels = cv::Mat::zeros(3, 3, CV_8UC1); },
-                   "the labels have 3 x 3 pixels, but the frame has 4 x 3"},
-        LabelFault{"Type", [](Segmentation& s) { s.labels = cv::Mat::zeros(kSize, CV_32SC1); },
-                   "the labels are of CV_32SC1, not of CV_8UC1; give one byte per pixel"},
-        LabelFault{"Class", [](Segmentation& s) { s.labels.at<std::uint8_t>(0) = 3; },
-                   "a pixel has label 3, but there are 3 classes"},
-        LabelFault{"Instance", [](Segmentation& s) { s.instances.at<std::uint8_t>(0) = 2; },
-                   "belongs to object 2 of 1"},
-        LabelFault{"Object", [](Segmentation& s) { s.objects[0].label = 3; },
-                   "an object has label 3 of 3 classes"},
-        LabelFault{"Background", [](Segmentation& s) { s.objects[0].label = 0; },
-                   "an object has label 0"},
-        LabelFault{"Box", [](Segmentation& s) { s.objects[0].box.x = 3; },
-                   "the box of an object is not in the image"},
-        LabelFault{"Frame", [](Segmentation& s) { s.frame = 6; },
-                   "Segmentation::frame is 6 for frame 0; set it to Frame::index"}),
-    [](const auto& test) { return test.param.name; });
-
-TEST(StageResults, LabelsThatAreNotKnownAreRight) {
-  EXPECT_EQ(message_of([] { check_segmentation({}, right_frame(7), 0); }), "");
-}
-
-TEST(StageResults, WrongWeightsAreRefused) {
-  const Segmentation labels = right_labels();
-  const auto message = [&](const StaticWeights& weights) {
-    return message_of([&] { check_weights(weights, labels, kSize); });
-  };
-  EXPECT_EQ(message({}), "");
-  EXPECT_EQ(message({.track = cv::Mat(kSize, CV_8UC1), .object_moves = {true}}), "");
-  EXPECT_THAT(message({.track = cv::Mat(2, 4, CV_8UC1)}), HasSubstr("the weights have 4 x 2"));
-  EXPECT_THAT(message({.map = cv::Mat(kSize, CV_32FC1)}), HasSubstr("the weights are of CV_32FC1"));
-  EXPECT_THAT(message({.object_moves = {true, false}}),
-              HasSubstr("2 objects are judged, but there are 1"));
-}
-
-TEST(StageResults, WrongMotionAndEvidenceAreRefused) {
-  MovingPoints moving{.points = {{.previous = {1, 2}, .current = {1, 2}}}, .reliable = true};
-  const auto message = [&] { return message_of([&] { check_moving_points(moving, kSize); }); };
-  EXPECT_EQ(message(), "");
-  moving.points[0].previous = {-1, 2};
-  EXPECT_THAT(message(), HasSubstr("a point at -1, 2 is not in the image; points are in pixels"));
-  moving.points[0].previous = {3, 2.75F};
-  EXPECT_THAT(message(), HasSubstr("a point at 3, 2.75 is not in the image"));
-  moving.points[0].current.y = static_cast<float>(kNan);
-  EXPECT_THAT(message(), HasSubstr("a point is not finite"));
-  moving = {.camera_motion = Pose(Eigen::Scaling(2.0))};
-  EXPECT_THAT(message(), HasSubstr("no rigid motion"));
-}
-
-TEST(StageResults, WrongEvidenceIsRefused) {
-  const auto message = [](cv::Size cells, int type = CV_32FC1, cv::Size frame = {251, 187}) {
-    return message_of([&] { check_evidence({cv::Mat(cells, type)}, frame); });
-  };
-  EXPECT_EQ(message({}), "");
-  EXPECT_EQ(message({251, 187}), "");
-  EXPECT_EQ(message({62, 46}), "");
-  EXPECT_EQ(message({63, 47}), "");
-  EXPECT_EQ(message({1, 1}, CV_32FC1, {4, 3}), "");
-  EXPECT_THAT(message({62, 46}, CV_64FC1), HasSubstr("the evidence is of CV_64FC1"));
-  EXPECT_THAT(message({62, 62}), HasSubstr("the evidence has 62 x 62 cells, which do not cover "
-                                           "the frame of 251 x 187 pixels as squares; give one"));
-  EXPECT_THAT(message({187, 251}), HasSubstr("do not cover"));
-}
-
-TEST(StageResults, DepthInMillimetresIsRefused) {
-  Frame frame = right_frame();
-  frame.depth.setTo(1530);
-  EXPECT_THAT(message_of([&] { check_frame(frame, 0, nullptr); }),
-              HasSubstr("half of the first depth image lies beyond 1530 m; give depth in metres;"));
-  frame.depth.setTo(0);
-  EXPECT_EQ(message_of([&] { check_frame(frame, 0, nullptr); }), "");
-}
 
 TrackResult right_result(const Frame& frame) {
   TrackResult result{.state = TrackState::kTracking, .reference = 3};
@@ -230,7 +53,7 @@ TEST_P(WrongTracking, IsRefused) {
 }
 
 INSTANTIATE_TEST_SUITE_P(
-    StageResults, WrongTracking,
+    MappingResults, WrongTracking,
     ::testing::Values(
         TrackFault{"NanPose", [](TrackResult& r) { r.world_from_camera.translation().x() = kNan; },
                    "the pose is no rigid motion"},
@@ -291,7 +114,7 @@ INSTANTIATE_TEST_SUITE_P(
                    "it made a key frame, but is LOST"}),
     [](const auto& test) { return test.param.name; });
 
-TEST(StageResults, ThePoseByAReferenceInTheMapIsThatOfTheResult) {
+TEST(MappingResults, ThePoseByAReferenceInTheMapIsThatOfTheResult) {
   MapEdit map{SparseMap()};
   KeyFrame keyframe{.id = 0};
   keyframe.features = std::make_shared<const Features>();
@@ -309,7 +132,7 @@ TEST(StageResults, ThePoseByAReferenceInTheMapIsThatOfTheResult) {
   EXPECT_EQ(message(2), "");
 }
 
-TEST(StageResults, AMapThatStaysAsItIsGetsNoKeyFrame) {
+TEST(MappingResults, AMapThatStaysAsItIsGetsNoKeyFrame) {
   const Frame frame = right_frame(7);
   TrackResult result = right_result(frame);
   const TrackHints hints{.next_keyframe = 4, .localise_only = true};
@@ -321,7 +144,7 @@ TEST(StageResults, AMapThatStaysAsItIsGetsNoKeyFrame) {
   EXPECT_EQ(message(), "");
 }
 
-TEST(StageResults, WhatIsPreparedIsTheFrame) {
+TEST(MappingResults, WhatIsPreparedIsTheFrame) {
   const auto frame = std::make_shared<const Frame>(right_frame());
   const PreparedFrame right(frame), other(std::make_shared<const Frame>(right_frame()));
   const auto message = [&](const PreparedFrame* prepared) {
@@ -342,7 +165,7 @@ SparseMap map_with_keyframes(KeyFrameId count) {
   return map.map();
 }
 
-TEST(StageResults, AMapThatIsNoNextVersionIsRefused) {
+TEST(MappingResults, AMapThatIsNoNextVersionIsRefused) {
   const SparseMap before = map_with_keyframes(2), after = map_with_keyframes(3);
   EXPECT_EQ(message_of([&] { check_inserted(after, before); }), "");
   EXPECT_EQ(message_of([&] { check_refined(after, after); }), "");
@@ -353,7 +176,7 @@ TEST(StageResults, AMapThatIsNoNextVersionIsRefused) {
   EXPECT_THAT(message_of([&] { check_inserted({}, before); }), HasSubstr("key frame 2"));
 }
 
-TEST(StageResults, WhatIsNewInAMapIsFinite) {
+TEST(MappingResults, WhatIsNewInAMapIsFinite) {
   const auto message = [](const std::function<void(MapEdit&)>& spoil) {
     MapEdit before(map_with_keyframes(2));
     KeyFrame seeing{.id = 2};
@@ -375,7 +198,7 @@ TEST(StageResults, WhatIsNewInAMapIsFinite) {
               HasSubstr("the position of landmark 0 is not finite"));
 }
 
-TEST(StageResults, WrongCorrectionsAreRefused) {
+TEST(MappingResults, WrongCorrectionsAreRefused) {
   const SparseMap map = map_with_keyframes(2);
   const auto message = [&](const MapCorrection& correction) {
     return message_of([&] { check_correction(correction, map); });
@@ -392,7 +215,7 @@ TEST(StageResults, WrongCorrectionsAreRefused) {
   EXPECT_THAT(message({.fused = {{0, kNoId}}}), HasSubstr("names landmark 0 of 0"));
 }
 
-TEST(StageResults, WhoIsLostNeedsNoPose) {
+TEST(MappingResults, WhoIsLostNeedsNoPose) {
   TrackResult result{.state = TrackState::kLost};
   result.world_from_camera.translation().x() = kNan;
   EXPECT_EQ(message_of([&] { check_tracking(result, right_frame(), {}, {}); }), "");
