@@ -103,10 +103,26 @@ TEST_F(ReportFigures, OfAStudyShowTheFirstRepeatOfEachVariant) {
         std::string(name).find("better") == std::string::npos ? "base" : "better";
   }
   const std::set<std::string> figures = written(data);
-  EXPECT_THAT(figures, IsSupersetOf({"walking/trajectory", "walking/errors", "walking/excluded",
-                                     "walking/stage_times", "walking/base/errors",
-                                     "walking/better/errors", "sitting/base/errors"}));
-  EXPECT_EQ(figures.size(), 4u + 3 * 6);
+  EXPECT_THAT(figures,
+              IsSupersetOf({"walking/trajectory", "walking/errors", "walking/excluded",
+                            "walking/stage_times", "walking/base/errors", "walking/better/errors",
+                            "sitting/base/errors", "stage_times"}));
+  EXPECT_EQ(figures.size(), 1u + 4 + 3 * 6);
+}
+
+TEST_F(ReportFigures, TimeOfAVariantIsTheMeanOfItsRuns) {
+  const auto picture = [&](double first, double second) {
+    ReportData data;
+    for (const auto& [name, ms] : {std::pair{"base/1", first}, {"base/2", second}, {"more/1", 9}}) {
+      data.runs.push_back(run_of(name, "walking"));
+      data.runs.back().variant = std::string(name).substr(0, 4);
+      data.runs.back().stages[0].cpu.mean = ms;
+    }
+    written(data);
+    return bytes_of(folder_.path() / "stage_times.svg");
+  };
+  EXPECT_EQ(picture(4, 8), picture(6, 6));
+  EXPECT_NE(picture(4, 8), picture(4, 4));
 }
 
 TEST_F(ReportFigures, RunsOfOneNameAreToldApartAndNamesStayInTheFolder) {

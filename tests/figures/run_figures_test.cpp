@@ -168,6 +168,10 @@ TEST(StageTimeFigure, StacksTheMeansToThatOfAFrame) {
   EXPECT_NEAR(ends[0], 15, 1e-12);
   EXPECT_NEAR(ends[1], 14, 1e-12);
   EXPECT_NEAR(marks_of<Bar>(figure.rows[1].panels[0])[5].x.high, 30, 1e-12);
+
+  const Figure of_variants = variant_time_figure(runs);
+  ASSERT_EQ(of_variants.rows.size(), 1u);
+  EXPECT_EQ(marks_of<Bar>(of_variants.rows[0].panels[0]).size(), marks_of<Bar>(stacked).size());
 }
 
 TEST(StageTimeFigure, StagesOfLittleCostAreOnePiece) {

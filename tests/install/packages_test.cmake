@@ -35,6 +35,23 @@ run(${program} run orb_baseline --quiet --dataset ${recording} -o ${work}/packag
 expect_small_error(${work}/packaged_run 0.02)
 if(EXISTS ${BUILD_DIR}/share/stillpoint/report.html)
   run(${program} report ${work}/packaged_run)
+
+  # The paper's tables, of one sequence cut short.
+  file(REMOVE_RECURSE ${work}/packaged_study)
+  file(WRITE ${work}/packaged_study.yaml "version: 1
+extends: paper_tables
+sequences: [{name: walking_xyz, scene: fr3_walking_xyz, frames: 20}]
+repeats: 1
+pictures: 1
+")
+  run(${program} ablate ${work}/packaged_study.yaml -o ${work}/packaged_study)
+  expect_in_output("## Improvement of the ATE over orb_baseline")
+  run(${program} report ${work}/packaged_study --figures ${work}/packaged_study/figures)
+  foreach(file report.html tables.tex results.csv figures/stage_times.pdf figures/walking_xyz/trajectory.svg)
+    if(NOT EXISTS ${work}/packaged_study/${file})
+      message(FATAL_ERROR "the report of a study has no ${file}:\n${output}")
+    endif()
+  endforeach()
 endif()
 run(${root}/usr/bin/stillpoint-get-models --help)
 expect_in_output("usage: stillpoint-get-models")

@@ -57,6 +57,17 @@ void stack_stages(Panel& panel, const RunTimes& run, const std::map<std::string,
   panel.y.categories.push_back(run.name);
 }
 
+Panel stacked_means(std::span<const RunTimes> runs, const std::map<std::string, Colour>& colours) {
+  Panel panel{"CPU time of a frame, mean", {}, {}};
+  panel.x.low = 0;
+  for (const RunTimes& run : runs) stack_stages(panel, run, colours);
+  return panel;
+}
+
+double height_pt(std::size_t categories) {
+  return kCategoryPt * static_cast<double>(std::max<std::size_t>(categories, 1));
+}
+
 /// A bar to the median, ever thinner ones to the other two. `name` for the legend.
 void add_percentiles(Panel& panel, const std::string& name, const StageTime& time, double y,
                      double thickness, const Colour& colour) {
@@ -107,15 +118,16 @@ std::vector<StageCourse> costliest(std::span<const StageCourse> stages) {
 
 Figure stage_time_figure(std::span<const RunTimes> runs) {
   const std::map<std::string, Colour> colours = stage_colours(runs);
-  const auto height = [](std::size_t categories) {
-    return kCategoryPt * static_cast<double>(std::max<std::size_t>(categories, 1));
-  };
-  Panel stacked{"CPU time of a frame, mean", {}, {}};
-  stacked.x.low = 0;
-  for (const RunTimes& run : runs) stack_stages(stacked, run, colours);
   Figure figure{"Time of the stages"};
-  figure.rows.push_back({height(runs.size()), {std::move(stacked)}});
-  figure.rows.push_back({height(colours.size()), {percentiles(runs, colours)}});
+  figure.rows.push_back({height_pt(runs.size()), {stacked_means(runs, colours)}});
+  figure.rows.push_back({height_pt(colours.size()), {percentiles(runs, colours)}});
+  return figure;
+}
+
+Figure variant_time_figure(std::span<const RunTimes> variants) {
+  Figure figure{"Time of the stages"};
+  figure.rows.push_back(
+      {height_pt(variants.size()), {stacked_means(variants, stage_colours(variants))}});
   return figure;
 }
 

@@ -26,6 +26,9 @@ struct RunTimes {
 /// wide as a column.
 Figure stage_time_figure(std::span<const RunTimes> runs);
 
+/// The part above alone, for the means of many runs; percentiles are not used.
+Figure variant_time_figure(std::span<const RunTimes> variants);
+
 /// CPU time of the frames, ms; `frames` rise.
 struct StageCourse {
   std::string stage;

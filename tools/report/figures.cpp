@@ -104,6 +104,28 @@ figures::RunTimes times_of(const NamedRun& run) {
   return times;
 }
 
+/// Of each variant the mean over its runs; a stage that a run does not have costs it nothing.
+std::vector<figures::RunTimes> times_of_variants(const ReportData& data) {
+  std::vector<figures::RunTimes> variants;
+  std::map<std::string, double> counts;
+  for (const RunData& run : data.runs) {
+    if (run.stages.empty()) continue;
+    counts[run.variant] += 1;
+    auto variant = std::ranges::find(variants, run.variant, &figures::RunTimes::name);
+    if (variant == variants.end()) variant = variants.insert(variants.end(), {run.variant, {}});
+    for (const figures::StageTime& time : times_of({run.variant, &run}).stages) {
+      const auto known = std::ranges::find(variant->stages, time.stage, &figures::StageTime::stage);
+      if (known == variant->stages.end())
+        variant->stages.push_back({time.stage, time.mean_per_frame});
+      else
+        known->mean_per_frame += time.mean_per_frame;
+    }
+  }
+  for (figures::RunTimes& variant : variants)
+    for (figures::StageTime& time : variant.stages) time.mean_per_frame /= counts[variant.name];
+  return variants;
+}
+
 std::vector<figures::StageCourse> stage_courses(const RunData& run) {
   std::vector<figures::StageCourse> courses;
   for (const StageTimes& stage : run.stages)
@@ -153,6 +175,12 @@ class Writer {
     if (times.size() >= least) write("stage_times", figures::stage_time_figure(times));
   }
 
+  /// Of all recordings together.
+  void write_variants(const ReportData& data) {
+    const std::vector<figures::RunTimes> variants = times_of_variants(data);
+    if (variants.size() > 1) write("stage_times", figures::variant_time_figure(variants));
+  }
+
   void write_run(const NamedRun& run) {
     const RunData& data = *run.data;
     write_common({run}, 1);
@@ -183,7 +211,9 @@ class Writer {
 }  // namespace
 
 std::size_t write_figures(const ReportData& data, const std::filesystem::path& folder) {
-  std::size_t count = 0;
+  Writer over_all(folder);
+  over_all.write_variants(data);
+  std::size_t count = over_all.count();
   for (const auto& [recording, runs] : runs_by_recording(data)) {
     const std::filesystem::path place = folder / as_file_name(recording);
     Writer together(place);
