@@ -179,17 +179,32 @@ class Slurm(unittest.TestCase):
         self.assertNotRegex(err, r"submitted as job \d+: [3-9]")
         self.assertEqual(len(self.rows(self.out)), 6)
 
+    def wrapped(self, name, script):
+        """A search path on which this command of Slurm is a script of the shell; REAL is the command."""
+        wrapper = self.folder / self.id() / name
+        wrapper.parent.mkdir(exist_ok=True)
+        wrapper.write_text("#!/bin/sh\n" + script.replace("REAL", f"'{shutil.which(name)}' \"$@\"") + "\n")
+        wrapper.chmod(0o755)
+        return f"{wrapper.parent}:{os.environ['PATH']}"
+
     def test_waits_for_a_queue_that_is_full(self):
         """sbatch refuses while there are jobs, as a limit of the number of jobs of a user does."""
-        wrapper = self.folder / "bin" / "sbatch"
-        wrapper.parent.mkdir()
-        wrapper.write_text("#!/bin/sh\n[ -z \"$(squeue --noheader)\" ] || { echo 'sbatch: error: full' >&2; exit 1; }\n"
-                           f"exec '{shutil.which('sbatch')}' \"$@\"\n")
-        wrapper.chmod(0o755)
-        code, _, err = self.follow(TWO_VARIANTS, PATH=f"{wrapper.parent}:{os.environ['PATH']}").finish()
+        path = self.wrapped("sbatch", "[ -z \"$(squeue --noheader)\" ] || { echo 'sbatch: error: full' >&2; exit 1; }\n"
+                                      "exec REAL")
+        code, _, err = self.follow(TWO_VARIANTS, PATH=path).finish()
         self.assertEqual(code, 0, err)
         self.assertIn("Slurm takes no more for now, 2 runs are submitted later: sbatch: full", err)
         self.assertIn("[6/6] short/", err)
+
+    def test_a_job_beyond_its_time_or_memory_has_failed(self):
+        """squeue says so of a job that was cancelled: the shortest limit of time is a minute."""
+        for state, exit_code in (("TIMEOUT", 124), ("OUT_OF_MEMORY", 1)):
+            study = self.follow(ENDLESS, PATH=self.wrapped("squeue", f"REAL | sed s/CANCELLED/{state}/"))
+            command("scancel", study.read_until("submitted as job ").split(":")[0])
+            code, _, err = study.finish()
+            self.assertEqual(code, 1)
+            self.assertIn(f"endless/plain/0: exit code {exit_code}: left no result; Slurm says {state}", err)
+            self.assertEqual(self.rows(self.out)[0]["state"], "failed")
 
     def test_says_why_slurm_takes_nothing(self):
         code, _, err = self.follow(TWO_VARIANTS.replace("main", "mian")).finish()
