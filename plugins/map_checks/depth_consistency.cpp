@@ -34,7 +34,7 @@ double overlap(const View& view, const cv::Mat& depth, const CellCamera& camera,
 
 void DepthConsistency::Options::visit(OptionVisitor& v) {
   memory.visit(v);
-  verdict.visit(v);
+  surface.visit(v);
   v("min_agreement", min_agreement,
     {.min = 0,
      .max = 1,
@@ -61,8 +61,8 @@ MapEvidence DepthConsistency::check(const Frame& frame, std::span<const Pose> gu
   for (const auto& [share, view] : by_overlap) best.push_back(view);
   const ViewAlignment alignment = align(depth, camera, guesses, best);
   if (alignment.agreement < options_.min_agreement) return {};
-  return {judge_surfaces(depth, camera, alignment.world_from_camera, frame.time, views,
-                         options_.verdict)};
+  return {surface_evidence(depth, camera, alignment.world_from_camera, frame.time, views,
+                           options_.surface)};
 }
 
 }  // namespace stillpoint::map_checks

@@ -1,7 +1,7 @@
 // Map check `depth_consistency`: the depth image against the surfaces that earlier frames saw.
 #pragma once
 
-#include "map_checks/surface_verdicts.hpp"
+#include "map_checks/surface_evidence.hpp"
 #include "map_checks/view_alignment.hpp"
 
 namespace stillpoint::map_checks {
@@ -14,7 +14,7 @@ class DepthConsistency final : public MapChecker {
  public:
   struct Options {
     MemoryOptions memory;
-    VerdictOptions verdict;
+    SurfaceEvidenceOptions surface;
     double min_agreement = 0.5;
 
     void visit(OptionVisitor& visitor);

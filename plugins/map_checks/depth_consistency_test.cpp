@@ -114,7 +114,7 @@ TEST(DepthConsistency, APoseThatDoesNotFitSaysNothing) {
 
 TEST(DepthConsistency, WhatIsPutDownIsBelievedInTime) {
   DepthConsistency::Options options;
-  options.verdict.rest_time = 2;
+  options.surface.rest_time = 2;
   World world(options);
   world.after(3);
   world.room.boxes.push_back(kPerson);

@@ -5,6 +5,8 @@
 #include <array>
 #include <cmath>
 
+#include "stillpoint/contracts/camera.hpp"
+
 namespace stillpoint::map_checks {
 namespace {
 
@@ -15,8 +17,8 @@ constexpr std::size_t kMaxAlignedViews = 3;
 // and 0.05 rad at 2 m, to six times the noise of depth, a Kinect's.
 constexpr float kFirstGate = 0.15F;
 constexpr float kLastGate = 0.05F;
-constexpr float kOnSurface = 0.04F;     // m, likewise: five times the noise
-constexpr float kKinectNoise = 0.002F;  // Camera::surface_noise
+constexpr float kOnSurface = 0.04F;  // m, likewise: five times the noise
+constexpr auto kKinectNoise = static_cast<float>(Camera{}.surface_noise);
 // Errors of neighbouring points are correlated (registration, calibration): so many count as one.
 constexpr double kCorrelated = 5.0;
 // m at up to 1.4 m, for a Kinect: noise of its depth (3 mm, Khoshelham and Elberink 2012) and what

@@ -18,8 +18,10 @@ constexpr double kTrackedNoiseFactor = 2.0;
 constexpr double kUnknownTrust = 0.5;
 constexpr double kTrustRate = 0.3;        // of the way to 0 or 1 per frame
 constexpr double kMinTrustWeight = 0.05;  // so that a wrong static scene can be corrected
-constexpr double kInheritRadius = 80.0;   // px, within which points of a surface share trust
-constexpr double kInheritDepth = 0.03;    // 1/m, likewise
+// px, within which points of a surface share trust: an eighth of an image of 640 px. In larger ones
+// points are as dense, and trust is shared over less of the surface.
+constexpr double kInheritRadius = 80.0;
+constexpr double kInheritDepth = 0.03;  // 1/m, likewise
 // The prediction is uncertain far from the inliers that determine the camera's motion.
 constexpr double kMaxUncertainty = 1.5;  // of epsilon; beyond, a point is not classified
 constexpr double kSigmas = 3.0;          // of the prediction, added to the threshold

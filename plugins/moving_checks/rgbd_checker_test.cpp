@@ -92,6 +92,30 @@ TEST_F(RgbdCheckerTest, StaticWorldStaysStaticWhateverTheCameraDoes) {
   }
 }
 
+TEST_F(RgbdCheckerTest, StaticWorldStaysStaticForANoisySensorWhoseNoiseIsKnown) {
+  constexpr double kNoise = 0.02;  // 1/m, of the inverse depth: ten times a Kinect's
+  const auto moving_share = [&](double known_noise) {
+    auto camera = std::make_shared<Camera>(scene_.camera());
+    camera->surface_noise = known_noise;
+    cv::RNG random(3);
+    const auto see = [&](const Pose& pose, std::uint32_t index) {
+      Frame frame = scene_.see(pose, index);
+      frame.camera = camera;
+      for (auto z = frame.depth.begin<float>(); z != frame.depth.end<float>(); ++z)
+        if (*z > 0) *z = static_cast<float>(1 / (1 / *z + random.gaussian(kNoise)));
+      return frame;
+    };
+    RgbdChecker checker({}, {});
+    const Frame before = see(camera_at(0, 0, 0), 0);
+    const MovingPoints result = checker.check(before, see(camera_at(0.03, -0.02, 0.05), 1), {});
+    EXPECT_FALSE(result.points.empty());
+    const auto moving = std::ranges::count_if(result.points, &PointMotion::moving);
+    return static_cast<double>(moving) / static_cast<double>(result.points.size());
+  };
+  EXPECT_GT(moving_share(0.002), 0.1);
+  EXPECT_LT(moving_share(kNoise), 0.03);
+}
+
 // What has stood still before decides whose motion is the camera's, though most of the picture
 // moves as one thing now.
 TEST_F(RgbdCheckerTest, BoardThatFillsMoreThanHalfOfThePictureIsWhatMoves) {

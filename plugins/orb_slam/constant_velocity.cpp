@@ -8,8 +8,10 @@ namespace stillpoint::orb_slam {
 namespace {
 
 constexpr double kNewVelocityWeight = 0.3;  // weight of the newest velocity when it is smoothed
-constexpr double kMotionMetres = 0.5;       // per second: standard deviation
-constexpr double kMotionRadians = 0.5;      // per second, the same
+// Standard deviations of the change of velocity of a camera in a hand or on a small robot, per
+// second: a weak prior, for directions that nothing that is measured constrains.
+constexpr double kMotionMetres = 0.5;
+constexpr double kMotionRadians = 0.5;
 
 }  // namespace
 

@@ -12,8 +12,13 @@ constexpr double kMinKnown = 0.25;          // share of patches that key frames 
 constexpr double kMinAgreement = 0.6;       // inlier share of those; likewise of landmarks
 constexpr double kMaxKnownOfNewView = 0.7;  // a smaller known share requests a key frame
 
-// Association gate: greatest point-to-plane distance in metres, smaller in every round.
-double reach(int round) { return std::max(0.12 * std::pow(0.6, round), 0.02); }
+// Association gate: greatest point-to-plane distance in metres, smaller in every round, from what a
+// predicted pose may be off to what registration leaves. Where the sensor's noise is larger,
+// register_planes() widens it.
+constexpr double kFirstReach = 0.12, kLastReach = 0.02, kReachFactor = 0.6;
+double reach(int round) {
+  return std::max(kFirstReach * std::pow(kReachFactor, round), kLastReach);
+}
 
 bool landmarks_agree(const ObservedFrame& frame) {
   const int inlier_count = frame.inlier_count();
@@ -44,7 +49,8 @@ Matrix6d DepthRegistration::information_of_view() {
 
 bool DepthRegistration::refine(ObservedFrame& frame, const SparseMap& map,
                                const QuadraticCost& motion, const Solve& solve) {
-  const DepthAnchor::Neighbours around = anchor_.around(view(), frame.world_from_camera, map);
+  const ReferenceViews::Neighbours around =
+      references_.around(view(), frame.world_from_camera, map);
   if (around.views.empty()) return false;
   const ObservedFrame before = frame;
   if (frame.reference == kNoId) frame.reference = around.nearest;

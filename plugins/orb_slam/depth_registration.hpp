@@ -4,8 +4,8 @@
 #include <functional>
 #include <optional>
 
-#include "orb_slam/depth_anchor.hpp"
 #include "orb_slam/observed_frame.hpp"
+#include "orb_slam/reference_views.hpp"
 #include "stillpoint/contracts/static_weights.hpp"
 
 namespace stillpoint::orb_slam {
@@ -34,7 +34,7 @@ class DepthRegistration {
   bool shows_new_surfaces() const;
 
   /// The frame has become a key frame.
-  void add_keyframe(KeyFrameId keyframe) { anchor_.add(keyframe, view()); }
+  void add_keyframe(KeyFrameId keyframe) { references_.add(keyframe, view()); }
 
  private:
   const DepthView& view();
@@ -43,7 +43,7 @@ class DepthRegistration {
   StaticWeights weights_;
   std::optional<DepthView> view_;
   std::optional<PlaneRegistration> registration_;  // set when it constrains the frame's pose
-  DepthAnchor anchor_;
+  ReferenceViews references_;
 };
 
 /// Least number of landmarks to use together with surfaces; fewer may all be outliers.

@@ -56,6 +56,13 @@ TEST(DepthView, NoiseOfDistanceAndNormalIsNoLargerThanSaid) {
   EXPECT_NEAR(tilt / (76 * 56), 1.0, 0.3);
 }
 
+TEST(DepthView, OfANoisySensorHasPatchesWhenItsNoiseIsKnown) {
+  constexpr double kNoise = 0.01;  // five times a Kinect's
+  const FramePtr frame = see_planes({kAhead}, Pose::Identity(), 0, kNoise);
+  EXPECT_LT(patches_of(DepthView(*frame, {})), 100) << "taken for discontinuities";
+  EXPECT_GT(patches_of(DepthView(*with_surface_noise(frame, kNoise), {})), 0.99 * 76 * 56);
+}
+
 TEST(DepthView, EdgesHaveNone) {
   const auto frame = std::make_shared<Frame>(*see_planes({kAhead}, Pose::Identity()));
   frame->depth = frame->depth.clone();

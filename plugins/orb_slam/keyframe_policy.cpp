@@ -7,6 +7,8 @@
 namespace stillpoint::orb_slam {
 namespace {
 
+constexpr double kUrgentRatio =
+    0.25;  // of the reference's matches: tracking may be lost before mapping is free
 constexpr int kMinFramesBetweenByDepth =
     5;  // minimum; unstable corners would ask for one every time
 
@@ -56,9 +58,10 @@ void KeyFrameOptions::visit(OptionVisitor& v) {
   v("close_depth", close_depth,
     {.min = 0.1, .unit = "m", .help = "nearer points have depth that can constrain translation"});
   v("keyframe_min_close", min_close,
-    {.min = 0, .help = "new key frame when fewer close points are tracked and others exist"});
+    {.min = 0,
+     .help = "new key frame when fewer close landmarks are tracked and enough could be created"});
   v("keyframe_max_close_untracked", max_close_untracked,
-    {.min = 0, .help = "others exist when more close points than this have no landmark"});
+    {.min = 0, .help = "close points without a landmark, above which enough could be created"});
 }
 
 TrackingQuality tracking_quality(const ObservedFrame& frame, const SparseMap& map, int inliers,
@@ -90,7 +93,7 @@ bool needs_keyframe(const TrackingQuality& q, TrackHints hints, const KeyFrameOp
       q.motion < options.moved ? options.min_tracked_ratio : options.moved_tracked_ratio;
   const bool view_changed = q.inliers < least * q.reference_matches;
   if (!needs_close && !view_changed) return false;
-  const bool urgent = needs_close || q.inliers < 0.25 * q.reference_matches;
+  const bool urgent = needs_close || q.inliers < kUrgentRatio * q.reference_matches;
   return urgent || q.frames_since_last >= options.max_frames_between || !hints.mapping_waiting;
 }
 

@@ -19,7 +19,9 @@ double path_length(const SparseMap& map, KeyFrameId from, KeyFrameId to) {
 
 // Perceptual aliasing: rejects loops whose correction exceeds the drift that is possible.
 bool is_within_drift(const SparseMap& map, const LoopMatch& loop, double max_drift) {
-  constexpr double kSlack = 0.5;  // metres; dynamic objects may have caused drift
+  // Metres; dynamic objects may have caused drift on a short path, and rooms that look alike are
+  // farther apart than that.
+  constexpr double kSlack = 0.5;
   const Eigen::Vector3d before = map.keyframe(loop.keyframe)->world_from_camera.translation();
   return (loop.world_from_camera.translation() - before).norm() <=
          kSlack + max_drift * path_length(map, loop.place, loop.keyframe);

@@ -10,9 +10,10 @@
 namespace stillpoint::orb_slam {
 namespace {
 
-constexpr int kMinShared = 100;     // landmarks, of an edge of the essential graph
-constexpr double kMetres = 0.01;    // standard deviation of an edge
-constexpr double kRadians = 0.005;  // standard deviation of an edge
+constexpr int kMinShared = 100;  // landmarks, of an edge of the essential graph
+// Standard deviations of the pose between two key frames that share so many landmarks.
+constexpr double kMetres = 0.01;
+constexpr double kRadians = 0.005;
 constexpr int kGraphIterations = 30;
 
 // Ends with the best result so far, after the current iteration.

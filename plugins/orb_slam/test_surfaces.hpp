@@ -50,4 +50,13 @@ inline FramePtr see_planes(const std::vector<WorldPlane>& planes, const Pose& wo
   return frame;
 }
 
+/// The same frame of a sensor that is known to have this noise (Camera::surface_noise).
+inline FramePtr with_surface_noise(const FramePtr& frame, double noise) {
+  auto camera = std::make_shared<Camera>(*frame->camera);
+  camera->surface_noise = noise;
+  auto noisy = std::make_shared<Frame>(*frame);
+  noisy->camera = std::move(camera);
+  return noisy;
+}
+
 }  // namespace stillpoint::orb_slam

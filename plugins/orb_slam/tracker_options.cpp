@@ -7,7 +7,9 @@ void TrackerOptions::visit(OptionVisitor& v) {
   v("min_start_points", min_start_points,
     {.min = 20, .help = "features with depth that the first key frame needs"});
   v("min_inliers", min_inliers,
-    {.min = 6, .help = "with fewer landmarks, points of the last frame or depth must help"});
+    {.min = 6,
+     .help = "landmarks needed for a pose; with fewer, points of the last frame are added, or "
+             "depth registration"});
   v("min_bridge_points", min_bridge_points,
     {.min = 6,
      .help = "inliers needed where landmarks are too few and points of the last frame are added"});
@@ -16,9 +18,9 @@ void TrackerOptions::visit(OptionVisitor& v) {
   v("motion_window", motion_window,
     {.min = 1,
      .unit = "px",
-     .help = "search radius around the place predicted from the last frame"});
+     .help = "search radius around the pixel predicted from the last frame"});
   v("local_window", local_window,
-    {.min = 0.5, .unit = "px", .help = "search radius around the place predicted from the map"});
+    {.min = 0.5, .unit = "px", .help = "search radius around the pixel predicted from the map"});
   v("probation", probation,
     {.min = 0,
      .max = 60,

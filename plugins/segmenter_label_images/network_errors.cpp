@@ -45,7 +45,8 @@ void NetworkErrorOptions::visit(OptionVisitor& v) {
   v("floor", floor,
     {.min = 0,
      .max = 10,
-     .help = "floor labelled as the object standing on it, in its widths; 0: none"});
+     .help = "width of the floor that is labelled as the object standing on it, relative to the "
+             "object's; 0: none"});
   v("false_objects", false_objects,
     {.min = 0, .max = 1, .help = "probability that a frame has an object that is not there"});
   v("false_class", false_class, {.help = "class of the objects that are not there"});

@@ -23,7 +23,7 @@ using segmenter_label_images::LabelImageSegmenter;
 using semantic_octree::ClassBelief;
 using semantic_octree::ScanBrick;
 using semantic_octree::ScanBricks;
-using semantic_octree::VoxelLook;
+using semantic_octree::VoxelObservation;
 
 constexpr int kEvery = 15, kEveryOfTruth = 5;
 constexpr int kKeyOfZero = 32768;
@@ -47,14 +47,14 @@ Key key_in(const ScanBrick& brick, unsigned code) {
 
 void fuse(Voxels& voxels, const ScanBricks& scan) {
   for (const ScanBrick* brick : scan.bricks()) {
-    const VoxelLook* look = scan.looks(*brick);
+    const VoxelObservation* observation = scan.observations(*brick);
     for (unsigned code = 0; code < ScanBrick::kVoxels; ++code) {
       if (!(brick->hit[code / 64] >> (code % 64) & 1U)) continue;
       Fused& fused = voxels[key_in(*brick, code)];
-      fused.belief.add(look->label);
-      fused.vote.add(look->label);
-      ++fused.counts[look->label];
-      ++look;
+      fused.belief.add(observation->label);
+      fused.vote.add(observation->label);
+      ++fused.counts[observation->label];
+      ++observation;
     }
   }
 }

@@ -20,7 +20,7 @@ def texts_of_program(root: Path):
 
 
 # In messages: numbers, types, states, and what several messages are about.
-INSERTED = re.compile(r"\d+(?:\.\d+)?(?: x \d+)?|CV_\w+|kNoId|LOST|MapEdit: |; |key frame (?=\d)|landmark (?=\d)|"
+INSERTED = re.compile(r"\d+(?:\.\d+)?(?: x \d+)?|CV_\w+|kNoId|LOST|MapEdit: |; |is wrong: |key frame (?=\d)|landmark (?=\d)|"
                       r"\bthe (?:weights|labels|evidence|depth image)(?= (?:have|are|is) )")
 
 

@@ -115,6 +115,13 @@ if(NOT output MATCHES "after 1.97 s at 0.29[0-9] -?0.00[0-4] -?0.00[0-4] m")
   message(FATAL_ERROR "the camera went 0.295 m to the right, but:\n${output}")
 endif()
 
+# The tracker of another kind, as its README builds it.
+run(${CMAKE_COMMAND} -S ${SOURCE_DIR}/sdk/examples/icp_tracker -B ${work}/packaged_icp -G ${GENERATOR}
+  -D CMAKE_CXX_COMPILER=${CXX_COMPILER} -D CMAKE_PREFIX_PATH=${root}/usr
+  -D CMAKE_CXX_COMPILER_LAUNCHER=${CXX_LAUNCHER} -D CMAKE_DISABLE_FIND_PACKAGE_GTest=ON)
+run(${CMAKE_COMMAND} --build ${work}/packaged_icp)
+run(${CMAKE_CTEST_COMMAND} --test-dir ${work}/packaged_icp)
+
 unpack(stillpoint-doc)
 find_program(python python3 REQUIRED)
 run(${python} -B ${SOURCE_DIR}/tests/docs/check_links.py ${root}/usr/share/doc/stillpoint-doc)

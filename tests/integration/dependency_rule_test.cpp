@@ -76,19 +76,32 @@ TEST(DependencyRule, OptionsKnowNothingAndContractsOnlyThem) {
   expect_none_begins(kPublic / "options.hpp", {"stillpoint/contracts", "stillpoint/plugin"});
   for (const fs::path& folder : {kPublic / "contracts", kRoot / "core/src/contracts"})
     expect_none_begins(folder, {"stillpoint/plugin", "stillpoint/support", "stillpoint/engine",
-                                "stillpoint/runtime"});
+                                "stillpoint/runtime", "stillpoint/testing"});
 }
 
 TEST(DependencyRule, WhatIsPromisedDoesWithoutHelpers) {
   for (const fs::directory_entry& entry : fs::directory_iterator(kPublic))
     if (entry.is_regular_file())
-      expect_none_begins(entry.path(),
-                         {"stillpoint/support", "stillpoint/engine", "stillpoint/runtime"});
+      expect_none_begins(entry.path(), {"stillpoint/support", "stillpoint/engine",
+                                        "stillpoint/runtime", "stillpoint/testing"});
 }
 
 TEST(DependencyRule, HelpersDoNotKnowTheEngine) {
   for (const fs::path& folder : {kPublic / "support", kRoot / "core/src/support"})
+    expect_none_begins(folder, {"stillpoint/engine", "stillpoint/runtime", "stillpoint/testing"});
+}
+
+TEST(DependencyRule, WhatTestsOfPluginsLinkDoesNotKnowTheEngine) {
+  for (const fs::path& folder : {kPublic / "testing", kRoot / "core/src/testing"})
     expect_none_begins(folder, {"stillpoint/engine", "stillpoint/runtime"});
+}
+
+TEST(DependencyRule, TheLibraryOfTheSdkDoesNotKnowTheEngine) {
+  const std::vector<std::string> above = {"stillpoint/engine", "stillpoint/runtime",
+                                          "stillpoint/testing"};
+  expect_none_begins(kRoot / "core/src/image_codec", above);
+  for (const fs::directory_entry& entry : fs::directory_iterator(kRoot / "core/src"))
+    if (is_source(entry.path())) expect_none_begins(entry.path(), above);
 }
 
 // The runtime's headers are not installed.
@@ -147,19 +160,14 @@ TEST(DependencyRule, ToolsDoNotKnowPlugins) {
   expect_none_begins(kRoot / "tools", prefixes_of(kRoot / "plugins"));
 }
 
-// A program of one's own can do what these do.
-TEST(DependencyRule, RunAndRecordAreClientsOfTheEngine) {
-  for (const char* name : {"run", "record", "main", "interrupt", "run_folder", "run_table",
-                           "map_saver", "progress", "console", "pipeline_options"}) {
-    bool found = false;
-    for (const char* suffix : {".cpp", ".hpp"})
-      if (const fs::path file = kRoot / "tools/stillpoint" / (std::string(name) + suffix);
-          fs::exists(file)) {
-        expect_none_begins(file, {"stillpoint/runtime"});
-        found = true;
-      }
-    EXPECT_TRUE(found) << name;
-  }
+// A program of one's own can do what `run` and `record` do. Studies, scenes and lists of plugins
+// read YAML and registries.
+TEST(DependencyRule, TheProgramIsAClientOfTheEngine) {
+  const std::set<std::string> others = {"plugins",    "scene_file", "study_check",
+                                        "study_file", "study_grid", "study_plan"};
+  for (const fs::directory_entry& entry : fs::directory_iterator(kRoot / "tools/stillpoint"))
+    if (is_source(entry.path()) && !others.contains(entry.path().stem()))
+      expect_none_begins(entry.path(), {"stillpoint/runtime"});
 }
 
 TEST(DependencyRule, LibrariesOfTheToolsDoNotKnowTheRuntime) {
@@ -194,6 +202,28 @@ TEST(DependencyRule, NamespacesAreThoseOfTheirFolders) {
         }
       }
     }
+}
+
+/// `allowed` and no other, in all files below the folder.
+void expect_namespaces(const fs::path& folder, const std::set<std::string>& allowed) {
+  ASSERT_TRUE(fs::exists(folder)) << folder;
+  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder))
+    if (is_source(entry.path()))
+      for (const std::string& name : namespaces_in(entry.path()))
+        EXPECT_TRUE(allowed.contains(name)) << entry.path() << " has " << name;
+}
+
+TEST(DependencyRule, CoreHasOneNamespaceAndTestsThoseOfWhatTheyTest) {
+  const std::set<std::string> core = {"stillpoint", "stillpoint::testing"};
+  for (const char* folder : {"core/include", "core/src"}) expect_namespaces(kRoot / folder, core);
+  std::set<std::string> tested = core;
+  for (const char* parent : {"plugins", "core/libraries", "tools"})
+    for (const std::string& folder : folders_in(kRoot / parent))
+      tested.insert("stillpoint::" + folder);
+  expect_namespaces(kRoot / "tests", tested);
+  expect_namespaces(kRoot / "sdk/python", {"stillpoint::python"});
+  for (const char* folder : {"sdk/ros1/src", "sdk/templates", "sdk/examples"})
+    expect_namespaces(kRoot / folder, {});
 }
 
 }  // namespace

@@ -2,6 +2,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cstdlib>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -153,6 +158,22 @@ TEST_F(Run, NothingTrackedIsSaid) {
   };
   EXPECT_THAT(run_with("100000").err, HasSubstr("warning: no frame was tracked"));
   EXPECT_THAT(run_with("100").err, ::testing::Not(HasSubstr("no frame was tracked")));
+}
+
+// As `2>&1 | less` does when its window is full, or a terminal after Ctrl-S.
+TEST_F(Run, GoesOnWhereNobodyReadsWhatItSays) {
+  const fs::path pipe = out() / "pipe";
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  const int reader = ::open(pipe.c_str(), O_RDWR | O_NONBLOCK | O_CLOEXEC);
+  ASSERT_GE(reader, 0);
+  const std::string text(1024, 'x');
+  while (::write(reader, text.data(), text.size()) > 0) continue;
+  const std::string command = "'" + program_file().string() + "' run orb_baseline --dataset '" +
+                              simulated_recording().string() + "' -o '" + (out() / "run").string() +
+                              "' > /dev/null 2> '" + pipe.string() + "'";
+  EXPECT_EQ(std::system(command.c_str()), 0);
+  expect_accurate("run");
+  ::close(reader);
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 #include "console.hpp"
 
+#include <poll.h>
 #include <sys/ioctl.h>
 #include <unistd.h>
 
@@ -10,6 +11,14 @@ namespace stillpoint {
 namespace {
 
 constexpr const char* kClearLine = "\r\033[K";
+constexpr int kLineWait = 1000;  // ms that a line waits for whoever reads it
+
+/// Whether what is written now would not have to wait: a terminal that was halted with Ctrl-S, or a
+/// pipe that nobody reads, must not stop the run.
+bool takes_text(int milliseconds) {
+  pollfd error_stream{.fd = STDERR_FILENO, .events = POLLOUT, .revents = 0};
+  return ::poll(&error_stream, 1, milliseconds) != 0;
+}
 
 }  // namespace
 
@@ -28,6 +37,8 @@ int Console::columns() const {
 
 void Console::line(const std::string& text) {
   const std::lock_guard lock(mutex_);
+  is_read_ = takes_text(is_read_ ? kLineWait : 0);
+  if (!is_read_) return;
   if (!status_.empty()) std::cerr << kClearLine;
   std::cerr << text << '\n' << status_ << std::flush;
 }
@@ -39,6 +50,7 @@ void Console::note(const std::string& text) {
 void Console::status(const std::string& text) {
   if (quiet_ || !is_terminal_) return;
   const std::lock_guard lock(mutex_);
+  if (!takes_text(0)) return;
   status_ = text;
   std::cerr << kClearLine << status_ << std::flush;
 }

@@ -9,7 +9,8 @@ namespace stillpoint {
 /// "4:07", minutes and seconds.
 std::string minutes(double seconds);
 
-/// May be used from any thread.
+/// May be used from any thread. Where nobody reads standard error, a line is lost after a second,
+/// others and status lines at once, until somebody does: a run goes on, and log.txt has the lines.
 class Console {
  public:
   /// Quiet: without notes and status lines.
@@ -28,7 +29,8 @@ class Console {
   const bool quiet_;
   const bool is_terminal_;
   std::mutex mutex_;
-  std::string status_;  // guarded by mutex_
+  std::string status_;   // guarded by mutex_
+  bool is_read_ = true;  // guarded: whether the last line was taken
 };
 
 }  // namespace stillpoint

@@ -12,7 +12,7 @@ TEST(ClassBelief, TheMostFrequentClassWins) {
   ClassBelief belief;
   EXPECT_FALSE(belief.known());
   EXPECT_EQ(belief.confidence(), 0.0);
-  // Seven of ten looks say 5; the others any of 20 classes.
+  // Seven of ten observations say 5; the others any of 20 classes.
   for (int i = 0; i < 1000; ++i)
     belief.add(random() % 10 < 7 ? 5 : static_cast<std::uint8_t>(random() % 20));
   EXPECT_EQ(belief.best(), 5);

@@ -73,7 +73,7 @@ class Projection {
     int obstacle = 0;       // parts
     int sure = 0;           // of them
     int free = 0;           // parts
-    bool low = false;       // the floor was seen, or what is just above it looked through
+    bool low = false;       // the floor was seen, or rays passed just above it
     bool doubtful = false;  // an obstacle seen too little to be sure of
   };
 

@@ -80,7 +80,7 @@ void ScanBricks::begin(const DenseKeyFrame& keyframe) {
   bricks_.clear();
   sums_.clear();
   sorted_.clear();
-  looks_.clear();
+  observations_.clear();
   labelled_ = !keyframe.labels().empty();
 
   const Camera& camera_model = *keyframe.frame->camera;
@@ -181,10 +181,11 @@ void ScanBricks::Sum::add(const std::uint8_t* bgr, std::uint8_t seen) {
   label.add(seen);
 }
 
-VoxelLook ScanBricks::Sum::look(bool labelled) const {
-  VoxelLook look{.label = label.winner, .labelled = labelled, .beside_moving = beside_moving};
-  for (int i = 0; i < 3; ++i) look.rgb[i] = static_cast<std::uint8_t>(rgb[i] / pixels);
-  return look;
+VoxelObservation ScanBricks::Sum::observation(bool labelled) const {
+  VoxelObservation observation{
+      .label = label.winner, .labelled = labelled, .beside_moving = beside_moving};
+  for (int i = 0; i < 3; ++i) observation.rgb[i] = static_cast<std::uint8_t>(rgb[i] / pixels);
+  return observation;
 }
 
 ScanBrick& ScanBricks::brick_at(int x, int y, int z) {
@@ -237,11 +238,12 @@ void ScanBricks::finish() {
   std::vector<std::pair<std::uint64_t, const ScanBrick*>> order;
   order.reserve(bricks_.size());
   for (ScanBrick& brick : bricks_) {
-    brick.first_look = static_cast<std::uint32_t>(looks_.size());
+    brick.first_observation = static_cast<std::uint32_t>(observations_.size());
     for (unsigned word = 0; word < brick.hit.size(); ++word) {
       brick.passed[word] &= ~brick.hit[word];
       for (std::uint64_t left = brick.hit[word]; left != 0; left &= left - 1)
-        looks_.push_back(sums_[brick.sums][64 * word + std::countr_zero(left)].look(labelled_));
+        observations_.push_back(
+            sums_[brick.sums][64 * word + std::countr_zero(left)].observation(labelled_));
     }
     order.emplace_back(morton_code(brick.key), &brick);
   }

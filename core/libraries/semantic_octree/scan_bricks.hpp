@@ -1,4 +1,4 @@
-// Which voxels the depth image of one key frame hits, and which it looks through.
+// Which voxels the depth image of one key frame hits, and which its rays pass through.
 #pragma once
 
 #include <Eigen/Core>
@@ -14,7 +14,7 @@
 namespace stillpoint::semantic_octree {
 
 /// What a scan saw of a voxel.
-struct VoxelLook {
+struct VoxelObservation {
   std::array<std::uint8_t, 3> rgb{};
   std::uint8_t label = 0;      ///< class id of most of its pixels
   bool labelled = true;        ///< whether the class is known
@@ -34,9 +34,9 @@ struct ScanBrick {
 
   BrickKey key{};
   Voxels hit{};
-  Voxels passed{};               ///< by a ray, and not hit
-  std::int32_t sums = -1;        ///< of the scan under way
-  std::uint32_t first_look = 0;  ///< of its hit voxels, in the scan's looks
+  Voxels passed{};                      ///< by a ray, and not hit
+  std::int32_t sums = -1;               ///< of the scan under way
+  std::uint32_t first_observation = 0;  ///< of its hit voxels, in those of the scan
 };
 
 struct ScanOptions {
@@ -64,7 +64,9 @@ class ScanBricks {
   /// Sorted by the Morton code of their keys.
   std::span<const ScanBrick* const> bricks() const { return sorted_; }
   /// Of the hit voxels of a brick, in the order of their bits.
-  const VoxelLook* looks(const ScanBrick& brick) const { return looks_.data() + brick.first_look; }
+  const VoxelObservation* observations(const ScanBrick& brick) const {
+    return observations_.data() + brick.first_observation;
+  }
 
  private:
   // The rays of one row of the image.
@@ -82,7 +84,7 @@ class ScanBricks {
     bool beside_moving = false;
 
     void add(const std::uint8_t* bgr, std::uint8_t seen);
-    VoxelLook look(bool labelled) const;
+    VoxelObservation observation(bool labelled) const;
   };
   using Sums = std::array<Sum, ScanBrick::kVoxels>;
 
@@ -109,7 +111,7 @@ class ScanBricks {
   bool labelled_ = false;  // whether the key frame is
   Row row_;
   std::vector<const ScanBrick*> sorted_;
-  std::vector<VoxelLook> looks_;
+  std::vector<VoxelObservation> observations_;
 };
 
 }  // namespace stillpoint::semantic_octree

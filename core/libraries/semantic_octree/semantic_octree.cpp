@@ -37,15 +37,17 @@ unsigned octant_of(const BrickKey& key, unsigned depth) {
 
 }  // namespace
 
-void SemanticVoxel::hit(const VoxelLook& look, bool known, const OccupancyModel& model) {
-  if (!known && look.beside_moving) value = model.doubt;
+void SemanticVoxel::hit(const VoxelObservation& observation, bool known,
+                        const OccupancyModel& model) {
+  if (!known && observation.beside_moving) value = model.doubt;
   value = std::min(value + model.hit, model.max);
   colors_ = static_cast<std::uint8_t>(std::min(colors_ + 1, int{kMostColors}));
   const auto mean = [&](int old, int seen) {
     return static_cast<std::uint8_t>((old * (colors_ - 1) + seen + colors_ / 2) / colors_);
   };
-  color = Color(mean(color.r, look.rgb[0]), mean(color.g, look.rgb[1]), mean(color.b, look.rgb[2]));
-  if (look.labelled) classes_.add(look.label);
+  color = Color(mean(color.r, observation.rgb[0]), mean(color.g, observation.rgb[1]),
+                mean(color.b, observation.rgb[2]));
+  if (observation.labelled) classes_.add(observation.label);
 }
 
 // At the lower clamping bound, colour and class are reset: the surface is gone.
@@ -91,7 +93,7 @@ class SemanticOctree::Addition {
   void add(SemanticVoxel& node, bool known, unsigned depth,
            std::span<const ScanBrick* const> bricks) {
     if (depth == kBrickDepth) {
-      look_ = scan_.looks(*bricks.front());
+      observation_ = scan_.observations(*bricks.front());
       add_voxels<ScanBrick::kVoxels>(node, known, *bricks.front(), 0);
       return;
     }
@@ -115,7 +117,7 @@ class SemanticOctree::Addition {
     const bool uniform = !tree_.nodeHasChildren(&node);
     if constexpr (kCount == 1) {
       if (any<1>(brick.hit, first))
-        node.hit(*look_++, known, model_);
+        node.hit(*observation_++, known, model_);
       else
         node.pass(model_);
     } else if (uniform && all<kCount>(brick.passed, first)) {
@@ -149,7 +151,7 @@ class SemanticOctree::Addition {
   SemanticOctree& tree_;
   const ScanBricks& scan_;
   const OccupancyModel& model_;
-  const VoxelLook* look_ = nullptr;  // of the next voxel that was hit
+  const VoxelObservation* observation_ = nullptr;  // of the next voxel that was hit
 };
 
 void SemanticOctree::add(const ScanBricks& scan, std::span<const ScanBrick* const> bricks,

@@ -39,7 +39,7 @@ class SemanticVoxel : public octomap::ColorOcTreeNode {
   void set_classes(const ClassBelief& classes) { classes_ = classes; }
 
   /// `known`: whether anything was before.
-  void hit(const VoxelLook& look, bool known, const OccupancyModel& model);
+  void hit(const VoxelObservation& observation, bool known, const OccupancyModel& model);
   void pass(const OccupancyModel& model);
   /// Of an inner node, after its children have changed.
   void summarise_children();

@@ -10,6 +10,7 @@
 
 #include "stillpoint/error.hpp"
 #include "stillpoint/runtime/map_reader.hpp"
+#include "stillpoint/runtime/map_values.hpp"
 #include "stillpoint/runtime/map_writer.hpp"
 #include "stillpoint/support/atomic_file.hpp"
 
@@ -21,6 +22,22 @@ namespace fs = std::filesystem;
 [[noreturn]] void cannot_write(const fs::path& file, const std::string& why) {
   throw Error(Fault::kUsage, "the map cannot be written: " + why, file.string(),
               "check the folder's permissions and the free space");
+}
+
+// Of a map made by hand: what the stages of a run give is checked where it enters the runtime.
+void require_loadable(const SparseMap& map, const fs::path& file) {
+  try {
+    for (KeyFrameId id = 0; id < map.keyframe_id_end(); ++id)
+      if (const KeyFrame* keyframe = map.keyframe(id)) {
+        check_values(*keyframe->camera);
+        check_values(*keyframe);
+      }
+    for (LandmarkId id = 0; id < map.landmark_id_end(); ++id)
+      if (const Landmark* landmark = map.landmark(id)) check_values(*landmark);
+  } catch (const DamagedMap& fault) {
+    throw Error(Fault::kUsage, std::string("the map could not be loaded again: ") + fault.what(),
+                file.string(), "it is not written; correct these values");
+  }
 }
 
 // Writes to the disk, so that the renamed file is complete even after a power cut.
@@ -37,6 +54,7 @@ void flush(const fs::path& file) {
 void require_writable(const fs::path& file) { const AtomicFile tried(file); }
 
 void save_map(const SparseMap& map, const fs::path& file) {
+  require_loadable(map, file);
   AtomicFile whole(file);
   try {
     write_map(map, whole.temporary());

@@ -87,16 +87,15 @@ class MapReader {
   }
 
   void check_header() {
-    require(number("PRAGMA application_id") == map_layout::kApplication,
-            "it is no map of Stillpoint");
+    require(number("PRAGMA application_id") == kMapApplication, "it is no map of Stillpoint");
     const std::int64_t version = number("PRAGMA user_version");
     require(version >= 1, "it has no version");
-    require(version <= map_layout::kVersion, "its version is " + std::to_string(version) +
-                                                 ", this program knows up to " +
-                                                 std::to_string(map_layout::kVersion));
+    require(version <= kMapVersion, "its version is " + std::to_string(version) +
+                                        ", this program knows up to " +
+                                        std::to_string(kMapVersion));
     const std::int64_t bytes = number("PRAGMA page_count") * number("PRAGMA page_size");
     require(bytes == static_cast<std::int64_t>(bytes_), "it is not whole");
-    require(tables() == map_layout::kTables, "its tables are not those of a map");
+    require(tables() == kMapTables, "its tables are not those of a map");
     SqliteStatement check = database_.prepare("PRAGMA integrity_check(1)");
     require(check.step() && check.text(0) == "ok", "its pages are damaged");
   }
@@ -159,7 +158,7 @@ class MapReader {
     auto features = std::make_shared<Features>();
     features->scale_factor = row->real(4);
     features->levels = static_cast<int>(row->integer(5));
-    for (const auto& k : values_of<map_layout::StoredKeypoint>(row->bytes(8), count, "keypoints"))
+    for (const auto& k : values_of<StoredKeypoint>(row->bytes(8), count, "keypoints"))
       features->keypoints.emplace_back(k.x, k.y, k.size, k.angle, k.response, k.octave);
     if (!row->bytes(9).empty())
       features->descriptors = values_of<Descriptor>(row->bytes(9), count, "descriptors");

@@ -8,13 +8,12 @@
 namespace stillpoint {
 namespace {
 
-constexpr int kMaxImageSide = 16384;         // px
-constexpr double kLongestFocal = 1e6;        // px
-constexpr double kFarthest = 1e7;            // m
-constexpr double kLeastNoise = 1e-6;         // m, as in CameraModel
-constexpr double kMostNoise = 100;           // m
-constexpr double kRotationTolerance = 1e-6;  // from R Rᵀ = 1, det R = 1
-constexpr double kMostScale = 4;             // between two levels
+constexpr int kMaxImageSide = 16384;   // px
+constexpr double kLongestFocal = 1e6;  // px
+constexpr double kFarthest = 1e7;      // m
+constexpr double kLeastNoise = 1e-6;   // m, as in CameraModel
+constexpr double kMostNoise = 100;     // m
+constexpr double kMostScale = 4;       // between two levels
 constexpr int kMostLevels = 64;
 constexpr double kImageMargin = 1;  // px, of corners refined to fractions of a pixel
 
@@ -34,13 +33,6 @@ bool is_possible(const cv::KeyPoint& keypoint) {
          std::isfinite(keypoint.response);
 }
 
-bool possible(const Pose& pose) {
-  const Eigen::Matrix3d rotation = pose.linear();
-  return pose.matrix().allFinite() && pose.translation().norm() <= kFarthest &&
-         (rotation * rotation.transpose()).isIdentity(kRotationTolerance) &&
-         rotation.determinant() > 0 && pose.matrix().row(3) == Eigen::RowVector4d(0, 0, 0, 1);
-}
-
 }  // namespace
 
 bool possible(const Camera& camera) {
@@ -54,8 +46,23 @@ bool possible(const Camera& camera) {
 
 bool is_rigid_motion(const Pose& pose) {
   const Eigen::Matrix3d rotation = pose.linear();
-  return pose.matrix().allFinite() && rotation.determinant() > 0 &&  // no mirror image
-         (rotation * rotation.transpose() - Eigen::Matrix3d::Identity()).norm() < kLargestSkew;
+  return pose.matrix().allFinite() && is_near(pose.translation()) &&
+         rotation.determinant() > 0 &&  // no mirror image
+         (rotation * rotation.transpose() - Eigen::Matrix3d::Identity()).norm() < kLargestSkew &&
+         pose.matrix().row(3) == Eigen::RowVector4d(0, 0, 0, 1);
+}
+
+bool is_near(const Eigen::Vector3d& position) { return position.norm() <= kFarthest; }
+
+std::string fault_of(const Landmark& landmark) {
+  if (!is_near(landmark.position_in_world))
+    return "its position is not finite, or beyond 10,000 km";
+  if (!(landmark.mean_view.norm() <= 1.001)) return "its mean view is no unit vector";
+  if (!within(landmark.min_distance, 0, kFarthest) ||
+      !within(landmark.max_distance, landmark.min_distance, kFarthest))
+    return "its distances are negative, not in order or beyond 10,000 km";
+  if (!std::isfinite(landmark.static_log_odds)) return "its log-odds are not finite";
+  return "";
 }
 
 std::string fault_of(const Features& features, const Camera& camera) {
@@ -76,16 +83,10 @@ std::string fault_of(const Features& features, const Camera& camera) {
 
 void check_values(const Camera& camera) { require(possible(camera), "a camera"); }
 
-void check_values(const Landmark& landmark) {
-  require(landmark.position_in_world.norm() <= kFarthest && landmark.mean_view.norm() <= 1.001 &&
-              within(landmark.min_distance, 0, kFarthest) &&
-              within(landmark.max_distance, landmark.min_distance, kFarthest) &&
-              std::isfinite(landmark.static_log_odds),
-          "a landmark");
-}
+void check_values(const Landmark& landmark) { require(fault_of(landmark).empty(), "a landmark"); }
 
 void check_values(const KeyFrame& keyframe) {
-  require(std::isfinite(keyframe.time) && possible(keyframe.world_from_camera) &&
+  require(std::isfinite(keyframe.time) && is_rigid_motion(keyframe.world_from_camera) &&
               fault_of(*keyframe.features, *keyframe.camera).empty(),
           "a key frame");
 }

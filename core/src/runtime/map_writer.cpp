@@ -83,10 +83,10 @@ class MapWriter {
   void write() {
     // No journal: the file is made beside the earlier one and takes its place when it is whole.
     database_.execute("PRAGMA journal_mode = OFF; PRAGMA synchronous = OFF;");
-    database_.execute("PRAGMA application_id = " + std::to_string(map_layout::kApplication) +
-                      "; PRAGMA user_version = " + std::to_string(map_layout::kVersion) + ";");
+    database_.execute("PRAGMA application_id = " + std::to_string(kMapApplication) +
+                      "; PRAGMA user_version = " + std::to_string(kMapVersion) + ";");
     database_.execute("BEGIN");
-    database_.execute(map_layout::kTables);
+    database_.execute(kMapTables);
     write_keyframes();
     write_landmarks();
     database_.execute("COMMIT");
@@ -123,7 +123,7 @@ class MapWriter {
 
   void write(const KeyFrame& keyframe, RowWriter& row) {
     const Features& features = *keyframe.features;
-    std::vector<map_layout::StoredKeypoint> keypoints;
+    std::vector<StoredKeypoint> keypoints;
     for (const cv::KeyPoint& k : features.keypoints)
       keypoints.push_back({k.pt.x, k.pt.y, k.size, k.angle, k.response, k.octave});
     std::vector<std::int32_t> landmarks;

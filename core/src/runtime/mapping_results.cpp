@@ -90,9 +90,9 @@ void check_changes(const SparseMap& map, const SparseMap& before) {
   }
   for (LandmarkId id = 0; id < map.landmark_id_end(); ++id) {
     const Landmark* landmark = map.landmark(id);
-    if (!landmark || landmark == before.landmark(id) || landmark->position_in_world.allFinite())
-      continue;
-    require_of_stage(false, "the position of landmark " + std::to_string(id) + " is not finite",
+    if (!landmark || landmark == before.landmark(id)) continue;
+    const std::string fault = fault_of(*landmark);
+    require_of_stage(fault.empty(), "landmark " + std::to_string(id) + " is wrong: " + fault,
                      "remove landmarks whose position is not known");
   }
 }
@@ -170,8 +170,9 @@ void check_correction(const MapCorrection& correction, const SparseMap& map) {
   }
   for (const auto& [landmark, position] : correction.landmarks) {
     check_id(landmark, map.landmark_id_end(), "landmark");
-    require_of_stage(position.allFinite(),
-                     "the new position of landmark " + std::to_string(landmark) + " is not finite",
+    require_of_stage(is_near(position),
+                     "the new position of landmark " + std::to_string(landmark) +
+                         " is not finite, or beyond 10,000 km",
                      "leave out landmarks that were not optimised: they move with their key frame");
   }
   for (const auto& [kept, gone] : correction.fused) {

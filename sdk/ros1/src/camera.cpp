@@ -40,6 +40,8 @@ SensorCamera camera_of(const sensor_msgs::CameraInfo& info, const Parameters& pa
   camera.depth_factor = parameters.depth_factor;
   camera.min_depth = parameters.min_depth;
   camera.max_depth = parameters.max_depth;
+  camera.depth_noise = parameters.depth_noise;
+  camera.surface_noise = parameters.surface_noise;
   if (camera.fx == 0 || camera.fy == 0)
     throw Error(Fault::kData, "the camera is not calibrated: its focal length is 0", "CameraInfo",
                 "calibrate it with camera_calibration");

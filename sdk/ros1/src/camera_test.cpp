@@ -24,10 +24,14 @@ TEST(CameraOf, HasKAndTheDistortionOrPOfRectifiedImages) {
   EXPECT_EQ(raw.distortion, (std::vector<double>{0.1, -0.2, 0.001, 0}));
   Parameters parameters;
   parameters.rectified = true;
+  parameters.depth_noise = 0.05;
+  parameters.surface_noise = 0.004;
   const SensorCamera rectified = camera_of(distorted(), parameters);
   EXPECT_EQ(rectified.fx, 500);
   EXPECT_EQ(rectified.cy, 230);
   EXPECT_TRUE(rectified.distortion.empty());
+  EXPECT_EQ(rectified.depth_noise, 0.05);
+  EXPECT_EQ(rectified.surface_noise, 0.004);
 }
 
 TEST(CameraOf, AnotherDistortionOrNoCalibrationIsRefused) {

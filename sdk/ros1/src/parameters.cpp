@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <stillpoint/error.hpp>
 #include <stillpoint/support/did_you_mean.hpp>
+#include <utility>
 
 namespace stillpoint_ros {
 namespace {
@@ -56,6 +57,9 @@ void check(const Parameters& of, const ros::NodeHandle& node) {
   require(of.depth_factor > 0, node, "depth_factor", "larger than 0");
   require(of.min_depth >= 0 && of.min_depth < of.max_depth, node, "min_depth",
           "0 or more, and less than max_depth");
+  for (const auto& [name, noise] :
+       {std::pair{"depth_noise", of.depth_noise}, {"surface_noise", of.surface_noise}})
+    require(noise >= 1e-6 && noise <= 100, node, name, "from 1e-6 to 100 m");
   require(of.map_period >= 0.1, node, "map_period", "0.1 s or more");
 }
 
@@ -76,6 +80,8 @@ Parameters read_parameters(const ros::NodeHandle& node) {
   reader.read("depth_factor", p.depth_factor);
   reader.read("min_depth", p.min_depth);
   reader.read("max_depth", p.max_depth);
+  reader.read("depth_noise", p.depth_noise);
+  reader.read("surface_noise", p.surface_noise);
   reader.read("map_period", p.map_period);
   reader.read("load_map", p.load_map);
   reader.read("localise_only", p.session.localise_only);

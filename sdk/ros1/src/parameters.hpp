@@ -25,6 +25,8 @@ struct Parameters {
   double depth_factor = 1000;  ///< value of one metre in depth images with 16 bits (REP 118: 1000)
   double min_depth = 0.3;      ///< metres; nearer measurements are dropped
   double max_depth = 10;       ///< metres; farther measurements are dropped
+  double depth_noise = 0.02;   ///< metres at 1 m, of point features (Camera)
+  double surface_noise = 0.002;  ///< metres at 1 m, of the sensor alone (Camera)
 
   double map_period = 5;  ///< seconds between two messages with a map, where they are subscribed
   bool load_map = false;  ///< begin with the map in `map_file`

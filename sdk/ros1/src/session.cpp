@@ -71,7 +71,9 @@ void Session::set_camera(const SensorCamera& camera) {
                                       .distortion = camera.distortion,
                                       .depth_factor = camera.depth_factor,
                                       .min_depth = camera.min_depth,
-                                      .max_depth = camera.max_depth};
+                                      .max_depth = camera.max_depth,
+                                      .depth_noise = camera.depth_noise,
+                                      .surface_noise = camera.surface_noise};
   stillpoint::check_options(model, "the camera of CameraInfo");
   auto rectifier = std::make_shared<const stillpoint::Rectifier>(model);
   const std::lock_guard lock(mutex_);

@@ -37,6 +37,7 @@ struct SensorCamera {
   std::vector<double> distortion;          ///< k1, k2, p1, p2[, k3]; empty: none
   double depth_factor = 1000;              ///< value of one metre in depth images with 16 bits
   double min_depth = 0.3, max_depth = 10;  ///< metres
+  double depth_noise = 0.02, surface_noise = 0.002;  ///< metres at 1 m, as in Camera
 };
 
 struct SensorImages {

@@ -68,6 +68,28 @@ TEST_P(EngineInBothModes, WithoutADenseMapOutputsSeeNone) {
   EXPECT_EQ(f.output->map_directory, "");
 }
 
+TEST_P(EngineInBothModes, TheMovingCheckKnowsThePoseBeforeAndRecentKeyFrames) {
+  EngineFixture f(6);
+  Stages stages = f.stages();
+  stages.loop_closer = {};
+  const auto checker = std::make_shared<testing::FakeChecker>(f.calls);
+  checker->wanted = 2;
+  stages.moving_checker.object = checker;
+  Engine(std::move(stages), runtime(GetParam()), {}).run();
+  const TrackingHistory& history = checker->history;  // when the last frame was checked
+  ASSERT_TRUE(history.world_from_previous);
+  EXPECT_EQ(history.world_from_previous->translation().x(), 4.0);
+  ASSERT_EQ(history.keyframes.size(), 2u);
+  for (const std::uint32_t age : {0, 1}) {
+    const DenseKeyFrame& keyframe = history.keyframes[age];
+    EXPECT_EQ(keyframe.id, 2 - age) << "newest first";
+    EXPECT_EQ(keyframe.frame->index, 4 - 2 * age);
+    EXPECT_EQ(keyframe.world_from_camera.translation().x(), 4.0 - 2 * age);
+    EXPECT_TRUE(keyframe.segmentation);
+    EXPECT_TRUE(keyframe.weights);
+  }
+}
+
 TEST(Engine, ThreadedTheMovingCheckRunsBesideTheExtractionOfFeatures) {
   EngineFixture f(3);
   f.calls.hook = [&](const std::string& entry) {

@@ -13,6 +13,8 @@
 #include <random>
 
 #include "stillpoint/error.hpp"
+#include "stillpoint/runtime/map_writer.hpp"
+#include "stillpoint/runtime/mapping_results.hpp"
 #include "support/recording_writer.hpp"
 
 namespace stillpoint {
@@ -245,8 +247,19 @@ TEST_F(MapFile, ImpossibleValuesAreRefused) {
   const auto refused = [&](const std::string& what, const std::function<void(MapEdit&)>& spoil) {
     MapEdit edit(small_map());
     spoil(edit);
-    save_map(std::move(edit).finish(), file_);
+    const SparseMap map = std::move(edit).finish();
+    fs::remove(file_);
+    write_map(map, file_);
     expect_refused(what + " has impossible values");
+    fs::remove(file_);
+    try {
+      save_map(map, file_);
+      ADD_FAILURE() << what;
+    } catch (const Error& error) {
+      EXPECT_THAT(error.what(),
+                  HasSubstr("could not be loaded again: " + what + " has impossible"));
+    }
+    EXPECT_FALSE(fs::exists(file_));
   };
   refused("a landmark", [](MapEdit& edit) { edit.landmark(0).max_distance = -1; });
   refused("a key frame", [](MapEdit& edit) { edit.keyframe(0).world_from_camera(0, 3) = 1e300; });
@@ -255,6 +268,20 @@ TEST_F(MapFile, ImpossibleValuesAreRefused) {
     camera->fx = 1e308;
     edit.keyframe(0).camera = camera;
   });
+}
+
+// What check_tracking() and check_refined() accept can be saved and loaded.
+TEST_F(MapFile, ValuesAtTheirLimitsComeBack) {
+  MapEdit edit(small_map());
+  edit.keyframe(0).world_from_camera.linear()(0, 1) += 5e-4;
+  edit.keyframe(1).world_from_camera.translation() = Eigen::Vector3d(1e7, 0, 0);
+  edit.landmark(0).position_in_world = Eigen::Vector3d(0, -1e7, 0);
+  edit.landmark(1).max_distance = 1e7F;
+  edit.landmark(2).mean_view.setZero();
+  const SparseMap map = std::move(edit).finish();
+  EXPECT_NO_THROW(check_refined(map, SparseMap()));
+  save_map(map, file_);
+  expect_same(map, load_map(file_));
 }
 
 TEST_F(MapFile, NoSqlOfTheFileIsRun) {

@@ -195,7 +195,15 @@ TEST(MappingResults, WhatIsNewInAMapIsFinite) {
   EXPECT_THAT(message([](MapEdit& map) { map.keyframe(2).world_from_camera.linear() *= 2; }),
               HasSubstr("the pose of key frame 2 is no rigid motion"));
   EXPECT_THAT(message([](MapEdit& map) { map.landmark(0).position_in_world.z() = kNan; }),
-              HasSubstr("the position of landmark 0 is not finite"));
+              HasSubstr("landmark 0 is wrong: its position is not finite, or beyond 10,000 km; "));
+  EXPECT_THAT(message([](MapEdit& map) { map.landmark(0).max_distance = INFINITY; }),
+              HasSubstr("landmark 0 is wrong: its distances"));
+  EXPECT_THAT(message([](MapEdit& map) { map.landmark(0).static_log_odds = NAN; }),
+              HasSubstr("landmark 0 is wrong: its log-odds are not finite"));
+  EXPECT_THAT(message([](MapEdit& map) { map.landmark(0).mean_view *= 2; }),
+              HasSubstr("landmark 0 is wrong: its mean view is no unit vector"));
+  EXPECT_THAT(message([](MapEdit& map) { map.keyframe(1).world_from_camera(0, 3) = 1e8; }),
+              HasSubstr("the pose of key frame 1 is no rigid motion"));
 }
 
 TEST(MappingResults, WrongCorrectionsAreRefused) {

@@ -10,7 +10,9 @@
 
 namespace stillpoint {
 
-/// A 256-bit binary descriptor.
+/// A binary descriptor of 256 bits, as of ORB or BRIEF. Others are kept by the tracker that
+/// computes them; it leaves Features::descriptors empty, and recognises places by itself or not at
+/// all.
 using Descriptor = std::array<std::uint64_t, 4>;
 
 /// Number of differing bits, 0 … 256.

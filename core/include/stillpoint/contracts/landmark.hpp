@@ -20,9 +20,10 @@ struct Landmark {
   LandmarkId id = kNoId;
   Eigen::Vector3d position_in_world = Eigen::Vector3d::Zero();  ///< metres
   Eigen::Vector3d mean_view = Eigen::Vector3d::UnitZ();  ///< unit vector, camera to landmark, world
-  float min_distance = 0.0f;  ///< metres; nearer, its descriptor cannot be found in the pyramid
-  float max_distance = 0.0f;  ///< metres
-  Descriptor descriptor{};    ///< the most typical of its observations
+  /// Metres from the camera, between which its descriptor is found at some scale of the image.
+  float min_distance = 0.0f;
+  float max_distance = 0.0f;
+  Descriptor descriptor{};                ///< the most typical of its observations
   std::vector<Observation> observations;  ///< ordered by key frame
   KeyFrameId reference = kNoId;           ///< key frame it moves with in corrections
   KeyFrameId created_by = kNoId;          ///< key frame whose insertion made it

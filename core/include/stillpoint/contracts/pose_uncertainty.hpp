@@ -13,7 +13,8 @@ struct PoseUncertainty {
   Matrix6d covariance = Matrix6d::Identity();
 
   /// A pose is poorly constrained when its standard deviation in any direction is larger than 5 cm,
-  /// or 0.05 rad about any axis: the camera may have slid along a plane, or turned, unseen.
+  /// or 0.05 rad about any axis: the camera may have slid along a plane, or turned, unseen. The
+  /// same for all, so that counts of different trackers can be compared; the covariance says more.
   static constexpr double kMaxMetres = 0.05;
   static constexpr double kMaxRadians = 0.05;
 

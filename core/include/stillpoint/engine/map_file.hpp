@@ -9,8 +9,8 @@
 namespace stillpoint {
 
 /// Writes the map to `file` and replaces an existing file atomically: if the process dies, the file
-/// is the earlier or the new one. Throws Error(kUsage) when it cannot be written or the path is no
-/// regular file; what is there then stays.
+/// is the earlier or the new one. Throws Error(kUsage) when it cannot be written, the path is no
+/// regular file, or the map has values that load_map() refuses; what is there then stays.
 STILLPOINT_EXPORT void save_map(const SparseMap& map, const std::filesystem::path& file);
 
 /// Throws what save_map would throw, before anything is computed.

@@ -8,12 +8,12 @@
 
 #include <cstdint>
 
-namespace stillpoint::map_layout {
+namespace stillpoint {
 
-inline constexpr int kVersion = 1;
-inline constexpr std::int64_t kApplication = 0x53504d31;  // in the file's header: "SPM1"
+inline constexpr int kMapVersion = 1;
+inline constexpr std::int64_t kMapApplication = 0x53504d31;  // in the file's header: "SPM1"
 
-inline constexpr const char* kTables = R"(
+inline constexpr const char* kMapTables = R"(
 CREATE TABLE camera (id INTEGER PRIMARY KEY, width INTEGER, height INTEGER,
   fx REAL, fy REAL, cx REAL, cy REAL, depth_noise REAL, crc INTEGER);
 CREATE TABLE keyframe (id INTEGER PRIMARY KEY, frame INTEGER, time REAL, camera INTEGER,
@@ -30,4 +30,4 @@ struct StoredKeypoint {
   std::int32_t octave;
 };
 
-}  // namespace stillpoint::map_layout
+}  // namespace stillpoint

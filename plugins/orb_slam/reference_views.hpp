@@ -8,7 +8,8 @@
 
 namespace stillpoint::orb_slam {
 
-class DepthAnchor {
+/// The depth views of recent key frames.
+class ReferenceViews {
  public:
   /// The views that overlap most with what the camera sees from a pose; at most two. Key frames
   /// that are not in the map yet are left out.

@@ -1,4 +1,4 @@
-#include "orb_slam/depth_anchor.hpp"
+#include "orb_slam/reference_views.hpp"
 
 #include <algorithm>
 #include <utility>
@@ -30,8 +30,9 @@ double overlap(const DepthView& current, const DepthView& other, const Pose& oth
 
 }  // namespace
 
-DepthAnchor::Neighbours DepthAnchor::around(const DepthView& current, const Pose& world_from_camera,
-                                            const SparseMap& map) const {
+ReferenceViews::Neighbours ReferenceViews::around(const DepthView& current,
+                                                  const Pose& world_from_camera,
+                                                  const SparseMap& map) const {
   struct Candidate {
     double overlap;
     const View* view;
@@ -59,7 +60,7 @@ DepthAnchor::Neighbours DepthAnchor::around(const DepthView& current, const Pose
   return neighbours;
 }
 
-void DepthAnchor::add(KeyFrameId keyframe, DepthView view) {
+void ReferenceViews::add(KeyFrameId keyframe, DepthView view) {
   views_.push_back({keyframe, std::move(view)});
   if (views_.size() > kMaxViews) views_.pop_front();
 }

@@ -7,10 +7,10 @@
 
 namespace stillpoint::map_checks {
 
-struct VerdictOptions {
+struct SurfaceEvidenceOptions {
   double margin = 0.04;               ///< m, in front of an earlier surface: free-space violation
   double tolerance = 0.015;           ///< m, around an earlier surface: the same surface
-  double rest_time = 5.0;             ///< s, after which an object that came in and stays is static
+  double rest_time = 5.0;             ///< s, after which an object that was put down is static
   double min_age = 1.0;               ///< s; younger views from the same place are no evidence
   double min_parallax = 0.1;          ///< m between the viewpoints; then younger ones are
   double free_space_violation = 3.0;  ///< log-odds, of each view that saw free space there
@@ -25,8 +25,8 @@ struct VerdictOptions {
 
 /// CV_32FC1, log-odds that the surface of a cell moves; see MapEvidence. `views` newest first, at
 /// their present poses; `time` in seconds.
-cv::Mat judge_surfaces(const cv::Mat& depth, const CellCamera& camera,
-                       const Pose& world_from_camera, double time,
-                       std::span<const View* const> views, const VerdictOptions& options);
+cv::Mat surface_evidence(const cv::Mat& depth, const CellCamera& camera,
+                         const Pose& world_from_camera, double time,
+                         std::span<const View* const> views, const SurfaceEvidenceOptions& options);
 
 }  // namespace stillpoint::map_checks

@@ -1,4 +1,4 @@
-#include "map_checks/surface_verdicts.hpp"
+#include "map_checks/surface_evidence.hpp"
 
 #include <algorithm>
 #include <array>
@@ -19,7 +19,7 @@ constexpr float kSigmas = 5.0F;        // of the depth, by which both margin and
 constexpr float kSameSurface = 0.03F;  // of the depth, between neighbouring cells
 
 // Evidence on the cells of a row.
-struct Verdicts {
+struct ViewCounts {
   std::vector<float> resting;     // s, age of the oldest view that saw it there, no violation since
   std::vector<float> violations;  // views with a free-space violation
   std::array<std::vector<float>, 3> same;  // views that saw it there, by Trust
@@ -41,9 +41,10 @@ struct PastView {
 };
 
 // Works row by row, so that the evidence stays in the cache.
-class Judge {
+class EvidenceOfViews {
  public:
-  Judge(const cv::Mat& depth, const CellCamera& camera, const VerdictOptions& options)
+  EvidenceOfViews(const cv::Mat& depth, const CellCamera& camera,
+                  const SurfaceEvidenceOptions& options)
       : depth_(depth),
         camera_(camera),
         options_(options),
@@ -61,7 +62,7 @@ class Judge {
     cv::Mat result(depth_.size(), CV_32F);
     const auto limit = static_cast<float>(options_.max_log_odds);
     for (int y = 0; y < depth_.rows; ++y) {
-      verdicts_.clear(row_length_);
+      counts_.clear(row_length_);
       for (const PastView& past : past_views) {
         project_row(y, past);
         compare_row(past);
@@ -137,12 +138,12 @@ class Judge {
       const cv::v_float32 noise = all(kSigmas * camera_.surface_noise) * z * z;
       const cv::v_float32 tolerance = all(options_.tolerance) + noise;
 
-      const cv::v_float32 resting = cv::vx_load(&verdicts_.resting[x]);
+      const cv::v_float32 resting = cv::vx_load(&counts_.resting[x]);
       const cv::v_float32 through = measured & (z < near - all(options_.margin) - noise) &
                                     (resting < all(options_.rest_time));
       const cv::v_float32 free_space_violation =
-          cv::vx_load(&verdicts_.violations[x]) + (through & one);
-      cv::vx_store(&verdicts_.violations[x], free_space_violation);
+          cv::vx_load(&counts_.violations[x]) + (through & one);
+      cv::vx_store(&counts_.violations[x], free_space_violation);
 
       const cv::v_float32 between = (z >= near - tolerance) & (z <= far + tolerance);
       const auto off = [&](const cv::v_float32& surface) {
@@ -153,14 +154,14 @@ class Judge {
           edge & off(near) & off(far) & off(cv::v_lut(view.depth.ptr<float>(), place));
       const cv::v_float32 same = measured & between & ~beside;
       const cv::v_float32 rests = same & (free_space_violation == zero);
-      cv::vx_store(&verdicts_.resting[x], cv::v_max(resting, rests & all(past.age)));
+      cv::vx_store(&counts_.resting[x], cv::v_max(resting, rests & all(past.age)));
       if (past.is_static_evidence) count_same(x, same, cv::v_lut(view.trust.ptr<int>(), place));
     }
   }
 
   void count_same(std::size_t x, const cv::v_float32& same, const cv::v_int32& trust) {
     for (int kind = kNotStatic; kind <= kMapped; ++kind) {
-      float* count = &verdicts_.same[static_cast<std::size_t>(kind)][x];
+      float* count = &counts_.same[static_cast<std::size_t>(kind)][x];
       const cv::v_float32 counts =
           cv::v_reinterpret_as_f32(trust == cv::vx_setall_s32(kind)) & same;
       cv::vx_store(count, cv::vx_load(count) + (counts & cv::vx_setall_f32(1)));
@@ -168,19 +169,19 @@ class Judge {
   }
 
   float evidence_of(std::size_t x) const {
-    const double unused = verdicts_.resting[x] >= options_.rest_time ? options_.static_unused : 0.0;
-    return static_cast<float>(options_.free_space_violation * verdicts_.violations[x] -
-                              options_.static_mapped * verdicts_.same[kMapped][x] -
-                              options_.static_tracked * verdicts_.same[kTracked][x] -
-                              unused * verdicts_.same[kNotStatic][x]);
+    const double unused = counts_.resting[x] >= options_.rest_time ? options_.static_unused : 0.0;
+    return static_cast<float>(options_.free_space_violation * counts_.violations[x] -
+                              options_.static_mapped * counts_.same[kMapped][x] -
+                              options_.static_tracked * counts_.same[kTracked][x] -
+                              unused * counts_.same[kNotStatic][x]);
   }
 
   const cv::Mat& depth_;
   const CellCamera& camera_;
-  const VerdictOptions& options_;
+  const SurfaceEvidenceOptions& options_;
   std::size_t row_length_;
   // Of one row.
-  Verdicts verdicts_;
+  ViewCounts counts_;
   std::vector<float> columns_;  // 0, 1, 2 …
   std::vector<float> row_;      // m, depth
   std::vector<int> cells_;      // in the view; -1: none
@@ -228,7 +229,7 @@ void grow(cv::Mat& log_odds, const cv::Mat& depth, const CellCamera& camera, flo
 
 }  // namespace
 
-void VerdictOptions::visit(OptionVisitor& v) {
+void SurfaceEvidenceOptions::visit(OptionVisitor& v) {
   v("margin", margin,
     {.min = 0,
      .max = 10,
@@ -245,7 +246,7 @@ void VerdictOptions::visit(OptionVisitor& v) {
     {.min = 0,
      .max = 600,
      .unit = "s",
-     .help = "how long an object that came in must stay to be static"});
+     .help = "how long an object that was put down must rest to be static"});
   v("min_age", min_age,
     {.min = 0,
      .max = 600,
@@ -290,10 +291,12 @@ void VerdictOptions::visit(OptionVisitor& v) {
      .help = "how far a violation grows along a surface over which no view decides"});
 }
 
-cv::Mat judge_surfaces(const cv::Mat& depth, const CellCamera& camera,
-                       const Pose& world_from_camera, double time,
-                       std::span<const View* const> views, const VerdictOptions& options) {
-  cv::Mat log_odds = Judge(depth, camera, options).log_odds(views, world_from_camera, time);
+cv::Mat surface_evidence(const cv::Mat& depth, const CellCamera& camera,
+                         const Pose& world_from_camera, double time,
+                         std::span<const View* const> views,
+                         const SurfaceEvidenceOptions& options) {
+  cv::Mat log_odds =
+      EvidenceOfViews(depth, camera, options).log_odds(views, world_from_camera, time);
   remove_specks(log_odds);
   grow(log_odds, depth, camera, static_cast<float>(options.reach));
   return log_odds;

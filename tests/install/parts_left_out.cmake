@@ -1,0 +1,20 @@
+# What not everybody needs can be left out, as docs/quickstart.md says: it configures without looking for it.
+include(${SOURCE_DIR}/tests/install/support.cmake)
+set(folder ${BUILD_DIR}/parts_left_out)
+file(REMOVE_RECURSE ${folder})
+set(options -G ${GENERATOR} -D CMAKE_CXX_COMPILER=${CXX_COMPILER} -D CMAKE_BUILD_TYPE=Release
+  -D STILLPOINT_BUILD_TESTS=OFF -D STILLPOINT_BUILD_PYTHON=OFF -D STILLPOINT_WITH_EMBREE=OFF
+  -D STILLPOINT_WITH_PAGES=OFF -C ${work}/plugins.cmake)
+file(WRITE ${work}/plugins.cmake "set(STILLPOINT_PLUGINS source_tum output_files CACHE STRING \"\")\n")
+foreach(package embree GTest benchmark Python pybind11 Ceres)
+  list(APPEND options -D CMAKE_DISABLE_FIND_PACKAGE_${package}=ON)
+endforeach()
+run(${CMAKE_COMMAND} -S ${SOURCE_DIR} -B ${folder} ${options})
+run(${CMAKE_COMMAND} --build ${folder} --target help)
+foreach(target stillpoint source_tum output_files stillpoint_simulation)
+  expect_in_output("${target}: ")
+endforeach()
+if(output MATCHES "orb_slam: |runtime_test: |stillpoint_python: ")
+  message(FATAL_ERROR "parts that were left out are built:\n${output}")
+endif()
+file(REMOVE_RECURSE ${folder})
