@@ -17,6 +17,8 @@ namespace fs = std::filesystem;
 void require_writable(const fs::path& file) {
   std::error_code none;
   const bool was_there = fs::exists(fs::symlink_status(file, none));
+  if (was_there && !fs::is_regular_file(file, none))  // a pipe would be waited for
+    throw Error(Fault::kUsage, file.string() + " is no file", "record", "give another name");
   if (!std::ofstream(file, std::ios::binary | std::ios::app))
     throw Error(Fault::kUsage, file.string() + " cannot be written: " + std::strerror(errno),
                 "record", "give another name");

@@ -239,7 +239,11 @@ TEST(PluginsCheck, LibrariesThatCannotBeUsedSayWhy) {
               HasSubstr("it crashed: SIGSEGV"));
   EXPECT_THAT(check(library(kBad / "hangs_when_loaded", "hangs_when_loaded")),
               HasSubstr("it did not end within 2 s"));
-  EXPECT_THAT(check(library(kBad, "bad_options")), HasSubstr("two options are named 'points'"));
+  for (const char* fault :
+       {"two options are named 'points'", "must not be named 'type'",
+        "must not be named 'when_full'", "the default of 'share', 2, is outside",
+        "the default of 'shares' has a number outside its range"})
+    EXPECT_THAT(check(library(kBad, "bad_options")), HasSubstr(fault));
 }
 
 TEST(PluginsCheck, TheFolderMayStandBeforeAndBehindTheCommand) {

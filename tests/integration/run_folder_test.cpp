@@ -259,9 +259,16 @@ TEST_F(RunIntoFolder, EarlierDenseMapDoesNotOutliveItsRun) {
   run_with(".type=voxel_cloud");
   EXPECT_FALSE(std::filesystem::exists(map / "map.ot"));
   EXPECT_TRUE(std::filesystem::exists(map / "cloud.ply"));
-  EXPECT_EQ(text_of(map / "files.txt"), "cloud.ply\n");
+  EXPECT_THAT(text_of(out() / "same/files.txt"), HasSubstr(" map/cloud.ply\n"));
   run_with("=null");
   EXPECT_FALSE(std::filesystem::exists(map));
+}
+
+/// A line of the list of files that a run has written.
+std::string listed(const fs::path& run, const std::string& name) {
+  const auto written = fs::last_write_time(run / name).time_since_epoch().count();
+  return std::to_string(fs::file_size(run / name)) + " " + std::to_string(written) + " " + name +
+         "\n";
 }
 
 // As a back end of another plugin would leave them.
@@ -273,18 +280,81 @@ TEST_F(RunIntoFolder, FilesOfAnyBackEndDoNotOutliveTheirRunButThoseOfTheUserDo) 
     EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
   };
   run_again();
-  const fs::path map = out() / "same/map", beside = out() / "beside.bin";
-  fs::create_directories(map / "parts/of");
-  const auto theirs = {map / "world.bin", map / "parts/of/it.bin"};
-  const auto of_the_user = {map / "notes.txt", beside, out() / "same/own.bin"};
-  for (const auto& files : {theirs, of_the_user})
-    for (const fs::path& file : files) std::ofstream(file) << "1";
-  std::ofstream(map / "files.txt") << "world.bin\nparts/of/it.bin\n../own.bin\n"
-                                   << beside.string() << "\n\n.\n";
+  const fs::path folder = out() / "same", others = out() / "others";
+  fs::create_directories(folder / "map/parts/of");
+  fs::create_directories(others);
+  fs::create_directory_symlink(others, folder / "map/link");
+  const auto theirs = {"map/world.bin", "map/parts/of/it.bin"};
+  const auto of_the_user = {"map/notes.txt", "map/changed.bin", "../others/precious.bin",
+                            "map/link/linked.bin"};
+  std::string list =
+      "# Files of this run, which the next one into this folder removes: bytes, time, name\n";
+  for (const char* name : theirs) {
+    std::ofstream(folder / name) << "1";
+    list += listed(folder, name);
+  }
+  for (const char* name : of_the_user) {
+    std::ofstream(folder / name) << "1";
+    if (name != std::string("map/notes.txt")) list += listed(folder, name);
+  }
+  std::ofstream(folder / "map/changed.bin") << "12";
+  std::ofstream(folder / "files.txt") << list << "1 1 .\nx\n";
   run_again();
-  for (const fs::path& file : theirs) EXPECT_FALSE(fs::exists(file)) << file;
-  EXPECT_FALSE(fs::exists(map / "parts"));
-  for (const fs::path& file : of_the_user) EXPECT_TRUE(fs::exists(file)) << file;
+  for (const char* name : theirs) EXPECT_FALSE(fs::exists(folder / name)) << name;
+  EXPECT_FALSE(fs::exists(folder / "map/parts"));
+  for (const char* name : of_the_user) EXPECT_TRUE(fs::exists(folder / name)) << name;
+}
+
+TEST_F(RunIntoFolder, AListOfFilesOfTheUserIsNoneOfARun) {
+  fs::create_directories(out() / "mine");
+  std::ofstream(out() / "mine/files.txt") << "mine";
+  const Outcome outcome =
+      run("mine", "orb_baseline",
+          {"--dataset", simulated_recording().string(), "--set", "source.limit=2"});
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_THAT(outcome.err, HasSubstr("files.txt: is no file of an earlier run"));
+}
+
+// A folder on another disk, for example.
+TEST_F(RunIntoFolder, LinksToFoldersStay) {
+  fs::create_directories(out() / "elsewhere/run");
+  fs::create_directories(out() / "elsewhere/map");
+  fs::create_directory_symlink(out() / "elsewhere/run", out() / "link");
+  fs::create_directory_symlink(out() / "elsewhere/map", out() / "link/map");
+  for (int i = 0; i < 2; ++i) {
+    const Outcome outcome = run("link/", "orb_baseline",
+                                {"--dataset", simulated_recording().string(), "--set",
+                                 "source.limit=2", "--set", "map_backend.type=voxel_cloud"});
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    EXPECT_TRUE(fs::is_symlink(out() / "link"));
+    EXPECT_TRUE(fs::is_symlink(out() / "link/map"));
+    EXPECT_TRUE(fs::exists(out() / "elsewhere/map/cloud.ply"));
+  }
+}
+
+TEST_F(RunIntoFolder, WhatTheRunReadsIsNotRemoved) {
+  const std::string map = (out() / "same/sparse.map").string();
+  const std::vector<std::string> first = {
+      "--dataset", simulated_recording().string(), "--set", "source.limit=3", "--save-map", map};
+  ASSERT_EQ(run("same", "orb_baseline", first).exit_code, 0);
+  const Outcome outcome =
+      run("same", "orb_baseline",
+          {"--dataset", simulated_recording().string(), "--load-map", map, "--localise-only"});
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_THAT(outcome.err, HasSubstr("sparse.map: is a result of the earlier run in the folder"));
+  EXPECT_TRUE(fs::exists(map));
+}
+
+TEST_F(RunIntoFolder, NoResultReplacesAnother) {
+  for (const char* outputs :
+       {"[{type: trajectory, file: a.txt}, {type: keyframes, file: x/../a.txt}]",
+        "[{type: trajectory, file: log.txt}]"}) {
+    const Outcome outcome = run(
+        "same", "orb_baseline",
+        {"--dataset", simulated_recording().string(), "--set", std::string("outputs=") + outputs});
+    EXPECT_EQ(outcome.exit_code, 2);
+    EXPECT_THAT(outcome.err, HasSubstr("two results of the run have this name"));
+  }
 }
 
 TEST_F(RunIntoFolder, FilesThatOutputsNameDoNotOutliveTheirRun) {
@@ -297,6 +367,8 @@ TEST_F(RunIntoFolder, FilesThatOutputsNameDoNotOutliveTheirRun) {
   ASSERT_EQ(run_with("{type: trajectory, file: poses/a.txt}").exit_code, 0);
   ASSERT_TRUE(fs::exists(named));
   std::ofstream(mine) << "the user's";
+  EXPECT_EQ(run_with("{type: trajectory, file: ./poses/a.txt}").exit_code, 0) << "the same";
+  EXPECT_EQ(run_with("{type: trajectory, file: x/../b.txt}").exit_code, 2);
   const Outcome refused = run_with("{type: trajectory, file: b.txt}");
   EXPECT_EQ(refused.exit_code, 2);
   EXPECT_THAT(refused.err, HasSubstr("b.txt: is no file of an earlier run, and would be replaced"));

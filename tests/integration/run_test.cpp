@@ -160,6 +160,17 @@ TEST_F(Run, NothingTrackedIsSaid) {
   EXPECT_THAT(run_with("100").err, ::testing::Not(HasSubstr("no frame was tracked")));
 }
 
+// As a daemon starts it: the files of the run must not take the places of the standard streams.
+TEST_F(Run, WithoutStandardStreamsWritesWholeFiles) {
+  const std::string command = "'" + program_file().string() + "' run orb_baseline --dataset '" +
+                              simulated_recording().string() + "' -o '" + (out() / "run").string() +
+                              "' <&- >&- 2>&-";
+  EXPECT_EQ(std::system(command.c_str()), 0);
+  expect_accurate("run");
+  for (const char* file : {"frames.csv", "timings.csv"})
+    EXPECT_EQ(text_of(out() / "run" / file).find("frames/s"), std::string::npos) << file;
+}
+
 // As `2>&1 | less` does when its window is full, or a terminal after Ctrl-S.
 TEST_F(Run, GoesOnWhereNobodyReadsWhatItSays) {
   const fs::path pipe = out() / "pipe";

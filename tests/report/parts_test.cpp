@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <libdeflate.h>
+#include <sys/stat.h>
 
 #include <numeric>
 
@@ -14,6 +15,7 @@
 #include "report/thinning.hpp"
 #include "semantic_octree/map_files.hpp"
 #include "stillpoint/error.hpp"
+#include "study/text_file.hpp"
 #include "support/recording_writer.hpp"
 
 namespace stillpoint::report {
@@ -59,6 +61,15 @@ TEST(FrameLog, ReadsFramesAndNamesTheLineThatIsNone) {
               HasSubstr("frames.csv:1: the columns are not"));
 }
 
+TEST(ReportParts, DoNotWaitForPipes) {
+  const TemporaryFolder folder;
+  const auto pipe = folder.path() / "timings.csv";
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  EXPECT_THROW(read_stage_times(pipe), Error);
+  EXPECT_EQ(study::read_text(pipe), "");
+  EXPECT_EQ(study::read_text("/dev/zero"), "");
+}
+
 TEST(FrameLog, AddsUpTheCallsForOneFrame) {
   const TemporaryFolder folder;
   folder.write("timings.csv",
@@ -87,6 +98,15 @@ TEST(OptionChanges, AreWhatDiffersButTheRecordingAndTheSeed) {
               ElementsAre("tracker.features: 1000 -> 2000", "tracker.sizes:  -> [1, 2]",
                           "outputs[0].type: trajectory -> summary", "loop_closer.type: orb -> "));
   EXPECT_THAT(message_of([] { option_changes("a: [", "a: 1"); }), HasSubstr("is no YAML"));
+  std::string bomb = "a0: &a0 {x: 1}\n";
+  for (int i = 1; i < 12; ++i) {
+    const std::string one = "*a" + std::to_string(i - 1);
+    bomb += "a" + std::to_string(i) + ": &a" + std::to_string(i) + " {x: " + one;
+    for (const char* key : {"b", "c", "d", "e", "f", "g", "h", "i"})
+      bomb += std::string(", ") + key + ": " + one;
+    bomb += "}\n";
+  }
+  EXPECT_THAT(message_of([&] { option_changes(bomb, "a: 1"); }), HasSubstr("more than 100,000"));
   EXPECT_EQ(recording_of_pipeline("source: {path: /a}"), "/a");
   EXPECT_EQ(recording_of_pipeline("source: {type: x}"), "");
   EXPECT_EQ(recording_of_pipeline("source: ["), "");

@@ -7,6 +7,7 @@
 
 #include "stillpoint/error.hpp"
 #include "support/image_io.hpp"
+#include "support/recording_writer.hpp"
 
 namespace stillpoint::simulation {
 namespace {
@@ -104,6 +105,15 @@ TEST_F(RecordingWriterTest, GroundTruthIsTheMotionAt100Hz) {
     last = time;
   }
   EXPECT_EQ(lines, 111);  // 1 s and 50 ms before and after
+}
+
+TEST_F(RecordingWriterTest, DoesNotWriteOverAPartOfARecording) {
+  for (const char* name : {"groundtruth.txt", "depth.txt", "associations.txt", "camera.yaml"}) {
+    const testing::TemporaryFolder folder;
+    folder.write(name, "the user's");
+    EXPECT_THROW(RecordingWriter{folder.path()}, Error) << name;
+    EXPECT_FALSE(std::filesystem::exists(folder.path() / "rgb.txt"));
+  }
 }
 
 TEST_F(RecordingWriterTest, DoesNotWriteOverARecording) {

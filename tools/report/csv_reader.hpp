@@ -17,7 +17,9 @@ class CsvReader {
  public:
   /// Throws Error(kData) when the first line is not `header`.
   CsvReader(const std::filesystem::path& file, std::string_view header)
-      : name_(file.string()), columns_(count(header)), stream_(file) {
+      : name_(file.string()), columns_(count(header)) {
+    std::error_code none;
+    if (std::filesystem::is_regular_file(file, none)) stream_.open(file);  // no pipe
     if (!std::getline(stream_, line_) || line_ != header)
       fail("the columns are not '" + std::string(header) + "'");
   }

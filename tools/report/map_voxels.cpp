@@ -56,6 +56,8 @@ Eigen::Vector3d up_beside(const std::filesystem::path& octree) {
   const Eigen::Vector3d camera_up(0, -1, 0);
   try {
     const std::filesystem::path cost_map = octree.parent_path() / "map.yaml";
+    std::error_code none;
+    if (!std::filesystem::is_regular_file(cost_map, none)) return camera_up;
     const auto pose = YAML::LoadFile(cost_map.string())["world_from_map"].as<std::vector<double>>();
     if (pose.size() != 7) return camera_up;
     const Eigen::Quaterniond world_from_map(pose[6], pose[3], pose[4], pose[5]);

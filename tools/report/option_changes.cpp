@@ -23,7 +23,12 @@ std::string text_of_list(const YAML::Node& list) {
   return "[" + text + "]";
 }
 
+// Aliases of aliases can be more than any memory holds.
+constexpr std::size_t kMostOptions = 100'000;
+
 void collect(const YAML::Node& node, const std::string& key, Options& options) {
+  if (options.size() > kMostOptions)
+    throw Error(Fault::kData, "has more than 100,000 options", "pipeline.yaml");
   if (node.IsScalar()) {
     options.emplace_back(key, node.Scalar());
   } else if (is_list_of_values(node)) {

@@ -73,6 +73,8 @@ void read_summary(RunData& run) {
 /// The pipeline's file and the build, from the first two lines of log.txt: "DATE TIME  info  …".
 void read_log(RunData& run) {
   constexpr std::string_view kLevel = "  info  ";
+  std::error_code none;
+  if (!std::filesystem::is_regular_file(run.folder / "log.txt", none)) return;
   std::ifstream log(run.folder / "log.txt");
   const auto next = [&] {
     std::string line;

@@ -66,6 +66,15 @@ void log_failure(const Error& failure, RunFolder& folder) {
     folder.log(LogLevel::kWarning, folder.path().string() + " still holds an earlier run");
 }
 
+// Without this list the next run leaves some files of this one: no reason to fail.
+void list_results(const std::vector<fs::path>& files_of_map, const RunFolder& folder) {
+  try {
+    folder.list_results(files_of_map);
+  } catch (const Error& error) {
+    folder.log(LogLevel::kWarning, error.what());
+  }
+}
+
 // Runs, and prints the table also when a stage has failed: what was computed is saved. Whether the
 // run came to its end.
 bool run_and_print(Stages stages, const PipelineConfig& config, RunFolder& folder, bool quiet,
@@ -74,11 +83,14 @@ bool run_and_print(Stages stages, const PipelineConfig& config, RunFolder& folde
   // A camera that does not fit, or a network that cannot be used, must not cost the results of an
   // earlier run.
   stages.before_outputs = [&folder] { folder.begin(); };
-  stages.map_saved = [&folder](const auto& files) { folder.list_map(files); };
+  std::vector<fs::path> files_of_map;
+  stages.map_saved = [&files_of_map](const auto& files) { files_of_map = files; };
   const auto table = std::make_shared<RunTable>();
   stages.outputs.push_back({{table, "table"}});
   const auto end = [&] {
-    if (quiet || !folder.has_begun()) return;
+    if (!folder.has_begun()) return;
+    list_results(files_of_map, folder);
+    if (quiet) return;
     table->print(std::cout);
     print_files(folder, ground_truth);
     std::cout << std::flush;
@@ -135,6 +147,8 @@ int run(const RunArguments& arguments) {
   RunFolder folder(
       arguments.output.empty() ? fs::path("out") / config.file.stem() : arguments.output,
       config.effective_yaml, console);
+  for (const fs::path& input : {arguments.load_map, request.dataset})
+    if (!input.empty()) folder.require_no_input_in_the_way(input);
   folder.log(LogLevel::kInfo, "stillpoint " STILLPOINT_VERSION ", " + config.file.string());
   folder.log(LogLevel::kInfo,
              "by " + origin_text(study::origin_of(

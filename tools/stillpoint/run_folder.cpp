@@ -10,6 +10,7 @@
 #include <cstring>
 #include <fstream>
 #include <iterator>
+#include <map>
 #include <regex>
 #include <set>
 #include <string>
@@ -21,6 +22,7 @@
 #include "stillpoint/error.hpp"
 #include "stillpoint/support/atomic_file.hpp"
 #include "stillpoint/support/input_file.hpp"
+#include "written_files.hpp"
 
 namespace stillpoint {
 namespace {
@@ -29,14 +31,16 @@ namespace fs = std::filesystem;
 
 constexpr const char* kLog = "log.txt";
 constexpr const char* kPipeline = "pipeline.yaml";
-constexpr const char* kResults[] = {kPipeline,    "trajectory.txt", "keyframes.txt", "timings.csv",
-                                    "frames.csv", "summary.json",   "run.mcap",      "sparse.map"};
-constexpr const char* kMapList = "files.txt";  // in map: what the back end has written
+constexpr const char* kResults[] = {kPipeline,     "trajectory.txt", "keyframes.txt",
+                                    "timings.csv", "frames.csv",     "summary.json",
+                                    "run.mcap",    "sparse.map",     kWrittenFiles};
+constexpr std::uintmax_t kLargestPipeline = 16 << 20;  // bytes
 constexpr const char* kMaps[] = {"map.ot", "map.bt", "map.ply", "map.pgm", "map.yaml", "cloud.ply"};
 
-// Outputs whose option `file` names what they write.
-constexpr std::string_view kWithFile[] = {"trajectory", "keyframes", "frames",
-                                          "timings",    "summary",   "mcap"};
+// Outputs, and their option that names the file they write.
+const std::map<std::string, std::string> kFileOption = {
+    {"trajectory", "file"}, {"keyframes", "file"}, {"frames", "file"}, {"timings", "file"},
+    {"summary", "file"},    {"mcap", "file"},      {"web", "record"}};
 
 bool is_number(std::string_view text) {
   return !text.empty() && text.find_first_not_of("0123456789") == std::string_view::npos;
@@ -80,17 +84,6 @@ bool is_log_of_a_run(const fs::path& file) {
   return std::regex_search(line, kBegin, std::regex_constants::match_continuous);
 }
 
-/// Files that a killed run has left.
-std::vector<fs::path> unfinished_in(const fs::path& run, std::set<std::string> folders) {
-  std::vector<fs::path> files;
-  std::error_code none;
-  folders.insert({".", "map"});
-  for (const std::string& folder : folders)
-    for (const auto& entry : fs::directory_iterator(run / folder, none))
-      if (is_unfinished(entry.path())) files.push_back(entry.path());
-  return files;
-}
-
 /// Those with fixed names, but for the log.
 std::vector<fs::path> results_in(const fs::path& run) {
   std::vector<fs::path> files;
@@ -99,37 +92,17 @@ std::vector<fs::path> results_in(const fs::path& run) {
   return files;
 }
 
-std::set<std::string> fixed_names() { return {std::begin(kResults), std::end(kResults)}; }
-
-/// Of a name in a file that somebody may have changed.
-bool is_below_its_folder(const fs::path& path) {
-  return !path.empty() && path.is_relative() &&
-         std::ranges::none_of(path, [](const fs::path& part) { return part == ".."; });
-}
-
-/// What the map back end of an earlier run has written, which may be of a plugin with files of its
-/// own.
-std::vector<fs::path> map_files_in(const fs::path& run) {
-  std::vector<fs::path> files;
-  std::ifstream list(run / "map" / kMapList);
-  for (std::string name; std::getline(list, name);)
-    if (is_below_its_folder(name)) files.push_back(run / "map" / name);
-  if (!files.empty()) files.push_back(run / "map" / kMapList);
-  return files;
-}
-
-std::vector<fs::path> pictures_in(const fs::path& run, const std::set<std::string>& folders) {
+std::vector<fs::path> pictures_in(const fs::path& folder) {
   std::vector<fs::path> files;
   std::error_code none;
-  for (const std::string& folder : folders)
-    for (const auto& entry : fs::directory_iterator(run / folder, none))
-      if (is_picture(entry.path())) files.push_back(entry.path());
+  for (const auto& entry : fs::directory_iterator(folder, none))
+    if (is_picture(entry.path())) files.push_back(entry.path());
   return files;
 }
 
-/// What the outputs of a pipeline write under names that it gives them.
+/// What the outputs of a pipeline write, as paths from the run folder.
 struct NamedResults {
-  std::set<std::string> files;
+  std::multiset<std::string> files;
   std::set<std::string> picture_folders;  // with numbered pictures
 };
 
@@ -137,20 +110,25 @@ NamedResults results_of(const YAML::Node& effective_pipeline) {
   NamedResults named;
   for (const YAML::Node& output : effective_pipeline["outputs"]) {
     const auto type = output["type"].as<std::string>();
-    if (type == "images")
+    const auto option = kFileOption.find(type);
+    if (type == "images") {
       named.picture_folders.insert(output["folder"].as<std::string>("images"));
-    else if (std::ranges::find(kWithFile, type) != std::end(kWithFile) && output["file"])
-      named.files.insert(output["file"].as<std::string>());
+    } else if (option != kFileOption.end()) {
+      const auto file = output[option->second].as<std::string>("");
+      if (!file.empty()) named.files.insert(fs::path(file).lexically_normal());
+    }
   }
-  for (auto* names : {&named.files, &named.picture_folders})
-    std::erase_if(*names, [](const std::string& name) { return !is_below_its_folder(name); });
   return named;
 }
 
 /// Of a run that was here before.
 NamedResults earlier_results(const fs::path& run) {
   try {
-    return results_of(YAML::Load(read_input_file(run / kPipeline)));
+    NamedResults named = results_of(YAML::Load(read_input_file(run / kPipeline, kLargestPipeline)));
+    std::erase_if(named.picture_folders, [](const fs::path& folder) {  // somebody has changed it
+      return folder.is_absolute() || std::ranges::find(folder, fs::path("..")) != folder.end();
+    });
+    return named;
   } catch (const YAML::Exception&) {
     return {};
   } catch (const Error&) {  // no such file
@@ -158,16 +136,47 @@ NamedResults earlier_results(const fs::path& run) {
   }
 }
 
-std::vector<fs::path> files_in(const fs::path& run, const std::set<std::string>& names) {
+/// Paths from the run folder, of those of `names` that `known` does not have.
+template <class Names>
+std::vector<fs::path> files_in(const fs::path& run, const Names& names, const Names& known) {
   std::vector<fs::path> files;
-  for (const std::string& name : names) files.push_back(run / name);
+  for (const std::string& name : names)
+    if (!known.contains(name)) files.push_back(run / name);
   return files;
 }
 
-/// Names in `names` that are not in `known`.
-std::set<std::string> without(std::set<std::string> names, const std::set<std::string>& known) {
-  std::erase_if(names, [&](const std::string& name) { return known.contains(name); });
-  return names;
+/// Throws Error(kUsage) where one result would replace another.
+void require_different(const NamedResults& results) {
+  for (const std::string& file : results.files)
+    if (results.files.count(file) > 1 || file == kLog || file == kPipeline || file == kWrittenFiles)
+      throw Error(Fault::kUsage, "two results of the run have this name", file,
+                  "give each output a 'file' of its own");
+}
+
+/// Files that a killed run has left.
+std::vector<fs::path> unfinished_in(const fs::path& run, const NamedResults& named) {
+  std::set<fs::path> folders = {run, run / "map"}, names;
+  for (const std::string& folder : named.picture_folders) folders.insert(run / folder);
+  for (const std::string& file : named.files) {
+    if (fs::path(file).is_absolute() || file.starts_with("..")) continue;
+    folders.insert((run / file).parent_path());
+    names.insert(run / file);
+  }
+  std::vector<fs::path> files;
+  std::error_code none;
+  for (const fs::path& folder : folders)
+    for (const auto& entry : fs::directory_iterator(folder, none)) {
+      const fs::path whole = entry.path().parent_path() / entry.path().stem().stem();
+      if (is_unfinished(entry.path()) || (is_temporary(entry.path()) && names.contains(whole)))
+        files.push_back(entry.path());
+    }
+  return files;
+}
+
+/// "out" of "out/": a folder has one name.
+fs::path without_slash(fs::path folder) {
+  while (!folder.has_filename() && folder.has_relative_path()) folder = folder.parent_path();
+  return folder;
 }
 
 [[noreturn]] void fail(const fs::path& path, const std::string& reason) {
@@ -192,7 +201,9 @@ spdlog::level::level_enum level_of(LogLevel level) {
 }  // namespace
 
 RunFolder::RunFolder(fs::path path, std::string effective_yaml, Console& console)
-    : path_(std::move(path)), effective_yaml_(std::move(effective_yaml)), console_(console) {
+    : path_(without_slash(std::move(path))),
+      effective_yaml_(std::move(effective_yaml)),
+      console_(console) {
   std::error_code error;
   made_ = fs::create_directories(path_, error);
   if (error) fail(path_, error.message());
@@ -203,15 +214,21 @@ RunFolder::RunFolder(fs::path path, std::string effective_yaml, Console& console
     require_none_of({path_ / kLog});
     require_none_of(results_in(path_));
   }
+  if (!is_list_of_a_run(path_ / kWrittenFiles)) require_none_of({path_ / kWrittenFiles});
   const NamedResults earlier = holds_earlier_run_ ? earlier_results(path_) : NamedResults();
   const NamedResults own = results_of(YAML::Load(effective_yaml_));
-  require_none_of(pictures_in(path_, without(own.picture_folders, earlier.picture_folders)));
-  require_none_of(files_in(path_, without(without(own.files, earlier.files), fixed_names())));
-  add_earlier(unfinished_in(path_, earlier.picture_folders));
-  add_earlier(pictures_in(path_, earlier.picture_folders));
-  add_earlier(files_in(path_, earlier.files));
-  if (holds_earlier_run_) add_earlier(map_files_in(path_));
-  add_earlier(results_in(path_));  // last: pipeline.yaml says where the others are
+  require_different(own);
+  named_files_.assign(own.files.begin(), own.files.end());
+  for (const fs::path& folder : files_in(path_, own.picture_folders, earlier.picture_folders))
+    require_none_of(pictures_in(folder));
+  std::multiset<std::string> known = earlier.files;
+  known.insert(std::begin(kResults), std::end(kResults));  // these are looked at above
+  require_none_of(files_in(path_, own.files, known));
+  add_earlier(unfinished_in(path_, earlier));
+  for (const std::string& folder : earlier.picture_folders)
+    add_earlier(pictures_in(path_ / folder));
+  if (holds_earlier_run_) add_earlier(listed_in(path_));
+  add_earlier(results_in(path_));  // last: they say which the others are
   require_replaceable();
 }
 
@@ -269,17 +286,30 @@ void RunFolder::remove_earlier_files() const {
   }
 }
 
-// From `folder` upwards, below the run's own.
+// From `folder` upwards, below the run's own. A link to a folder is none of the run's.
 void RunFolder::remove_empty_folders(fs::path folder) const {
-  std::error_code not_empty;
-  for (; folder != path_ && fs::remove(folder, not_empty); folder = folder.parent_path()) continue;
+  for (; folder != path_ && folder.has_relative_path(); folder = folder.parent_path())
+    if (::rmdir(folder.c_str()) != 0) return;
 }
 
-void RunFolder::list_map(const std::vector<fs::path>& files) const {
-  if (files.empty()) return;
-  AtomicFile list(path_ / "map" / kMapList);
-  for (const fs::path& file : files) list.stream() << file.generic_string() << '\n';
-  list.commit();
+void RunFolder::list_results(std::vector<fs::path> files_of_map) const {
+  std::vector<fs::path> files;
+  for (const fs::path& file : files_of_map) files.push_back("map" / file);
+  files.insert(files.end(), named_files_.begin(), named_files_.end());
+  std::erase_if(files, [](const fs::path& file) {
+    const auto is_file = [&](const char* name) { return file == name; };
+    return file.is_absolute() || std::ranges::any_of(kResults, is_file);
+  });
+  list_written(path_, files);
+}
+
+void RunFolder::require_no_input_in_the_way(const fs::path& input) const {
+  std::error_code none;
+  for (const auto& [file, written] : earlier_files_)
+    if (fs::equivalent(file, input, none))
+      throw Error(Fault::kUsage,
+                  "is a result of the earlier run in the folder, which this run removes",
+                  input.string(), "choose another folder with -o, or move it");
 }
 
 std::vector<std::string> RunFolder::contents() const {

@@ -40,8 +40,11 @@ class RunFolder {
   /// results of an earlier run and writes pipeline.yaml. Throws Error when that is not possible.
   void begin();
   bool has_begun() const { return begun_; }
-  /// What the dense map was saved as, below the folder `map`: the next run removes these files.
-  void list_map(const std::vector<std::filesystem::path>& files) const;
+  /// Notes what the run has written, for the next one: what the dense map was saved as, below the
+  /// folder `map`, and what the outputs have named.
+  void list_results(std::vector<std::filesystem::path> files_of_map) const;
+  /// Throws Error(kUsage) when begin() would remove this file, which the run reads.
+  void require_no_input_in_the_way(const std::filesystem::path& input) const;
 
   const std::filesystem::path& path() const { return path_; }
   /// Into log.txt; warnings and errors also to the console. May be called from any thread.
@@ -67,6 +70,7 @@ class RunFolder {
   mutable std::mutex mutex_;
   std::shared_ptr<spdlog::logger> log_;                          // guarded, like early_
   mutable std::vector<std::pair<LogLevel, std::string>> early_;  // lines before begin()
+  std::vector<std::filesystem::path> named_files_;  // by outputs, as paths from the folder
   // Of earlier runs, and when they were written.
   std::vector<std::pair<std::filesystem::path, std::filesystem::file_time_type>> earlier_files_;
 };

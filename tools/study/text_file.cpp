@@ -19,6 +19,8 @@ namespace fs = std::filesystem;
 }  // namespace
 
 std::string read_text(const fs::path& file) {
+  std::error_code none;
+  if (!fs::is_regular_file(file, none)) return {};  // a pipe would be waited for
   std::ifstream stream(file, std::ios::binary);
   return {std::istreambuf_iterator<char>(stream), {}};
 }

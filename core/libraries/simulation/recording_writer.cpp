@@ -19,9 +19,11 @@ std::string seconds(double time) {
 }
 
 void make_folders(const std::filesystem::path& folder, bool labels) {
-  if (std::filesystem::exists(folder / "rgb.txt"))
-    throw Error(Fault::kUsage, "there is a recording already", folder.string(),
-                "name another folder or remove this one");
+  for (const char* name :
+       {"rgb.txt", "depth.txt", "associations.txt", "groundtruth.txt", "camera.yaml"})
+    if (std::error_code none; std::filesystem::exists(folder / name, none))
+      throw Error(Fault::kUsage, "there is a recording already, or a part of one",
+                  (folder / name).string(), "name another folder or remove this one");
   std::vector<const char*> names = {"rgb", "depth"};
   if (labels) names.insert(names.end(), {"labels", "instances"});
   for (const char* name : names) {

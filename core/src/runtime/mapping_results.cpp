@@ -181,4 +181,15 @@ void check_correction(const MapCorrection& correction, const SparseMap& map) {
   }
 }
 
+void check_points(std::span<const LabelledPoint> points) {
+  for (const LabelledPoint& point : points) {
+    require_of_stage(point.position.allFinite(), "a point of the dense map is not finite",
+                     "leave out cells without a position");
+    require_of_stage(point.occupancy >= 0 && point.occupancy <= 1,
+                     "a point of the dense map is occupied with a probability of " +
+                         std::to_string(point.occupancy),
+                     "it lies from 0 to 1; 1 where the map knows none");
+  }
+}
+
 }  // namespace stillpoint

@@ -25,6 +25,12 @@ std::vector<MovedKeyFrame> moved_keyframes(const SparseMap& before, const Sparse
   return moved;
 }
 
+std::vector<LabelledPoint> occupied(const MapBackend& backend) {
+  std::vector<LabelledPoint> points = backend.occupied();
+  check_points(points);
+  return points;
+}
+
 SparseMap insert(LocalMapper& mapper, const SparseMap& before, KeyFrame keyframe, bool thorough) {
   SparseMap map = mapper.insert(before, std::move(keyframe));
   check_inserted(map, before);
@@ -117,14 +123,14 @@ void MappingSystem::end() {
 std::vector<LabelledPoint> MappingSystem::dense_points() {
   const std::lock_guard lock(dense_mutex_);
   if (!map_backend_.usable()) return {};
-  return map_backend_.call_unmeasured({}, &MapBackend::occupied);
+  return map_backend_.call_unmeasured({}, occupied);
 }
 
 std::optional<std::vector<LabelledPoint>> MappingSystem::dense_points_if_idle() {
   const std::unique_lock lock(dense_mutex_, std::try_to_lock);
   if (!lock || !map_backend_.present() || !map_backend_.usable()) return std::nullopt;
   try {
-    return map_backend_.call_unmeasured({}, &MapBackend::occupied);
+    return map_backend_.call_unmeasured({}, occupied);
   } catch (...) {  // whoever asked may go on without it; a run cannot
     stop_.fail(std::current_exception());
     throw;

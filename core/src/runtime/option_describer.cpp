@@ -28,7 +28,8 @@ std::vector<std::string> OptionDescriber::faults() const {
   std::vector<std::string> faults = bad_defaults_;
   std::set<std::string> names;
   for (const OptionRow& row : rows_) {
-    if (row.name == "type") faults.emplace_back("an option must not be named 'type'");
+    for (const char* reserved : {"type", "on_failure", "when_full"})
+      if (row.name == reserved) faults.push_back("an option must not be named '" + row.name + "'");
     if (!names.insert(row.name).second)
       faults.push_back("two options are named '" + row.name + "'");
   }
@@ -47,10 +48,16 @@ void OptionDescriber::value(std::string_view name, double& v, const OptionInfo& 
 void OptionDescriber::value(std::string_view name, std::string& v, const OptionInfo& info,
                             const std::vector<std::string_view>& choices) {
   const std::string text = info.is_path ? "path" : "text";
+  if (!choices.empty() && !info.required && std::ranges::find(choices, v) == choices.end())
+    bad_defaults_.push_back("the default of '" + std::string(name) + "', '" + v +
+                            "', is none of its choices");
   add(name, choices.empty() ? text : join({choices.begin(), choices.end()}, " | "), v, info);
 }
 void OptionDescriber::value(std::string_view name, std::vector<double>& v, const OptionInfo& info) {
   add(name, "list of numbers", v, info);
+  if (!std::ranges::all_of(v, [&](double x) { return x >= info.min && x <= info.max; }))
+    bad_defaults_.push_back("the default of '" + rows_.back().name +
+                            "' has a number outside its range, " + range_text(info));
 }
 void OptionDescriber::value(std::string_view name, std::vector<std::string>& v,
                             const OptionInfo& info) {

@@ -2,6 +2,8 @@
 
 #include <sqlite3.h>
 
+#include <cctype>
+#include <string_view>
 #include <utility>
 
 namespace stillpoint {
@@ -73,13 +75,36 @@ std::span<const std::byte> SqliteStatement::bytes(int column) const {
   return {first, static_cast<std::size_t>(sqlite3_column_bytes(statement_.get(), column))};
 }
 
+namespace {
+
+// As a URI for which SQLite neither reads nor makes other files beside it: no journal, no log.
+std::string immutable(const std::filesystem::path& file) {
+  constexpr std::string_view kDigits = "0123456789ABCDEF";
+  std::string uri = "file:";
+  for (const char c : file.string()) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (std::isalnum(byte) || c == '/' || c == '.' || c == '-' || c == '_')
+      uri += c;
+    else
+      uri += {'%', kDigits[byte / 16], kDigits[byte % 16]};
+  }
+  return uri + "?immutable=1";
+}
+
+}  // namespace
+
 SqliteFile::SqliteFile(const std::filesystem::path& file, Mode mode)
     : database_(nullptr, &sqlite3_close) {
-  if (mode == Mode::kCreate) std::filesystem::remove(file);
-  const int flags =
-      mode == Mode::kRead ? SQLITE_OPEN_READONLY : SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE;
   sqlite3* opened = nullptr;
-  const int code = sqlite3_open_v2(file.c_str(), &opened, flags, nullptr);
+  int code = SQLITE_OK;
+  if (mode == Mode::kRead) {
+    code = sqlite3_open_v2(immutable(std::filesystem::absolute(file)).c_str(), &opened,
+                           SQLITE_OPEN_READONLY | SQLITE_OPEN_URI, nullptr);
+  } else {
+    std::filesystem::remove(file);
+    code =
+        sqlite3_open_v2(file.c_str(), &opened, SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE, nullptr);
+  }
   database_.reset(opened);
   if (code != SQLITE_OK) throw SqliteFault(sqlite3_errmsg(opened));
   // No SQL of the file itself is run.

@@ -284,6 +284,16 @@ TEST_F(MapFile, ValuesAtTheirLimitsComeBack) {
   expect_same(map, load_map(file_));
 }
 
+TEST_F(MapFile, NothingIsMadeOrReadBesideAFileThatIsLoaded) {
+  save_map(small_map(), file_);
+  execute("PRAGMA journal_mode = WAL");
+  ASSERT_EQ(::mkfifo((file_.string() + "-journal").c_str(), 0600), 0);
+  expect_same(small_map(), load_map(file_));
+  int files = 0;
+  for (const auto& entry : fs::directory_iterator(folder_.path())) files += entry.exists() ? 1 : 0;
+  EXPECT_EQ(files, 2);
+}
+
 TEST_F(MapFile, NoSqlOfTheFileIsRun) {
   const char* const hidden = "ALTER TABLE landmark RENAME TO hidden; ";
   for (const std::string& sql :

@@ -223,6 +223,17 @@ TEST(MappingResults, WrongCorrectionsAreRefused) {
   EXPECT_THAT(message({.fused = {{0, kNoId}}}), HasSubstr("names landmark 0 of 0"));
 }
 
+TEST(MappingResults, WrongPointsOfADenseMapAreRefused) {
+  const auto message = [](const LabelledPoint& point) {
+    return message_of([&] { check_points({&point, 1}); });
+  };
+  EXPECT_EQ(message({}), "");
+  EXPECT_THAT(message({.position = {0, kFloatNan, 0}}),
+              HasSubstr("of the dense map is not finite"));
+  EXPECT_THAT(message({.occupancy = 1.5F}), HasSubstr("with a probability of 1.5"));
+  EXPECT_THAT(message({.occupancy = kFloatNan}), HasSubstr("with a probability of nan"));
+}
+
 TEST(MappingResults, WhoIsLostNeedsNoPose) {
   TrackResult result{.state = TrackState::kLost};
   result.world_from_camera.translation().x() = kNan;

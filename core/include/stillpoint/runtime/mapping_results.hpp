@@ -2,7 +2,10 @@
 // perception_results.hpp.
 #pragma once
 
+#include <span>
+
 #include "stillpoint/contracts/frame.hpp"
+#include "stillpoint/contracts/labelled_point.hpp"
 #include "stillpoint/contracts/map_correction.hpp"
 #include "stillpoint/contracts/sparse_map.hpp"
 #include "stillpoint/contracts/tracker.hpp"
@@ -24,5 +27,8 @@ STILLPOINT_EXPORT void check_refined(const SparseMap& map, const SparseMap& befo
 
 /// Of a loop closer, for a map.
 STILLPOINT_EXPORT void check_correction(const MapCorrection& correction, const SparseMap& map);
+
+/// Of a dense map.
+STILLPOINT_EXPORT void check_points(std::span<const LabelledPoint> points);
 
 }  // namespace stillpoint
