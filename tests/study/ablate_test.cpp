@@ -202,10 +202,14 @@ TEST_F(Ablate, TheFirstRepeatKeepsPicturesOfItsWorstFrames) {
 
 TEST_F(Ablate, OnlyItsOwnHalfRecordingsAreRemoved) {
   folder_.write("out/recordings/tiny.4242.part/rgb.txt", "of a study that was killed");
+  folder_.write("out/recordings/tiny.4242.part.txt", "what its simulator said");
+  folder_.write("out/recordings/tiny.2024.part/rgb.txt", "mine");
   folder_.write("out/recordings/tiny.part/rgb.txt", "mine");
   folder_.write("out/recordings/tiny.txt", "mine");
   ASSERT_EQ(ablate(kShort).exit_code, 0);
   EXPECT_FALSE(fs::exists(out() / "recordings/tiny.4242.part"));
+  EXPECT_FALSE(fs::exists(out() / "recordings/tiny.4242.part.txt"));
+  EXPECT_EQ(text_of(out() / "recordings/tiny.2024.part/rgb.txt"), "mine");
   EXPECT_EQ(text_of(out() / "recordings/tiny.part/rgb.txt"), "mine");
   EXPECT_EQ(text_of(out() / "recordings/tiny.txt"), "mine");
 }

@@ -34,7 +34,7 @@ fs::path unfinished(const fs::path& folder) {
   return folder.string() + '.' + std::to_string(::getpid()) + ".part";
 }
 
-/// Those of studies that were killed.
+/// Those of studies that were killed: what the simulator said lies beside each.
 void remove_unfinished(const fs::path& folder) {
   const std::string begin = folder.filename().string() + '.';
   std::vector<fs::path> found;
@@ -48,7 +48,11 @@ void remove_unfinished(const fs::path& folder) {
     const bool is_number = !number.empty() && std::ranges::all_of(number, [](unsigned char c) {
       return std::isdigit(c);
     });
-    if (is_number && !fs::exists(entry.path() / kDescription, none)) found.push_back(entry.path());
+    const fs::path part = entry.path().parent_path() / (name.substr(0, end) + ".part");
+    if (is_number && fs::is_directory(part, none) &&
+        fs::is_regular_file(part.string() + ".txt", none) &&
+        !fs::exists(entry.path() / kDescription, none))
+      found.push_back(entry.path());
   }
   for (const fs::path& path : found) remove_folder(path);
 }
