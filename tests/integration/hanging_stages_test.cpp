@@ -18,9 +18,10 @@ using ::testing::HasSubstr;
 struct Hanging {
   const char* role;  // what messages call the stage
   const char* setting;
+  const char* another = "runtime.seed=1";  ///< setting
 };
 
-/// Hangs on the thread of its kind.
+/// Hangs on the thread of its kind. The moving check has a test of its own.
 class StageOfAnyKind : public BadPlugins,
                        public ::testing::WithParamInterface<std::tuple<const char*, Hanging>> {};
 
@@ -28,6 +29,11 @@ INSTANTIATE_TEST_SUITE_P(
     Modes, StageOfAnyKind,
     ::testing::Combine(::testing::Values("inline", "threaded"),
                        ::testing::Values(Hanging{"source", "source={type: hangs}"},
+                                         Hanging{"propagation", "propagator={type: hangs}",
+                                                 "segmenter={type: labels}"},
+                                         Hanging{"map check", "map_checker={type: hangs}"},
+                                         Hanging{"decision", "decision={type: hangs}"},
+                                         Hanging{"tracking", "tracker={type: hangs}"},
                                          Hanging{"segmentation", "segmenter={type: hangs}"},
                                          Hanging{"local mapping", "local_mapper={type: hangs}"},
                                          Hanging{"loop closing", "loop_closer={type: hangs}"},
@@ -47,6 +53,7 @@ TEST_P(StageOfAnyKind, ThatHangsIsNamedAndGivenUpByTheSecondCtrlC) {
   const auto& [mode, hanging] = GetParam();
   const std::string stage = std::string(hanging.role) + " (hangs)";
   std::vector<std::string> arguments = {"--set", hanging.setting,
+                                        "--set", hanging.another,
                                         "--set", std::string("runtime.mode=") + mode,
                                         "--set", "runtime.stage_timeout=0.1"};
   if (hanging.role != std::string("source")) arguments = on_recording(arguments);
