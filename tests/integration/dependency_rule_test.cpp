@@ -222,7 +222,8 @@ TEST(DependencyRule, CoreHasOneNamespaceAndTestsThoseOfWhatTheyTest) {
       tested.insert("stillpoint::" + folder);
   expect_namespaces(kRoot / "tests", tested);
   expect_namespaces(kRoot / "sdk/python", {"stillpoint::python"});
-  for (const char* folder : {"sdk/ros1/src", "sdk/templates", "sdk/examples"})
+  expect_namespaces(kRoot / "sdk/ros1", {"stillpoint_ros", "stillpoint"});  // and what it declares
+  for (const char* folder : {"sdk/templates", "sdk/examples"})
     expect_namespaces(kRoot / folder, {});
 }
 
