@@ -161,7 +161,7 @@ TEST_F(LabelImageSegmenterTest, OutlinesMoveByPixels) {
   EXPECT_EQ(open().segment(frame_at(1.0)).objects[0].box, larger);
 }
 
-TEST_F(LabelImageSegmenterTest, OutlinesWobbleWithinBounds) {
+TEST_F(LabelImageSegmenterTest, OutlineErrorsStayWithinBounds) {
   write(1.0, room_labels());
   options_.errors.outline_error = 4;
   LabelImageSegmenter segmenter = open();

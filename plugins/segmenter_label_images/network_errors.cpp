@@ -11,7 +11,7 @@ namespace stillpoint::segmenter_label_images {
 namespace {
 
 /// px along an outline over which its error stays about the same.
-constexpr int kWobbleCell = 16;
+constexpr int kErrorCell = 16;
 
 /// The object (CV_8UC1) with its outline moved outwards by `shift` (px; CV_32F of the same size).
 /// There must be room for it around the object.
@@ -98,7 +98,7 @@ void NetworkErrors::degrade(cv::Mat& mask, const cv::Rect& box, cv::RNG& random)
 
 cv::Mat NetworkErrors::outline_shift(cv::Size size, std::uint32_t frame) const {
   if (options_.outline_error == 0) return {size, CV_32F, cv::Scalar(options_.boundary)};
-  cv::Mat coarse(size.height / kWobbleCell + 2, size.width / kWobbleCell + 2, CV_32F);
+  cv::Mat coarse(size.height / kErrorCell + 2, size.width / kErrorCell + 2, CV_32F);
   cv::RNG random = frame_random(seed_, Purpose::kOutlines, frame);
   random.fill(coarse, cv::RNG::UNIFORM, options_.boundary - options_.outline_error,
               options_.boundary + options_.outline_error);

@@ -207,10 +207,11 @@ TEST(DependencyRule, NamespacesAreThoseOfTheirFolders) {
 /// `allowed` and no other, in all files below the folder.
 void expect_namespaces(const fs::path& folder, const std::set<std::string>& allowed) {
   ASSERT_TRUE(fs::exists(folder)) << folder;
-  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder))
-    if (is_source(entry.path()))
-      for (const std::string& name : namespaces_in(entry.path()))
-        EXPECT_TRUE(allowed.contains(name)) << entry.path() << " has " << name;
+  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder)) {
+    if (!is_source(entry.path())) continue;
+    for (const std::string& name : namespaces_in(entry.path()))
+      EXPECT_TRUE(allowed.contains(name)) << entry.path() << " has " << name;
+  }
 }
 
 TEST(DependencyRule, CoreHasOneNamespaceAndTestsThoseOfWhatTheyTest) {
