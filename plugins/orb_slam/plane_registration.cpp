@@ -15,8 +15,12 @@ constexpr double kNoiseMargin = 2.0;  // times the spurious information from the
 using Vector6f = Eigen::Matrix<float, 6, 1>;
 
 // Standard deviation in metres of what is no noise of single pixels: walls that are not quite flat,
-// and the distortion of depth, which grows with the noise of the sensor (a Kinect's is 0.002).
-float model_sigma(const DepthView& view) { return std::max(0.004F, 2.0F * view.surface_noise()); }
+// and the distortion of depth, which is taken for twice the noise at 1 m; a Kinect's is 2 mm.
+constexpr float kFlatness = 0.004F;
+constexpr float kDistortion = 2.0F;  // m²: times the noise of the inverse depth
+float model_sigma(const DepthView& view) {
+  return std::max(kFlatness, kDistortion * view.surface_noise());
+}
 
 struct Sums {
   Matrix6d hessian = Matrix6d::Zero();

@@ -345,6 +345,19 @@ TEST_F(RunIntoFolder, WhatTheRunReadsIsNotRemoved) {
   EXPECT_TRUE(fs::exists(map));
 }
 
+// A name outside the folder is for the newest run, whichever folder it has.
+TEST_F(RunIntoFolder, AFileElsewhereIsReplacedByTheRunThatNamesIt) {
+  const std::string elsewhere = (out() / "latest.txt").string();
+  for (const char* name : {"first", "second"}) {
+    const Outcome outcome =
+        run(name, "orb_baseline",
+            {"--dataset", simulated_recording().string(), "--set", "source.limit=2", "--set",
+             "outputs=[{type: trajectory, file: " + elsewhere + "}]"});
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    EXPECT_EQ(count_poses(elsewhere), 2u);
+  }
+}
+
 TEST_F(RunIntoFolder, NoResultReplacesAnother) {
   for (const char* outputs :
        {"[{type: trajectory, file: a.txt}, {type: keyframes, file: x/../a.txt}]",

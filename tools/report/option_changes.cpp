@@ -24,29 +24,30 @@ std::string text_of_list(const YAML::Node& list) {
 }
 
 // Aliases of aliases can be more than any memory holds.
-constexpr std::size_t kMostOptions = 100'000;
+constexpr std::size_t kMostNodes = 20'000;
 
-void collect(const YAML::Node& node, const std::string& key, Options& options) {
-  if (options.size() > kMostOptions)
-    throw Error(Fault::kData, "has more than 100,000 options", "pipeline.yaml");
+void collect(const YAML::Node& node, const std::string& key, Options& options, std::size_t& nodes) {
+  if (++nodes > kMostNodes)
+    throw Error(Fault::kData, "has more than 20,000 options", "pipeline.yaml");
   if (node.IsScalar()) {
     options.emplace_back(key, node.Scalar());
   } else if (is_list_of_values(node)) {
     options.emplace_back(key, text_of_list(node));
   } else if (node.IsSequence()) {
     for (std::size_t i = 0; i < node.size(); ++i)
-      collect(node[i], key + "[" + std::to_string(i) + "]", options);
+      collect(node[i], key + "[" + std::to_string(i) + "]", options, nodes);
   } else if (node.IsMap()) {
     for (const auto& child : node)
       collect(child.second, key.empty() ? child.first.Scalar() : key + "." + child.first.Scalar(),
-              options);
+              options, nodes);
   }
 }
 
 Options options_of(const std::string& yaml) {
   Options options;
+  std::size_t nodes = 0;
   try {
-    collect(YAML::Load(yaml), "", options);
+    collect(YAML::Load(yaml), "", options, nodes);
   } catch (const YAML::Exception& error) {
     throw Error(Fault::kData, std::string("is no YAML: ") + error.what(), "pipeline.yaml");
   }

@@ -4,6 +4,7 @@
 #include <sys/ioctl.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <cmath>
 #include <iostream>
 
@@ -17,7 +18,9 @@ constexpr int kLineWait = 1000;  // ms that a line waits for whoever reads it
 /// pipe that nobody reads, must not stop the run.
 bool takes_text(int milliseconds) {
   pollfd error_stream{.fd = STDERR_FILENO, .events = POLLOUT, .revents = 0};
-  return ::poll(&error_stream, 1, milliseconds) != 0;
+  int ready = 0;
+  while ((ready = ::poll(&error_stream, 1, milliseconds)) < 0 && errno == EINTR) continue;
+  return ready != 0;
 }
 
 }  // namespace

@@ -10,7 +10,8 @@ namespace stillpoint {
 std::string minutes(double seconds);
 
 /// May be used from any thread. Where nobody reads standard error, a line is lost after a second,
-/// others and status lines at once, until somebody does: a run goes on, and log.txt has the lines.
+/// others and status lines at once, until somebody does: a run goes on, and its log.txt has the
+/// warnings.
 class Console {
  public:
   /// Quiet: without notes and status lines.

@@ -121,6 +121,9 @@ NamedResults results_of(const YAML::Node& effective_pipeline) {
   return named;
 }
 
+/// Whether a normalised path leads out of the run folder.
+bool is_elsewhere(const fs::path& file) { return file.is_absolute() || *file.begin() == ".."; }
+
 /// Of a run that was here before.
 NamedResults earlier_results(const fs::path& run) {
   try {
@@ -158,7 +161,7 @@ std::vector<fs::path> unfinished_in(const fs::path& run, const NamedResults& nam
   std::set<fs::path> folders = {run, run / "map"}, names;
   for (const std::string& folder : named.picture_folders) folders.insert(run / folder);
   for (const std::string& file : named.files) {
-    if (fs::path(file).is_absolute() || file.starts_with("..")) continue;
+    if (is_elsewhere(file)) continue;
     folders.insert((run / file).parent_path());
     names.insert(run / file);
   }
@@ -222,6 +225,8 @@ RunFolder::RunFolder(fs::path path, std::string effective_yaml, Console& console
   for (const fs::path& folder : files_in(path_, own.picture_folders, earlier.picture_folders))
     require_none_of(pictures_in(folder));
   std::multiset<std::string> known = earlier.files;
+  // Outside the folder it is the user who has named the file.
+  std::ranges::copy_if(own.files, std::inserter(known, known.end()), is_elsewhere);
   known.insert(std::begin(kResults), std::end(kResults));  // these are looked at above
   require_none_of(files_in(path_, own.files, known));
   add_earlier(unfinished_in(path_, earlier));
@@ -244,6 +249,7 @@ void RunFolder::begin() {
   begin_log();
   begun_ = true;
   remove_earlier_files();
+  removed_ = true;
   pipeline.commit();  // last: the earlier one says which pictures are those of a run
 }
 
@@ -292,13 +298,14 @@ void RunFolder::remove_empty_folders(fs::path folder) const {
     if (::rmdir(folder.c_str()) != 0) return;
 }
 
-void RunFolder::list_results(std::vector<fs::path> files_of_map) const {
+void RunFolder::list_results(const std::vector<fs::path>& files_of_map) const {
+  if (!removed_) return;  // the list of the earlier run still counts
   std::vector<fs::path> files;
   for (const fs::path& file : files_of_map) files.push_back("map" / file);
   files.insert(files.end(), named_files_.begin(), named_files_.end());
   std::erase_if(files, [](const fs::path& file) {
     const auto is_file = [&](const char* name) { return file == name; };
-    return file.is_absolute() || std::ranges::any_of(kResults, is_file);
+    return is_elsewhere(file) || std::ranges::any_of(kResults, is_file);
   });
   list_written(path_, files);
 }

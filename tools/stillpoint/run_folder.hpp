@@ -41,8 +41,8 @@ class RunFolder {
   void begin();
   bool has_begun() const { return begun_; }
   /// Notes what the run has written, for the next one: what the dense map was saved as, below the
-  /// folder `map`, and what the outputs have named.
-  void list_results(std::vector<std::filesystem::path> files_of_map) const;
+  /// folder `map`, and what the outputs have named. Throws Error when that cannot be written.
+  void list_results(const std::vector<std::filesystem::path>& files_of_map) const;
   /// Throws Error(kUsage) when begin() would remove this file, which the run reads.
   void require_no_input_in_the_way(const std::filesystem::path& input) const;
 
@@ -66,6 +66,7 @@ class RunFolder {
   bool made_ = false;  // by this run
   bool holds_earlier_run_ = false;
   std::atomic<bool> begun_ = false;
+  std::atomic<bool> removed_ = false;  // all results of the earlier run
   std::optional<FolderLock> lock_;
   mutable std::mutex mutex_;
   std::shared_ptr<spdlog::logger> log_;                          // guarded, like early_

@@ -20,12 +20,13 @@ std::vector<fs::path> FolderContents::written_since() const {
 FolderContents::Files FolderContents::files_now() const {
   Files files;
   std::error_code error;
-  fs::recursive_directory_iterator entry(folder_, error);
+  fs::recursive_directory_iterator entry(folder_, fs::directory_options::skip_permission_denied,
+                                         error);
   for (const fs::recursive_directory_iterator end; !error && entry != end; entry.increment(error)) {
     std::error_code gone;
     if (entry->symlink_status(gone).type() != fs::file_type::regular) continue;
     const Version version{entry->last_write_time(gone), entry->file_size(gone)};
-    files.emplace(entry->path().lexically_relative(folder_), version);
+    if (!gone) files.emplace(entry->path().lexically_relative(folder_), version);
   }
   return files;
 }

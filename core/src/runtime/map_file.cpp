@@ -29,11 +29,14 @@ void require_loadable(const SparseMap& map, const fs::path& file) {
   try {
     for (KeyFrameId id = 0; id < map.keyframe_id_end(); ++id)
       if (const KeyFrame* keyframe = map.keyframe(id)) {
+        if (!keyframe->camera || !keyframe->features)
+          throw DamagedMap("a key frame has no camera or no features");
         check_values(*keyframe->camera);
         check_values(*keyframe);
       }
     for (LandmarkId id = 0; id < map.landmark_id_end(); ++id)
       if (const Landmark* landmark = map.landmark(id)) check_values(*landmark);
+    if (const auto fault = map.check()) throw DamagedMap(*fault);
   } catch (const DamagedMap& fault) {
     throw Error(Fault::kUsage, std::string("the map could not be loaded again: ") + fault.what(),
                 file.string(), "it is not written; correct these values");

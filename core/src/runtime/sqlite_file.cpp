@@ -80,7 +80,7 @@ namespace {
 // As a URI for which SQLite neither reads nor makes other files beside it: no journal, no log.
 std::string immutable(const std::filesystem::path& file) {
   constexpr std::string_view kDigits = "0123456789ABCDEF";
-  std::string uri = "file:";
+  std::string uri = "file://";
   for (const char c : file.string()) {
     const auto byte = static_cast<unsigned char>(c);
     if (std::isalnum(byte) || c == '/' || c == '.' || c == '-' || c == '_')

@@ -270,6 +270,13 @@ TEST_F(MapFile, ImpossibleValuesAreRefused) {
   });
 }
 
+TEST_F(MapFile, AKeyFrameWithoutCameraIsNotSaved) {
+  MapEdit edit(small_map());
+  edit.keyframe(0).camera = nullptr;
+  EXPECT_THROW(save_map(std::move(edit).finish(), file_), Error);
+  EXPECT_FALSE(fs::exists(file_));
+}
+
 // What check_tracking() and check_refined() accept can be saved and loaded.
 TEST_F(MapFile, ValuesAtTheirLimitsComeBack) {
   MapEdit edit(small_map());

@@ -1,6 +1,5 @@
 // Which values cameras, features and maps can have. The same limits hold for what plugins give and
-// for saved maps, which may be malicious and have correct checksums: what a run accepts can be
-// loaded.
+// for saved maps, which may be malicious and have correct checksums.
 #pragma once
 
 #include <string>
