@@ -43,6 +43,7 @@ extends: paper_tables
 sequences: [{name: walking_xyz, scene: fr3_walking_xyz, frames: 20}]
 repeats: 1
 pictures: 1
+published: []
 ")
   run(${program} ablate ${work}/packaged_study.yaml -o ${work}/packaged_study)
   expect_in_output("## Improvement of the ATE over orb_baseline")

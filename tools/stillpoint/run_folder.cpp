@@ -148,6 +148,13 @@ std::vector<fs::path> files_in(const fs::path& run, const Names& names, const Na
   return files;
 }
 
+/// Those that are there: a pipe or a device is there to be written into.
+std::vector<fs::path> regular_files(std::vector<fs::path> files) {
+  std::error_code none;
+  std::erase_if(files, [&](const fs::path& file) { return !fs::is_regular_file(file, none); });
+  return files;
+}
+
 /// Throws Error(kUsage) where one result would replace another.
 void require_different(const NamedResults& results) {
   for (const std::string& file : results.files)
@@ -228,7 +235,7 @@ RunFolder::RunFolder(fs::path path, std::string effective_yaml, Console& console
   // Outside the folder it is the user who has named the file.
   std::ranges::copy_if(own.files, std::inserter(known, known.end()), is_elsewhere);
   known.insert(std::begin(kResults), std::end(kResults));  // these are looked at above
-  require_none_of(files_in(path_, own.files, known));
+  require_none_of(regular_files(files_in(path_, own.files, known)));
   add_earlier(unfinished_in(path_, earlier));
   for (const std::string& folder : earlier.picture_folders)
     add_earlier(pictures_in(path_ / folder));

@@ -196,16 +196,6 @@ class Slurm(unittest.TestCase):
         self.assertIn("Slurm takes no more for now, 2 runs are submitted later: sbatch: full", err)
         self.assertIn("[6/6] short/", err)
 
-    def test_a_job_beyond_its_time_or_memory_has_failed(self):
-        """squeue says so of a job that was cancelled: the shortest limit of time is a minute."""
-        for state, exit_code in (("TIMEOUT", 124), ("OUT_OF_MEMORY", 1)):
-            study = self.follow(ENDLESS, PATH=self.wrapped("squeue", f"REAL | sed s/CANCELLED/{state}/"))
-            command("scancel", study.read_until("submitted as job ").split(":")[0])
-            code, _, err = study.finish()
-            self.assertEqual(code, 1)
-            self.assertIn(f"endless/plain/0: exit code {exit_code}: left no result; Slurm says {state}", err)
-            self.assertEqual(self.rows(self.out)[0]["state"], "failed")
-
     def test_says_why_slurm_takes_nothing(self):
         code, _, err = self.follow(TWO_VARIANTS.replace("main", "mian")).finish()
         self.assertEqual(code, 1)
