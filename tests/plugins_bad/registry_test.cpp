@@ -195,7 +195,10 @@ TEST_F(RegistryTest, TypesWithWrongOptionsAreRefusedOneByOne) {
           "the options of moving_checker 'outside': the default of 'share', 2, is outside its "
           "range, [0, 1]",
           "the options of moving_checker 'twice': two options are named 'points'",
-          "the options of moving_checker 'type': an option must not be named 'type'"}));
+          "the options of moving_checker 'type': an option must not be named 'type'",
+          "the options of moving_checker 'list': the default of 'shares' has a number outside its "
+          "range, [0, 1]",
+          "the options of moving_checker 'reserved': an option must not be named 'when_full'"}));
   EXPECT_NE(registry.find("moving_checker", "right"), nullptr);
 }
 
