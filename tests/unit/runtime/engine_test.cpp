@@ -3,14 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <filesystem>
 #include <set>
-#include <stdexcept>
 #include <thread>
 #include <vector>
 
 #include "engine_fixture.hpp"
-#include "support/recording_writer.hpp"
 
 namespace stillpoint {
 namespace {
@@ -260,63 +257,6 @@ TEST(Engine, WhatTheSourceThrowsAfterAStopIsNoFailure) {
   Engine(f.stages(), runtime(Mode::kThreaded), {}).run(stop.get_token());
   EXPECT_EQ(f.output->failure, "");
   EXPECT_FALSE(f.output->complete);
-}
-
-TEST_P(EngineInBothModes, BeforeOutputsIsCalledOnceAndBeforeEveryOutput) {
-  for (const std::uint32_t frames : {0, 3}) {
-    EngineFixture f(frames);
-    Stages stages = f.stages();
-    for (OutputSetup& output : stages.outputs) {
-      output.stage.object = std::make_shared<testing::FakeOutput>(f.calls);
-      output.when_full = &output == &stages.outputs.front() ? WhenFull::kWait : WhenFull::kDrop;
-    }
-    stages.before_outputs = [&f] { f.calls.write("before", 0); };
-    Engine(std::move(stages), runtime(GetParam()), {}).run();
-    const auto calls = f.calls.entries();
-    EXPECT_EQ(std::ranges::count(calls, "before 0"), 1);
-    const auto begun = std::ranges::find(calls, "before 0");
-    EXPECT_EQ(std::find_if(calls.begin(), begun,
-                           [](const auto& call) {
-                             return call.starts_with("output") || call.starts_with("finish");
-                           }),
-              begun);
-  }
-}
-
-TEST_P(EngineInBothModes, WhatFailsBeforeTheOutputsEndsTheRunForThemBeforeItsFirstFrame) {
-  for (const std::uint32_t frames : {0, 3}) {
-    EngineFixture f(frames);
-    Stages stages = f.stages();
-    stages.before_outputs = [] { throw Error(Fault::kUsage, "no room"); };
-    Engine engine(std::move(stages), runtime(GetParam()), {});
-    EXPECT_THROW(engine.run(), Error);
-    EXPECT_TRUE(f.output->before_first_frame);
-    EXPECT_EQ(f.calls.entries("output"), Strings());
-    EXPECT_EQ(f.calls.entries("save"), Strings()) << "no dense map beside that of an earlier run";
-  }
-}
-
-TEST_P(EngineInBothModes, TheFilesOfTheDenseMapAreNamedAlsoWhereItsBackEndFails) {
-  for (const bool fails : {false, true}) {
-    const testing::TemporaryFolder folder;
-    folder.write("map/the_users", "");
-    EngineFixture f(3);
-    f.backend->while_saving = [&](const std::filesystem::path& directory) {
-      folder.write("map/parts/first", "");
-      EXPECT_EQ(directory, folder.path() / "map");
-      if (fails) throw std::runtime_error("no more");
-    };
-    Stages stages = f.stages();
-    stages.map_directory = folder.path() / "map";
-    std::vector<std::filesystem::path> files;
-    stages.map_saved = [&](const auto& written) { files = written; };
-    Engine engine(std::move(stages), runtime(GetParam()), {});
-    if (fails)
-      EXPECT_THROW(engine.run(), Error);
-    else
-      engine.run();
-    EXPECT_EQ(files, std::vector<std::filesystem::path>{"parts/first"});
-  }
 }
 
 TEST(Engine, ARefinementEndsEarlyWhenAnotherKeyFrameWaits) {
