@@ -49,9 +49,12 @@ struct InversePlane {
 };
 
 // 1/m that a cell's mean may be off the plane; more is a discontinuity. Six standard deviations of
-// the mean of 16 samples, and no less than those of a Kinect: better sensors do not make surfaces
+// the mean of its samples, and no less than those of a Kinect: better sensors do not make surfaces
 // flatter.
-float max_misfit(float surface_noise) { return std::max(0.003F, 1.5F * surface_noise); }
+constexpr float kLeastMisfit = 0.003F;
+float max_misfit(float surface_noise) {
+  return std::max(kLeastMisfit, 6.0F * surface_noise / std::sqrt(float{kSamplesPerCell}));
+}
 
 InversePlane fit(const std::vector<Cell>& cells, int columns, int column, int row,
                  float max_misfit) {

@@ -7,10 +7,12 @@
 namespace stillpoint::orb_slam {
 namespace {
 
-constexpr double kUrgentRatio =
-    0.25;  // of the reference's matches: tracking may be lost before mapping is free
-constexpr int kMinFramesBetweenByDepth =
-    5;  // minimum; unstable corners would ask for one every time
+// Inliers, of the matches of the reference: with fewer, tracking may be lost before mapping is
+// free.
+constexpr double kUrgentRatio = 0.25;
+// Frames between two key frames where depth gives the pose: unstable corners would ask for one
+// every time.
+constexpr int kMinFramesBetweenByDepth = 5;
 
 // Landmarks of the reference key frame that others observe as well; in a young map, all of them.
 int established_landmarks(const KeyFrame& keyframe, const SparseMap& map) {

@@ -80,13 +80,13 @@ void remap_degenerate_directions(Sums& sums) {
   const Matrix6d scaled = scale.asDiagonal() * sums.hessian * scale.asDiagonal();
   const Eigen::SelfAdjointEigenSolver<Matrix6d> eigen(scaled);
   const double floor = kNoiseMargin * sums.noise_information;
-  Matrix6d held = Matrix6d::Zero();
+  Matrix6d constrained = Matrix6d::Zero();
   for (int i = 0; i < 6; ++i)
     if (eigen.eigenvalues()[i] > floor)
-      held += eigen.eigenvectors().col(i) * eigen.eigenvectors().col(i).transpose();
+      constrained += eigen.eigenvectors().col(i) * eigen.eigenvectors().col(i).transpose();
   const Vector6d unscale = scale.cwiseInverse();
-  sums.gradient = unscale.asDiagonal() * held * scale.asDiagonal() * sums.gradient;
-  sums.hessian = unscale.asDiagonal() * held * scaled * held * unscale.asDiagonal();
+  sums.gradient = unscale.asDiagonal() * constrained * scale.asDiagonal() * sums.gradient;
+  sums.hessian = unscale.asDiagonal() * constrained * scaled * constrained * unscale.asDiagonal();
 }
 
 }  // namespace

@@ -25,7 +25,7 @@ bool free_to(const PlaneRegistration& registration, const Vector6d& twist) {
   return (registration.cost.hessian * twist).norm() < 1e-4 * registration.cost.hessian.norm();
 }
 
-int held_directions(const PlaneRegistration& registration) {
+int constrained_directions(const PlaneRegistration& registration) {
   const Eigen::SelfAdjointEigenSolver<Matrix6d> eigen(registration.cost.hessian);
   return static_cast<int>((eigen.eigenvalues().array() > 1e-6 * eigen.eigenvalues()[5]).count());
 }
@@ -72,7 +72,7 @@ TEST(PlaneRegistration, GatesFollowTheNoiseOfTheSensor) {
 TEST(PlaneRegistration, AWallLeavesThreeDirectionsFree) {
   for (const double noise : {0.0, 0.002}) {
     const PlaneRegistration wall = register_at_rest({kAhead}, noise);
-    EXPECT_EQ(held_directions(wall), 3);
+    EXPECT_EQ(constrained_directions(wall), 3);
     if (noise > 0) continue;
     EXPECT_TRUE(free_to(wall, twist({1, 0, 0}, {0, 0, 0})));
     EXPECT_TRUE(free_to(wall, twist({0, 1, 0}, {0, 0, 0})));
@@ -84,15 +84,15 @@ TEST(PlaneRegistration, AWallLeavesThreeDirectionsFree) {
 TEST(PlaneRegistration, TwoPlanesLeaveTheirLineFree) {
   for (const double noise : {0.0, 0.002}) {
     const PlaneRegistration edge = register_at_rest({kAhead, kRight}, noise);
-    EXPECT_EQ(held_directions(edge), 5);
+    EXPECT_EQ(constrained_directions(edge), 5);
     if (noise > 0) continue;
     EXPECT_TRUE(free_to(edge, twist({0, 1, 0}, {0, 0, 0})));
   }
 }
 
 TEST(PlaneRegistration, ThreePlanesHoldEverything) {
-  EXPECT_EQ(held_directions(register_at_rest(kCorner, 0.0)), 6);
-  EXPECT_EQ(held_directions(register_at_rest(kCorner, 0.002)), 6);
+  EXPECT_EQ(constrained_directions(register_at_rest(kCorner, 0.0)), 6);
+  EXPECT_EQ(constrained_directions(register_at_rest(kCorner, 0.002)), 6);
 }
 
 TEST(PlaneRegistration, MotionInACornerIsFound) {

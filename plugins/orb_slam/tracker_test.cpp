@@ -121,7 +121,7 @@ TEST_F(TrackerTest, WithoutDepthItWaits) {
   expect_at(step(pose_at({0.52, 0, 0})), pose_at({0.02, 0, 0}));
 }
 
-TEST_F(TrackerTest, APlainCornerIsHeldByDepth) {
+TEST_F(TrackerTest, DepthGivesThePoseInAPlainCorner) {
   for (int i = 0; i < 40; ++i) {
     SCOPED_TRACE(i);
     const double t = i / 39.0;

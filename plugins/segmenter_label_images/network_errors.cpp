@@ -85,8 +85,8 @@ cv::Mat NetworkErrors::apply(const cv::Mat& labels, std::uint32_t frame,
 }
 
 void NetworkErrors::degrade(cv::Mat& mask, const cv::Rect& box, cv::RNG& random) const {
-  const int legs = cvRound(options_.missing_lower_part * box.height);
-  if (legs > 0) mask.rowRange(box.br().y - legs, mask.rows).setTo(0);
+  const int missing = cvRound(options_.missing_lower_part * box.height);
+  if (missing > 0) mask.rowRange(box.br().y - missing, mask.rows).setTo(0);
   for (int i = 0; i < options_.holes; ++i) {
     const cv::Point centre(random.uniform(box.x, box.br().x), random.uniform(box.y, box.br().y));
     cv::circle(mask, centre, std::max(1, box.width / 14), 0, cv::FILLED);

@@ -346,7 +346,7 @@ def fold_image_pooling(nodes, constants):
 
 
 def convert(source, target, size=None, opset=11, skip_padding=False, outputs=None, comment=''):
-    """Makes the ONNX file `target` of the TensorFlow Lite file `source`. Throws ValueError when it is
+    """Makes the ONNX file `target` of the TensorFlow Lite file `source`. Raises ValueError when it is
     damaged or of a kind that cannot be converted; OSError."""
     try:
         conversion = Conversion(Model(source), size, opset, skip_padding)

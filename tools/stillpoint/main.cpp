@@ -133,15 +133,15 @@ int run_and_say_why_not(int argc, char** argv) {
   }
 }
 
-}  // namespace
-
 // A daemon may start the program without standard streams. The first file that it opens would take
 // their place, and get what is meant for them.
-static void open_closed_streams() {
+void open_closed_streams() {
   for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
     if (::fcntl(stream, F_GETFD) < 0 && errno == EBADF)
       if (::open("/dev/null", O_RDWR) < 0) std::_Exit(static_cast<int>(Fault::kStage));
 }
+
+}  // namespace
 
 int main(int argc, char** argv) {
   open_closed_streams();

@@ -87,11 +87,11 @@ bool record(const fs::path& program, const Sequence& sequence, const std::string
     throw Error(Fault::kStage, "simulating it failed: " + failure_text(console, end),
                 "sequence '" + sequence.name + "'");
   }
-  remove_folder(console);
   write_text(part / kDescription, description);
   std::error_code error;
   fs::rename(part, folder, error);
   if (error) throw Error(Fault::kUsage, "cannot be made: " + error.message(), folder.string());
+  remove_folder(console);  // last: without it, `part` is not known for the study's own
   return true;
 }
 

@@ -16,7 +16,8 @@ namespace stillpoint::simulation {
 /// colour image.
 class RecordingWriter {
  public:
-  /// Makes the folder. Throws Error(kUsage) when it holds a recording or cannot be written to.
+  /// Makes the folder. Throws Error(kUsage) when it holds a recording, or a part of one, or cannot
+  /// be written to.
   explicit RecordingWriter(const std::filesystem::path& folder, bool labels = true);
 
   /// May be called by several threads, which share out the frames from the first on. The lists of

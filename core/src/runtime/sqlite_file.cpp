@@ -7,6 +7,23 @@
 #include <utility>
 
 namespace stillpoint {
+namespace {
+
+// As a URI for which SQLite neither reads nor makes other files beside it: no journal, no log.
+std::string immutable(const std::filesystem::path& file) {
+  constexpr std::string_view kDigits = "0123456789ABCDEF";
+  std::string uri = "file://";
+  for (const char c : file.string()) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (std::isalnum(byte) || c == '/' || c == '.' || c == '-' || c == '_')
+      uri += c;
+    else
+      uri += {'%', kDigits[byte / 16], kDigits[byte % 16]};
+  }
+  return uri + "?immutable=1";
+}
+
+}  // namespace
 
 SqliteStatement::SqliteStatement(sqlite3_stmt* statement)
     : statement_(statement, &sqlite3_finalize) {}
@@ -74,24 +91,6 @@ std::span<const std::byte> SqliteStatement::bytes(int column) const {
   const auto* first = static_cast<const std::byte*>(sqlite3_column_blob(statement_.get(), column));
   return {first, static_cast<std::size_t>(sqlite3_column_bytes(statement_.get(), column))};
 }
-
-namespace {
-
-// As a URI for which SQLite neither reads nor makes other files beside it: no journal, no log.
-std::string immutable(const std::filesystem::path& file) {
-  constexpr std::string_view kDigits = "0123456789ABCDEF";
-  std::string uri = "file://";
-  for (const char c : file.string()) {
-    const auto byte = static_cast<unsigned char>(c);
-    if (std::isalnum(byte) || c == '/' || c == '.' || c == '-' || c == '_')
-      uri += c;
-    else
-      uri += {'%', kDigits[byte / 16], kDigits[byte % 16]};
-  }
-  return uri + "?immutable=1";
-}
-
-}  // namespace
 
 SqliteFile::SqliteFile(const std::filesystem::path& file, Mode mode)
     : database_(nullptr, &sqlite3_close) {

@@ -47,7 +47,7 @@ const USES = ['unmatched', 'inlier', 'outlier', 'moving'];
 function frame(r) {
   const f = {index: r.u32(), time: r.f64(), state: STATES[r.u8()]};
   const flags = r.u8();
-  Object.assign(f, {keyframe: !!(flags & 1), byDepth: !!(flags & 2), poor: !!(flags & 4)});
+  f.keyframe = !!(flags & 1);
   f.reference = r.u32();
   f.inReference = r.pose();
   f.inWorld = r.pose();

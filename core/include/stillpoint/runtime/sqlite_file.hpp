@@ -49,11 +49,13 @@ class SqliteStatement {
   int bound_ = 0;
 };
 
+/// Functions throw SqliteFault.
 class SqliteFile {
  public:
   enum class Mode { kRead, kCreate };
 
-  /// kCreate replaces what is there.
+  /// kRead neither reads nor makes other files beside this one, such as journals. kCreate replaces
+  /// what is there.
   SqliteFile(const std::filesystem::path& file, Mode mode);
 
   void execute(const std::string& sql);
