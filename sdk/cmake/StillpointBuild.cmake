@@ -4,7 +4,8 @@ include(StillpointPlugin)
 # Warnings for a target. Designated initialisers may leave out fields that have defaults; -Wrestrict
 # is wrong about std::string in g++ 12 (GCC bug 105651), and so are three more when headers are
 # precompiled. A unity build includes source files, whose unnamed namespaces g++ then takes for a
-# header's. The preset `dev` has neither.
+# header's. The preset `dev` has neither. g++ marks all that is precompiled anew whenever it looks for
+# memory that it can free: it takes a tenth less time, and a fifth more memory, when it does so later.
 function(stillpoint_compile_options target)
   set(strictness)
   if(STILLPOINT_WARNINGS_AS_ERRORS)
@@ -22,7 +23,7 @@ function(stillpoint_compile_options target)
   endif()
   target_compile_options(${target} PRIVATE
     -Wall -Wextra -Wno-missing-field-initializers -Wno-restrict -Wshadow -Wnon-virtual-dtor
-    -Woverloaded-virtual ${strictness})
+    -Woverloaded-virtual ${strictness} --param=ggc-min-heapsize=1000000)  # kB
 endfunction()
 
 # The headers of OpenCV 4.6 warn under C++20 (arithmetic between enums), hence SYSTEM.
