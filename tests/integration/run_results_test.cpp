@@ -185,6 +185,34 @@ TEST_F(RunIntoFolder, WhatTheRunReadsIsNotRemoved) {
   EXPECT_TRUE(fs::exists(map));
 }
 
+TEST_F(RunIntoFolder, ABagOfTheEarlierRunIsNotRemovedByTheRunThatReadsIt) {
+  const std::string recording = simulated_recording().string();
+  ASSERT_EQ(run("same", "orb_baseline",
+                {"--dataset", recording, "--set", "source.limit=2", "--with", "mcap"})
+                .exit_code,
+            0);
+  const std::string bag = (out() / "same/run.mcap").string();
+  for (const std::vector<std::string>& named :
+       {std::vector<std::string>{"--dataset", bag}, {"--set", "source.path=" + bag}}) {
+    const Outcome outcome = run("same", "orb_baseline", named);
+    EXPECT_EQ(outcome.exit_code, 2);
+    EXPECT_THAT(outcome.err, HasSubstr("run.mcap: is a result of the earlier run in the folder"));
+  }
+  EXPECT_TRUE(fs::exists(bag));
+}
+
+TEST_F(RunIntoFolder, TheSparseMapReplacesNoOtherResult) {
+  for (const char* result : {"trajectory.txt", "log.txt", "map/../summary.json"}) {
+    const Outcome outcome =
+        run("new", "orb_baseline",
+            {"--dataset", simulated_recording().string(), "--set", "source.limit=2", "--save-map",
+             (out() / "new" / result).string()});
+    EXPECT_EQ(outcome.exit_code, 2) << result;
+    EXPECT_THAT(outcome.err, HasSubstr("two results of the run have this name"));
+  }
+  EXPECT_FALSE(fs::exists(out() / "new/trajectory.txt"));
+}
+
 // A name outside the folder is for the newest run, whichever folder it has.
 TEST_F(RunIntoFolder, AFileElsewhereIsReplacedByTheRunThatNamesIt) {
   const std::string elsewhere = (out() / "latest.txt").string();

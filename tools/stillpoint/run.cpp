@@ -1,4 +1,6 @@
 // stillpoint run: a recording through a pipeline, and what comes out into a run folder.
+#include <yaml-cpp/yaml.h>
+
 #include <csignal>
 #include <cstdlib>
 #include <filesystem>
@@ -16,6 +18,7 @@
 #include "map_saver.hpp"
 #include "progress.hpp"
 #include "run_folder.hpp"
+#include "run_results.hpp"
 #include "run_table.hpp"
 #include "stillpoint/engine/engine.hpp"
 #include "stillpoint/engine/make_stages.hpp"
@@ -132,6 +135,15 @@ void warn_of_labels(const PipelineConfig& config, const RunFolder& folder) {
         "segmentation.interval means nothing with schedule 'wait': every frame is segmented");
 }
 
+/// Between what the run reads, what it writes elsewhere, and the files of its folder.
+void require_no_conflicts(const RunArguments& arguments, const PipelineConfig& config,
+                          const RunFolder& folder) {
+  if (!arguments.load_map.empty()) folder.require_no_input_in_the_way(arguments.load_map);
+  for (const auto& option : YAML::Load(config.effective_yaml)["source"])
+    if (option.second.IsScalar()) folder.require_no_input_in_the_way(option.second.Scalar());
+  if (!arguments.save_map.empty()) folder.require_no_result_in_place_of(arguments.save_map);
+}
+
 /// Gives the signal that has stopped it, or 0.
 int run(const RunArguments& arguments) {
   std::optional<LateCalls> loading(watch_loading());
@@ -147,8 +159,7 @@ int run(const RunArguments& arguments) {
   RunFolder folder(
       arguments.output.empty() ? fs::path("out") / config.file.stem() : arguments.output,
       config.effective_yaml, console);
-  for (const fs::path& input : {arguments.load_map, request.dataset})
-    if (!input.empty()) folder.require_no_input_in_the_way(input);
+  require_no_conflicts(arguments, config, folder);
   folder.log(LogLevel::kInfo, "stillpoint " STILLPOINT_VERSION ", " + config.file.string());
   folder.log(LogLevel::kInfo,
              "by " + origin_text(study::origin_of(
@@ -167,7 +178,7 @@ int run(const RunArguments& arguments) {
         {{std::make_shared<Progress>(console, in_source(stages, &Source::size)), "progress"}});
   stages.known_map = std::move(known_map);
   stages.localise_only = arguments.localise_only;
-  stages.map_file = arguments.save_map.empty() ? folder.path() / "sparse.map" : arguments.save_map;
+  stages.map_file = arguments.save_map.empty() ? folder.path() / kRunMap : arguments.save_map;
   if (saver) stages.outputs.push_back({{std::move(saver), "map saver"}});
   bool complete = false;
   int signal = 0;

@@ -158,6 +158,18 @@ void RunFolder::require_no_input_in_the_way(const fs::path& input) const {
                   input.string(), "choose another folder with -o, or move it");
 }
 
+void RunFolder::require_no_result_in_place_of(const fs::path& map) const {
+  std::vector<fs::path> results = fixed_results(path_);
+  std::erase(results, path_ / kRunMap);
+  results.push_back(path_ / kRunLog);
+  for (const fs::path& file : named_files_) results.push_back(path_ / file);
+  const fs::path place = fs::weakly_canonical(map);
+  for (const fs::path& result : results)
+    if (fs::weakly_canonical(result) == place)
+      throw Error(Fault::kUsage, "two results of the run have this name", map.string(),
+                  "choose another one for the map");
+}
+
 std::vector<std::string> RunFolder::contents() const {
   std::vector<std::string> names;
   for (const fs::directory_entry& entry : fs::directory_iterator(path_))

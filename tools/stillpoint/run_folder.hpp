@@ -45,6 +45,8 @@ class RunFolder {
   void list_results(const std::vector<std::filesystem::path>& files_of_map) const;
   /// Throws Error(kUsage) when begin() would remove this file, which the run reads.
   void require_no_input_in_the_way(const std::filesystem::path& input) const;
+  /// Throws Error(kUsage) when the sparse map would replace another result of the run.
+  void require_no_result_in_place_of(const std::filesystem::path& map) const;
 
   const std::filesystem::path& path() const { return path_; }
   /// Into log.txt; warnings and errors also to the console. May be called from any thread.

@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
 
 constexpr const char* kResults[] = {kRunPipeline,  "trajectory.txt", "keyframes.txt",
                                     "timings.csv", "frames.csv",     "summary.json",
-                                    "run.mcap",    "sparse.map",     kWrittenFiles};
+                                    "run.mcap",    kRunMap,          kWrittenFiles};
 constexpr std::uintmax_t kLargestPipeline = 16 << 20;  // bytes
 constexpr const char* kMaps[] = {"map.ot", "map.bt", "map.ply", "map.pgm", "map.yaml", "cloud.ply"};
 

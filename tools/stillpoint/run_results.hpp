@@ -10,6 +10,7 @@ namespace stillpoint {
 
 inline constexpr const char* kRunLog = "log.txt";
 inline constexpr const char* kRunPipeline = "pipeline.yaml";
+inline constexpr const char* kRunMap = "sparse.map";  // where the live view saves it
 
 /// What the outputs of a pipeline write under names that it gives them, as paths from the run
 /// folder.
