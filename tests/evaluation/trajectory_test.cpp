@@ -79,6 +79,23 @@ TEST(Trajectory, NanosecondsOfEurocAreNoSeconds) {
   EXPECT_NEAR(read_trajectory(euroc.path()).duration(), 0.00499968, 1e-6);
 }
 
+TEST(Trajectory, NanosecondsSinceTheClockBeganAreNoSeconds) {
+  const TemporaryFile file("boot.csv",
+                           "#timestamp [ns], p_RS_R_x [m], …\n"
+                           "5000000000,1,2,3,0.70710678,0,0,0.70710678\n"
+                           "9900000000,1,2,3,0.70710678,0,0,0.70710678\n"
+                           "11500000000,1,2,3,0.70710678,0,0,0.70710678\n");
+  const Trajectory t = read_trajectory(file.path());
+  EXPECT_NEAR(t.start(), 5.0, 1e-9);
+  EXPECT_NEAR(t.duration(), 6.5, 1e-9);
+  EXPECT_TRUE((t.poses[0].world_from_camera.linear() * Eigen::Vector3d::UnitX())
+                  .isApprox(Eigen::Vector3d::UnitY(), 1e-7));
+  const TemporaryFile seconds("seconds.csv",
+                              "5,1,2,3,0,0,0.70710678,0.70710678\n"
+                              "6,1,2,3,0,0,0.70710678,0.70710678\n");
+  EXPECT_NEAR(read_trajectory(seconds.path()).start(), 5.0, 1e-9);
+}
+
 TEST(Trajectory, PipesAreNotWaitedFor) {
   const TemporaryFile file("pipe", "");
   std::filesystem::remove(file.path());

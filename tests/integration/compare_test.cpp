@@ -68,6 +68,36 @@ TEST_F(Compare, KittiIsComparedWithKitti) {
   EXPECT_NEAR(nlohmann::json::parse(outcome.out)[0]["aligned"]["position_m"]["max"], 0.02, 1e-9);
 }
 
+// A monocular system knows no scale.
+TEST_F(Compare, WithSim3TheRelativeErrorIsInMetresOfTheReference) {
+  const std::string truth = write("truth.txt", "tum", 0.0);
+  std::string small;
+  for (int i = 0; i < 31; ++i) {
+    char line[200];
+    std::snprintf(line, sizeof(line), "%.6f %.6f 0 %.6f 0 0 0 1\n", 1.5e9 + 0.1 * i, 0.01 * i,
+                  0.0002 * i * i);
+    small += line;
+  }
+  const std::string run = folder_.write("small.txt", small).string();
+  const Outcome outcome = call({"compare", "--reference", truth, run, "--align", "sim3", "--json"});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  const nlohmann::json json = nlohmann::json::parse(outcome.out)[0];
+  EXPECT_NEAR(json["aligned"]["scale"], 10.0, 1e-3);
+  EXPECT_LT(json["rpe"]["translation_m"]["rmse"], 0.001) << outcome.out;
+}
+
+TEST_F(Compare, TheAlignedTrajectoryReplacesNoneThatIsRead) {
+  const std::string truth = write("truth.txt", "tum", 0.0), run = write("run.txt", "tum", 0.02);
+  for (const std::string& file : {truth, run}) {
+    const std::string before = text_of(file);
+    const Outcome outcome =
+        call({"evaluate", "--reference", truth, "--estimate", run, "--aligned", file});
+    EXPECT_EQ(outcome.exit_code, 2);
+    EXPECT_THAT(outcome.err, HasSubstr("is read by this command, and would be replaced"));
+    EXPECT_EQ(text_of(file), before);
+  }
+}
+
 TEST_F(Compare, WhatCannotBeComparedIsNamed) {
   const std::string truth = write("truth.txt", "tum", 0.0),
                     kitti = write("kitti.txt", "kitti", 0.0);

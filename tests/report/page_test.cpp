@@ -167,7 +167,8 @@ TEST(ReportProgram, OnAFullDiskTheEarlierReportStays) {
   SKIP_WITHOUT_PAGE();
   const TemporaryFolder folder;
   folder.write("page.html", "of yesterday");
-  folder.write("page.tex", "of yesterday");
+  const std::string tables = "% Needs \\usepackage{booktabs}.\n% of yesterday\n";
+  folder.write("page.tex", tables);
   const std::string run = finished_run().string();  // made while there is room
   {
     const FullDisk full(65536);  // bytes
@@ -176,8 +177,28 @@ TEST(ReportProgram, OnAFullDiskTheEarlierReportStays) {
     EXPECT_THAT(outcome.err, HasSubstr("page.html: cannot write: "));
   }
   EXPECT_EQ(text_of(folder.path() / "page.html"), "of yesterday");
-  EXPECT_EQ(text_of(folder.path() / "page.tex"), "of yesterday");
+  EXPECT_EQ(text_of(folder.path() / "page.tex"), tables);
   EXPECT_EQ(std::distance(fs::directory_iterator(folder.path()), fs::directory_iterator()), 2);
+}
+
+// Such as the results.csv of a study and the frames.csv of a run.
+TEST(ReportProgram, FilesBesideThePageThatAreNoTablesOfAReportStay) {
+  SKIP_WITHOUT_PAGE();
+  const TemporaryFolder folder;
+  for (const char* ending : {".csv", ".tex"}) {
+    const fs::path file = folder.write(std::string("results") + ending, "of the study");
+    const Outcome outcome =
+        call({"report", finished_run().string(), "-o", "results.html"}, {.folder = folder.path()});
+    EXPECT_EQ(outcome.exit_code, 2);
+    EXPECT_THAT(outcome.err, HasSubstr("is no table of an earlier report, and would be replaced"));
+    EXPECT_EQ(text_of(file), "of the study");
+    fs::remove(file);
+  }
+  for (int time = 0; time < 2; ++time)
+    EXPECT_EQ(
+        call({"report", finished_run().string(), "-o", "results.html"}, {.folder = folder.path()})
+            .exit_code,
+        0);
 }
 
 TEST(ReportProgram, WhatIsNoRunIsNamed) {

@@ -32,7 +32,7 @@ TEST_F(Ablate, RunsTheMatrixOnceAndThenWhatIsMissing) {
               AllOf(HasSubstr("\ntiny,few,0,1,done,0,0.0"), HasSubstr("\ntiny,many,0,1,done,0,")));
   EXPECT_TRUE(fs::exists(out() / "runs/tiny/few/0/trajectory.txt"));
 
-  const Outcome second = ablate(kTiny);
+  const Outcome second = ablate(kTiny, {"-j", "2"});
   EXPECT_EQ(second.exit_code, 0);
   EXPECT_EQ(second.err, "2 of 2 runs are there already\n");
   EXPECT_EQ(text_of(out() / "results.csv"), csv);
@@ -180,6 +180,27 @@ TEST_F(Ablate, AFolderHoldsOneStudy) {
   EXPECT_THAT(damaged.err, HasSubstr("study.json: does not say whose folder this is; remove it"));
 }
 
+TEST_F(Ablate, FilesOfTheUserAreNoResults) {
+  for (const char* name : {"study.yaml", "results.md", "tables.tex"}) {
+    folder_.write("out/" + std::string(name), "of the user");
+    const Outcome refused = ablate(kShort);
+    EXPECT_EQ(refused.exit_code, 2);
+    EXPECT_THAT(refused.err, HasSubstr(std::string(name) +
+                                       ": is no file of an earlier study, and would be replaced"));
+    EXPECT_EQ(text_of(out() / name), "of the user");
+    fs::remove(out() / name);
+  }
+  EXPECT_TRUE(fs::is_empty(out()));
+}
+
+TEST_F(Ablate, TheCommandIsThatWhichRepeatsTheStudy) {
+  ASSERT_EQ(ablate(kShort, {"-j", "2"}).exit_code, 0);
+  const std::string command = "stillpoint ablate " + (folder_.path() / "study.yaml").string() +
+                              " -o " + out().string() + " -j 2";
+  for (const char* file : {"study.json", "results.md", "results.csv", "summary.csv", "tables.tex"})
+    EXPECT_THAT(text_of(out() / file), HasSubstr(command)) << file;
+}
+
 TEST_F(Ablate, AFolderIsOfOneProcessAtATime) {
   ASSERT_EQ(ablate(kShort).exit_code, 0);
   const FolderLock lock(out());
@@ -241,12 +262,25 @@ TEST_F(Ablate, PublishedFiguresStandBesideThoseOfTheRuns) {
               AllOf(HasSubstr("tiny,few,ate_sd_m,1,"), HasSubstr("tiny,few,track_ms,1,")));
 }
 
+constexpr const char* kLong =
+    "version: 1\n"
+    "sequences: [{name: s, scene: fr3_walking_xyz_empty, frames: 20}]\n"
+    "variants: [{name: v, pipeline: orb_baseline}]\n"
+    "repeats: 1000\n";
+
+TEST_F(Ablate, AKilledStudyHasAReport) {
+  folder_.write("study.yaml", kLong);
+  Program program({"ablate", (folder_.path() / "study.yaml").string(), "-o", out().string()});
+  ASSERT_TRUE(program.wait_for("[2/1000]"));
+  program.send(SIGKILL);
+  EXPECT_EQ(program.finish().signal, SIGKILL);
+  const Outcome outcome = call({"report", out().string()});
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_THAT(text_of(out() / "report.tex"), HasSubstr("of 1000 runs"));
+}
+
 TEST_F(Ablate, CtrlCKeepsWhatIsDone) {
-  folder_.write("study.yaml",
-                "version: 1\n"
-                "sequences: [{name: s, scene: fr3_walking_xyz_empty, frames: 20}]\n"
-                "variants: [{name: v, pipeline: orb_baseline}]\n"
-                "repeats: 1000\n");
+  folder_.write("study.yaml", kLong);
   Program program({"ablate", (folder_.path() / "study.yaml").string(), "-o", out().string()});
   ASSERT_TRUE(program.wait_for("[2/1000]"));
   program.send(SIGINT);

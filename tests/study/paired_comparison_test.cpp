@@ -1,5 +1,6 @@
 #include "study/paired_comparison.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <functional>
@@ -131,6 +132,16 @@ TEST_F(Comparison, AFailedRunIsWorseThanAnyOther) {
   EXPECT_EQ(failed.worse, 1u);
   EXPECT_EQ(failed.incomplete, 1u);
   EXPECT_NEAR(failed.effect, (10.0 - 5.0) / 15.0, 1e-12);
+}
+
+TEST_F(Comparison, TooFewRecordingsForADifferenceAreNamed) {
+  const auto better = [](std::size_t, int) { return result_with(0.05); };
+  EXPECT_EQ(recordings_note({compared(6, better)}), "");
+  EXPECT_EQ(recordings_note({compared(5, better)}),
+            "With 1 comparison, a difference on fewer than 6 recordings cannot be significant, "
+            "however large it is.");
+  const std::vector<PairedComparison> seven(7, compared(8, better));
+  EXPECT_THAT(recordings_note(seven), ::testing::HasSubstr("fewer than 9 recordings"));
 }
 
 TEST_F(Comparison, NeedsABaseline) {

@@ -68,7 +68,8 @@ TEST_F(Report, AsMarkdown) {
       "time. By coverage: recordings on which one of the two failed, covered less or lost its "
       "way, and so is the worse one. Effect: 1, the variant is always better; -1, always worse. "
       "p: Wilcoxon's signed-rank test of the ATE, two-sided; corrected for the number of "
-      "variants after Holm.\n"
+      "variants after Holm. With 1 comparison, a difference on fewer than 6 recordings cannot be "
+      "significant, however large it is.\n"
       "\n"
       "## Improvement of the ATE over plain (%)\n"
       "\n"
@@ -120,16 +121,16 @@ TEST_F(Report, AsCsv) {
       "moving_check_ms,map_check_ms,segmentation_wait_ms,segmentation_ms,propagate_ms,"
       "beside_wait_ms,decision_ms,track_ms,track_thread_ms,outputs_ms,map_insert_ms,"
       "map_refine_ms,map_correct_ms,loop_ms,loop_adjust_ms,dense_ms,"
-      "seconds,version,commit,machine,date,message\n"
+      "seconds,version,commit,machine,date,message,command\n"
       "walking,plain,0,7,done,0,0.5,,,,100,0,,,,,,," +
           kNoDetails +
           "2.5,1.2.3,0123456789ab,"
-          "\"a machine, 2 cores\",2026-01-30,\n"
+          "\"a machine, 2 cores\",2026-01-30,,stillpoint ablate demo\n"
           "walking,better,1,8,failed,3,,,,,,,,,,,,," +
           kNoDetails +
-          "0,,,,,\"cannot read 'a', \"\"b\"\"\"\n"
+          "0,,,,,\"cannot read 'a', \"\"b\"\"\",stillpoint ablate demo\n"
           "walking_empty,better,1,8,missing,,,,,,,,,,,,,," +
-          kNoDetails + ",,,,,\n");
+          kNoDetails + ",,,,,,stillpoint ablate demo\n");
 }
 
 TEST_F(Report, AVariantOfAStudyWithOneSequenceIsARow) {
@@ -185,6 +186,24 @@ TEST_F(Report, TheCoverageOfAllRunsIsSaid) {
   EXPECT_EQ(coverage_note(results, 0, 0), "");
   EXPECT_EQ(coverage_note(results, 0, 1), ", coverage 40.0–100.0 %");
   EXPECT_THAT(latex_report(results, "demo"), ::testing::HasSubstr("[40.0--100.0\\,\\%]"));
+}
+
+TEST_F(PublishedReport, WhatIsIncompleteIsSaidInEveryTableOfErrors) {
+  results_.results[2] = results_.results[3];  // both runs of `better` have failed
+  const std::string report = markdown_report(results_, "demo");
+  EXPECT_THAT(report, ::testing::ContainsRegex("walking +\\| better +\\| failed +\\| – "));
+  EXPECT_THAT(report,
+              ::testing::ContainsRegex("walking_empty +\\| better +\\| 0.0200 \\[1 of 2\\]"));
+  EXPECT_THAT(latex_report(results_, "demo"),
+              ::testing::HasSubstr("better & -- {\\scriptsize [failed]} & -- & -- & --"));
+  EXPECT_THAT(csv_summary(results_), ::testing::HasSubstr("walking,better,ate_m,0,2,0,,,,,,"));
+}
+
+TEST_F(Report, TheCoverageOfTheBaselineIsSaidBesideAnImprovementOverIt) {
+  for (const std::size_t run : {0, 1}) results_.results[run]->values[kCoverage] = 40.0;
+  EXPECT_THAT(markdown_report(results_, "demo"),
+              ::testing::HasSubstr("88.0, coverage 90.0 %, baseline 40.0 % [1 of 2]"));
+  EXPECT_THAT(latex_report(results_, "demo"), ::testing::HasSubstr("[baseline 40.0\\,\\%]"));
 }
 
 TEST_F(Report, TheBestOfASequenceCoversAsMuchAsTheOthers) {

@@ -6,6 +6,7 @@
 #include <cstring>
 #include <fstream>
 #include <functional>
+#include <optional>
 
 #include "evaluation/statistics.hpp"
 #include "stillpoint/error.hpp"
@@ -27,6 +28,7 @@ constexpr std::size_t kKittiColumns = 12;
 constexpr double kKittiInterval = 0.1;           // seconds
 constexpr double kFirstNanoseconds = 1e11;       // as seconds, in three thousand years
 constexpr double kFirstWholeNanoseconds = 1e10;  // with commas; as seconds, in three hundred years
+constexpr double kLongestStep = 1000.0;          // seconds between two poses
 constexpr double kNanosecond = 1e-9;             // seconds
 constexpr double kLeastOrthonormal = 1e-3;       // deviation of a rotation matrix
 
@@ -48,7 +50,8 @@ std::vector<std::string> split(const std::string& line) {
   return fields;
 }
 
-void for_each_line(const std::filesystem::path& file, const std::function<void(Line)>& handle) {
+/// Data lines, until `handle` gives false.
+void for_each_line(const std::filesystem::path& file, const std::function<bool(Line)>& handle) {
   if (!std::filesystem::exists(file))
     throw Error(Fault::kData, "no such file", file.string(), "check the path");
   if (!std::filesystem::is_regular_file(file))
@@ -62,7 +65,7 @@ void for_each_line(const std::filesystem::path& file, const std::function<void(L
     if (number > kMostLines) throw Error(Fault::kData, "too many lines for a trajectory", where);
     std::vector<std::string> fields = split(text.c_str());
     if (fields.empty() || fields.front().front() == '#') continue;
-    handle({where, std::move(fields), text.find(',') < std::strlen(text.c_str())});
+    if (!handle({where, std::move(fields), text.find(',') < std::strlen(text.c_str())})) return;
   }
   if (!stream.eof())
     throw Error(Fault::kData, "a line is too long, or cannot be read", file.string(), kPoseFormat);
@@ -87,14 +90,28 @@ std::vector<double> parse_numbers(const Line& line) {
   return numbers;
 }
 
-bool is_in_nanoseconds(const std::vector<double>& v, const Line& line) {
-  if (v.size() == kEurocColumns || std::abs(v[0]) > kFirstNanoseconds) return true;
-  const bool is_whole = line.fields[0].find_first_of(".eE") == std::string::npos;
-  return line.has_commas && is_whole && v[0] > kFirstWholeNanoseconds;
+bool is_whole_with_commas(const Line& line) {
+  return line.has_commas && line.fields[0].find_first_of(".eE") == std::string::npos;
 }
 
-StampedPose pose_with_quaternion(const std::vector<double>& v, const Line& line) {
-  const bool nanoseconds = is_in_nanoseconds(v, line);
+/// By the first two lines: by what they hold, by their times, or by the step between them, which
+/// would be longer than any camera waits.
+bool is_in_nanoseconds(const std::filesystem::path& file) {
+  bool nanoseconds = false;
+  std::optional<double> first;
+  for_each_line(file, [&](const Line& line) {
+    const double time = parse_number(line.fields.front(), line.where);
+    nanoseconds = line.fields.size() == kEurocColumns || std::abs(time) > kFirstNanoseconds ||
+                  (is_whole_with_commas(line) && time > kFirstWholeNanoseconds);
+    if (first && is_whole_with_commas(line)) nanoseconds |= time - *first > kLongestStep;
+    const bool is_known = nanoseconds || first;
+    first = time;
+    return !is_known;
+  });
+  return nanoseconds;
+}
+
+StampedPose pose_with_quaternion(const std::vector<double>& v, const Line& line, bool nanoseconds) {
   const bool w_first = nanoseconds && line.has_commas;
   const Eigen::Quaterniond rotation = w_first ? Eigen::Quaterniond(v[4], v[5], v[6], v[7])
                                               : Eigen::Quaterniond(v[7], v[4], v[5], v[6]);
@@ -122,14 +139,14 @@ StampedPose pose_of_matrix(const std::vector<double>& v, int index, const Line& 
 }
 
 /// `index` of the pose in its file.
-StampedPose parse_pose(const Line& line, int index) {
+StampedPose parse_pose(const Line& line, int index, bool nanoseconds) {
   const std::size_t columns = line.fields.size();
   if (columns != kTumColumns && columns != kKittiColumns && columns != kEurocColumns)
     throw Error(Fault::kData, "expected 8 columns, found " + std::to_string(columns), line.where,
                 kPoseFormat);
   const std::vector<double> numbers = parse_numbers(line);
   StampedPose pose = columns == kKittiColumns ? pose_of_matrix(numbers, index, line)
-                                              : pose_with_quaternion(numbers, line);
+                                              : pose_with_quaternion(numbers, line, nanoseconds);
   if (pose.world_from_camera.translation().norm() > kFarthest)
     throw Error(Fault::kData, "the position is more than 10,000 km away", line.where,
                 "positions are in metres");
@@ -152,8 +169,9 @@ Trajectory read_trajectory(const std::filesystem::path& file) {
   Trajectory trajectory{file.string(), {}, 0};
   std::vector<StampedPose>& poses = trajectory.poses;
   std::size_t columns = 0;
+  const bool nanoseconds = is_in_nanoseconds(file);
   for_each_line(file, [&](const Line& line) {
-    const StampedPose pose = parse_pose(line, static_cast<int>(poses.size()));
+    const StampedPose pose = parse_pose(line, static_cast<int>(poses.size()), nanoseconds);
     if (columns == 0) columns = line.fields.size();
     if (line.fields.size() != columns)
       throw Error(Fault::kData,
@@ -167,6 +185,7 @@ Trajectory read_trajectory(const std::filesystem::path& file) {
       ++trajectory.repeated_stamps;
     }
     poses.push_back(pose);
+    return true;
   });
   check_not_empty(poses.empty(), file, kPoseFormat);
   return trajectory;
@@ -207,6 +226,7 @@ std::vector<double> read_stamps(const std::filesystem::path& file) {
     const double time = parse_number(line.fields.front(), line.where);
     if (!stamps.empty()) check_order(stamps.back(), time, line.where);
     stamps.push_back(time);
+    return true;
   });
   check_not_empty(stamps.empty(), file, "a line begins with a time in seconds");
   return stamps;

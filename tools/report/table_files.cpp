@@ -8,6 +8,9 @@
 namespace stillpoint::report {
 namespace {
 
+constexpr const char* kLatexBegin = "% Needs \\usepackage{booktabs}.\n";
+constexpr const char* kCsvBegin = "table,row,column,value,text,best,origin\n";
+
 using study::csv_field;
 using study::latex_text;
 using study::Table;
@@ -44,8 +47,12 @@ std::string name_of(const std::vector<TableCell>& row, std::size_t names) {
 
 }  // namespace
 
+bool is_table_file(const std::string& text) {
+  return text.starts_with(kLatexBegin) || text.starts_with(kCsvBegin);
+}
+
 std::string latex_tables(std::span<const Table> tables, Origins origins) {
-  std::string text = "% Needs \\usepackage{booktabs}.\n";
+  std::string text = kLatexBegin;
   for (std::string origin : origins) {
     std::ranges::replace(origin, '\n', ' ');
     text += "% " + origin + "\n";
@@ -55,7 +62,7 @@ std::string latex_tables(std::span<const Table> tables, Origins origins) {
 }
 
 std::string csv_tables(std::span<const Table> tables, Origins origins) {
-  std::string text = "table,row,column,value,text,best,origin\n";
+  std::string text = kCsvBegin;
   std::string origin;
   for (const std::string& line : origins) origin += (origin.empty() ? "" : " | ") + line;
   for (const Table& table : tables)

@@ -18,4 +18,7 @@ std::string latex_tables(std::span<const study::Table> tables, Origins origins);
 /// Columns: table, row, column, value, text, best, origin. A line per cell, quoted as in RFC 4180.
 std::string csv_tables(std::span<const study::Table> tables, Origins origins);
 
+/// Whether the text is what one of these two has given.
+bool is_table_file(const std::string& text);
+
 }  // namespace stillpoint::report

@@ -12,6 +12,7 @@
 #include "evaluation/format.hpp"
 #include "evaluation/trajectory.hpp"
 #include "interrupt.hpp"
+#include "shell_word.hpp"
 #include "stillpoint/engine/folder_lock.hpp"
 #include "stillpoint/error.hpp"
 #include "stillpoint/support/did_you_mean.hpp"
@@ -51,11 +52,20 @@ struct AblateArguments {
   bool list = false;
 };
 
+/// With all that results and times depend on.
+std::string command_of(const AblateArguments& arguments) {
+  std::string command = "stillpoint ablate " + shell_word(arguments.study);
+  if (!arguments.output.empty()) command += " -o " + shell_word(arguments.output.string());
+  if (arguments.executor != "local") return command + " --executor " + arguments.executor;
+  if (arguments.jobs > 1) command += " -j " + std::to_string(arguments.jobs);
+  return command;
+}
+
 /// One call of `stillpoint ablate`.
 class Ablation {
  public:
   explicit Ablation(const AblateArguments& arguments)
-      : command_("stillpoint ablate " + arguments.study),
+      : command_(command_of(arguments)),
         file_(load_study(arguments.study, registry_)),
         output_(fs::absolute(arguments.output.empty() ? fs::path("out") / file_.file.stem()
                                                       : arguments.output)
@@ -96,6 +106,7 @@ class Ablation {
     for (std::size_t i = 0; i < plan.size(); ++i) results.results[i] = valid_result(plan[i]);
     say_what_is_there(results);
     if (!again_) refuse_to_replace(plan);
+    write_text(output_ / "study.yaml", file_.effective_yaml);  // for reports before the end, too
     const CellFinished finished = [this](const Cell& cell, const CellResult& result,
                                          const StudyProgress& progress) {
       report(cell, result, progress);
@@ -225,7 +236,6 @@ class Ablation {
 
   void write(const StudyResults& results) const {
     const std::string tables = markdown_report(results, file_.file.stem().string());
-    write_text(output_ / "study.yaml", file_.effective_yaml);
     write_text(output_ / "results.csv", csv_report(results));
     write_text(output_ / "summary.csv", csv_summary(results));
     write_text(output_ / "tables.tex", latex_report(results, file_.file.stem().string()));

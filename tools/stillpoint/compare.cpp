@@ -67,6 +67,14 @@ std::vector<NamedFile> parse_runs(const std::vector<std::string>& texts) {
   return runs;
 }
 
+/// The estimate at the scale of the reference: a relative error is in metres of the reference.
+evaluation::Trajectory scaled(const evaluation::Evaluation& evaluation) {
+  evaluation::Trajectory trajectory = evaluation.estimate;
+  for (StampedPose& pose : trajectory.poses)
+    pose.world_from_camera.translation() *= evaluation.similarity.reference_from_estimate.scale;
+  return trajectory;
+}
+
 evaluation::Comparison compare(const CompareArguments& arguments) {
   using namespace evaluation;
   EvaluationOptions options = arguments.options;
@@ -77,6 +85,8 @@ evaluation::Comparison compare(const CompareArguments& arguments) {
   const Trajectory reference = read_trajectory(in_folder(arguments.reference, "groundtruth.txt"));
   for (const NamedFile& run : parse_runs(arguments.runs)) {
     Contestant one{run.name, evaluate(reference, read_trajectory(run.file), {}, options), {}};
+    if (comparison.alignment == AlignmentKind::kSimilarity)
+      one.evaluation.relative = evaluate(reference, scaled(one.evaluation), {}, options).relative;
     one.error = absolute_error(one.evaluation.reference, one.evaluation.estimate,
                                one.evaluation.pairs, comparison.alignment);
     comparison.contestants.push_back(std::move(one));

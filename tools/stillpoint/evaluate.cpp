@@ -23,11 +23,21 @@ struct EvaluateArguments {
   bool json = false;
 };
 
+/// Throws Error(kUsage) where the aligned trajectory would replace what it is made from.
+void require_no_input(const EvaluateArguments& arguments) {
+  std::error_code none;
+  for (const std::string& input : {arguments.reference, arguments.estimate, arguments.frames})
+    if (std::filesystem::equivalent(arguments.aligned, input, none))
+      throw Error(Fault::kUsage, "is read by this command, and would be replaced",
+                  arguments.aligned, "choose another file for --aligned");
+}
+
 void print_evaluation(const EvaluateArguments& arguments) {
   using namespace evaluation;
   EvaluationOptions options = arguments.options;
   require_numbers({options.max_difference, options.offset, options.delta.length});
   if (!arguments.plot.empty()) figures::format_of(arguments.plot);  // before the work
+  require_no_input(arguments);
   options.delta.unit = delta_unit_of(arguments.delta_unit);
   Trajectory reference = read_trajectory(arguments.reference);
   Trajectory estimate = read_trajectory(arguments.estimate);

@@ -21,6 +21,7 @@
 #include <vector>
 
 #include "commands.hpp"
+#include "shell_word.hpp"
 #include "stillpoint/engine/install_layout.hpp"
 #include "stillpoint/support/atomic_file.hpp"
 #include "stillpoint/support/contract_list.hpp"
@@ -132,16 +133,6 @@ std::string camel_case(const std::string& name) {
 std::string minor_version() {
   const std::string version = STILLPOINT_VERSION;
   return version.substr(0, version.rfind('.'));
-}
-
-/// For a shell.
-std::string shell_word(const std::string& text) {
-  constexpr std::string_view kPlain =
-      "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-./+,:=@";
-  if (!text.empty() && text.find_first_not_of(kPlain) == std::string::npos) return text;
-  std::string result = "'";
-  for (const char letter : text) result += letter == '\'' ? "'\\''" : std::string(1, letter);
-  return result + "'";
 }
 
 /// A recording to try it with, and a run. `in` precedes every path.

@@ -75,6 +75,14 @@ report::ReportData read(const ReportArguments& arguments) {
   return data;
 }
 
+/// Throws Error(kUsage) where the file is none of an earlier report: results of the study, or of
+/// the user.
+void require_own(const fs::path& file) {
+  if (fs::exists(file) && !report::is_table_file(study::read_text(file)))
+    throw Error(Fault::kUsage, "is no table of an earlier report, and would be replaced",
+                file.string(), "give the page another name with -o");
+}
+
 void write_report(const ReportArguments& arguments) {
   using study::write_text;
   const bool alone = arguments.folders.size() == 1;
@@ -84,6 +92,11 @@ void write_report(const ReportArguments& arguments) {
   if (page.extension() != ".html")  // or its tables could take its place
     throw Error(Fault::kUsage, "a page is an .html file", page.string(),
                 "name it with -o FILE.html");
+  const auto beside = [&](const char* ending) {
+    return fs::absolute(page).replace_extension(ending);
+  };
+  require_own(beside(".csv"));
+  require_own(beside(".tex"));
   const report::ReportData data = read(arguments);
   if (!arguments.figures.empty())
     std::cout << report::write_figures(data, arguments.figures) << " figures in "
@@ -92,9 +105,6 @@ void write_report(const ReportArguments& arguments) {
       study::origin_of({.version = STILLPOINT_VERSION, .commit = built_from_commit()});
   const std::string html = filled_page(page_file(), data, fs::absolute(page).parent_path(),
                                        "Stillpoint " STILLPOINT_VERSION ", " + here.date);
-  const auto beside = [&](const char* ending) {
-    return fs::absolute(page).replace_extension(ending);
-  };
   write_text(fs::absolute(page), html);
   std::vector<std::string> origins = data.origins;
   if (!data.command.empty()) origins.insert(origins.begin(), data.command);

@@ -35,6 +35,18 @@ bool is_same_study(const fs::path& first, const fs::path& second) {
 
 }  // namespace
 
+namespace {
+
+/// Throws Error(kUsage) where a file has the name of a result and no study has claimed the folder.
+void require_no_results(const fs::path& folder) {
+  for (const char* name : kResultFiles)
+    if (fs::exists(folder / name))
+      throw Error(Fault::kUsage, "is no file of an earlier study, and would be replaced",
+                  (folder / name).string(), "choose another folder with -o, or move it");
+}
+
+}  // namespace
+
 void claim_folder(const fs::path& folder, const fs::path& study_file, const std::string& command) {
   const fs::path claim = claim_of(folder);
   const fs::path file = fs::absolute(study_file).lexically_normal();
@@ -44,6 +56,7 @@ void claim_folder(const fs::path& folder, const fs::path& study_file, const std:
                 "holds the study '" + owner.stem().string() + "' (" + owner.string() + "), not '" +
                     file.stem().string() + "' (" + file.string() + ")",
                 folder.string(), "choose another folder with -o");
+  if (owner.empty()) require_no_results(folder);
   const Json json = {
       {"study", file.stem().string()}, {"file", file.string()}, {"command", command}};
   write_text(claim, json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");

@@ -27,7 +27,8 @@ Table comparison_table(const Study& study, const std::vector<PairedComparison>& 
               .note = kComparisonNote,
               .header = {"variant", "recordings", "better", "worse", "by coverage", "ATE ratio",
                          "CPU ratio", "effect", "p", "corrected p"}};
-  if (const std::string note = dependence_note(study); !note.empty()) table.note += " " + note;
+  for (const std::string& note : {recordings_note(comparisons), dependence_note(study)})
+    if (!note.empty()) table.note += " " + note;
   for (const PairedComparison& one : comparisons) {
     table.rows.push_back({{.text = study.variants[one.variant].name},
                           count_cell(one.recordings),

@@ -12,7 +12,8 @@ const char* state_of(const std::optional<CellResult>& result) {
   return result->failed() ? "failed" : "done";
 }
 
-std::string row(const Study& study, const Cell& cell, const std::optional<CellResult>& result) {
+std::string row(const Study& study, const Cell& cell, const std::optional<CellResult>& result,
+                const std::string& command) {
   std::string text = study.sequences[cell.sequence].name + "," + study.variants[cell.variant].name +
                      "," + std::to_string(cell.repeat) + "," +
                      std::to_string(study.seed + cell.repeat) + "," + state_of(result) + ",";
@@ -23,7 +24,7 @@ std::string row(const Study& study, const Cell& cell, const std::optional<CellRe
   if (result) text += csv_number(known.seconds);
   const Origin& origin = known.origin;
   for (const std::string& field :
-       {origin.version, origin.commit, origin.machine, origin.date, known.message})
+       {origin.version, origin.commit, origin.machine, origin.date, known.message, command})
     text += "," + csv_field(field);
   return text + "\n";
 }
@@ -33,9 +34,9 @@ std::string row(const Study& study, const Cell& cell, const std::optional<CellRe
 std::string csv_report(const StudyResults& results) {
   std::string text = "sequence,variant,repeat,seed,state,exit_code";
   for (const Metric& metric : metrics()) text += std::string(",") + metric.key;
-  text += ",seconds,version,commit,machine,date,message\n";
+  text += ",seconds,version,commit,machine,date,message,command\n";
   for (std::size_t i = 0; i < results.cells.size(); ++i)
-    text += row(results.study, results.cells[i], results.results[i]);
+    text += row(results.study, results.cells[i], results.results[i], results.command);
   return text;
 }
 
@@ -52,13 +53,14 @@ std::string csv_summary(const StudyResults& results) {
       const auto [failed, missing] = results.without_result(sequence, variant);
       for (std::size_t metric = 0; metric < kMetricCount; ++metric) {
         const auto spread = results.spread(sequence, variant, static_cast<MetricId>(metric));
-        if (!spread) continue;
+        const bool without_any = metric == kAte && failed + missing > 0;  // says so
+        if (!spread && !without_any) continue;
         text += study.sequences[sequence].name + "," + study.variants[variant].name + "," +
-                metrics()[metric].key + "," + std::to_string(spread->count) + "," +
+                metrics()[metric].key + "," + std::to_string(spread ? spread->count : 0) + "," +
                 std::to_string(failed) + "," + std::to_string(missing);
-        for (const double value : {spread->median, spread->first_quartile, spread->third_quartile,
-                                   spread->min, spread->max})
-          text += "," + csv_number(value);
+        for (const auto figure : {&Spread::median, &Spread::first_quartile, &Spread::third_quartile,
+                                  &Spread::min, &Spread::max})
+          text += "," + (spread ? csv_number(*spread.*figure) : "");
         text += "," + origin + "\n";
       }
     }

@@ -39,7 +39,13 @@ void add_error_rows(const StudyResults& results, std::size_t sequence, Table& ta
                            : TableCell{.text = kNothing});
       row.back().best = best[i][variant];
     }
-    add_row(std::move(row), table);
+    TableCell& rmse = row[table.names];
+    const auto spread = results.spread(sequence, variant, kAte);
+    if (spread)
+      rmse.text += coverage_note(results, sequence, variant) + count_note(*spread, study.repeats);
+    else if (results.all_failed(sequence, variant))
+      rmse.text = "failed";
+    if (spread || rmse.text == "failed") table.rows.push_back(std::move(row));
   }
   for (const Published& system : study.published) {
     std::vector<TableCell> row = {{.text = name}, {.text = published_name(system)}};

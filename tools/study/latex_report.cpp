@@ -96,16 +96,13 @@ class LatexReport {
   /// A part of a sequence, or of the runs that `figure` is of: it says less than that of the whole.
   std::string partial_note(std::size_t sequence, std::size_t variant,
                            const std::optional<Spread>& figure) const {
-    std::string note;
-    if (const auto coverage = results_.spread(sequence, variant, kCoverage)) {
-      const std::string least = fixed(coverage->min, 1), most = fixed(coverage->max, 1);
-      if (least != "100.0") note = (least == most ? least : least + "--" + most) + "\\,\\%";
-    }
+    std::string note = partial_coverage(results_, sequence, variant, "--");
+    if (!note.empty()) note += "\\,\\%";
     const auto repeats = static_cast<std::size_t>(study_.repeats);
     if (figure && figure->count < repeats)
       note += (note.empty() ? "" : ", ") + std::to_string(figure->count) + " of " +
               std::to_string(repeats);
-    if (!figure && results_.without_result(sequence, variant).first == repeats) note = "failed";
+    if (!figure && results_.all_failed(sequence, variant)) note = "failed";
     return note.empty() ? "" : " {\\scriptsize [" + note + "]}";
   }
 
@@ -164,6 +161,10 @@ class LatexReport {
       for (const std::size_t variant : others) {
         const auto percent = improvement_percent(results_, sequence, variant);
         row.push_back(latex_spread(percent, 1) + partial_note(sequence, variant, percent));
+        const std::string covered =
+            partial_coverage(results_, sequence, *baseline_of(study_), "--");
+        if (percent && !covered.empty())
+          row.back() += " {\\scriptsize [baseline " + covered + "\\,\\%]}";
         any |= percent.has_value();
       }
       if (any) table.rows.push_back(std::move(row));
@@ -177,7 +178,7 @@ class LatexReport {
     const Metric& m = metrics()[figures.rmse];
     LatexTable table{.label = label(m.key),
                      .caption = latex_text(figures.brief) + " (" + m.unit + ")." +
-                                runs_note("Median") +
+                                runs_note("Median") + kBracketsNote +
                                 " Bold: the smallest of a sequence, among those that cover the "
                                 "same." +
                                 published_note(systems) + missing_note(),
@@ -197,7 +198,8 @@ class LatexReport {
       best.push_back(best_variants(results_, sequence, metric));
     std::string name = latex_text(study_.sequences[sequence].name);  // in the first row only
     for (std::size_t variant = 0; variant < study_.variants.size(); ++variant) {
-      if (!results_.spread(sequence, variant, figures.rmse)) continue;
+      const auto rmse = results_.spread(sequence, variant, figures.rmse);
+      if (!rmse && !results_.all_failed(sequence, variant)) continue;
       if (!rows.empty() && !name.empty()) rows.emplace_back();
       rows.push_back({std::exchange(name, ""), latex_text(study_.variants[variant].name)});
       for (std::size_t i = 0; i < best.size(); ++i) {
@@ -205,6 +207,7 @@ class LatexReport {
         const auto spread = results_.spread(sequence, variant, metric);
         const std::string text = spread ? fixed(spread->median, metrics()[metric].digits) : kEmpty;
         rows.back().push_back(best[i][variant] ? bold(text) : text);
+        if (i == 0) rows.back().back() += partial_note(sequence, variant, rmse);
       }
     }
     if (!name.empty()) return;  // nothing has been measured
@@ -218,7 +221,10 @@ class LatexReport {
   }
 
   LatexTable comparison_table() const {
-    const std::string dependence = dependence_note(study_);
+    const std::vector<PairedComparison> comparisons = compare_with_baseline(results_);
+    std::string notes;
+    for (const std::string& note : {recordings_note(comparisons), dependence_note(study_)})
+      if (!note.empty()) notes += " " + note;
     LatexTable table{
         .label = label("comparison"),
         .caption = "Compared with " + latex_text(study_.baseline) +
@@ -227,12 +233,12 @@ class LatexReport {
                    "rank-biserial correlation, 1 where the variant is always better; $p$: "
                    "Wilcoxon's signed-rank test of the absolute trajectory error, two-sided, "
                    "corrected after Holm." +
-                   std::string(dependence.empty() ? "" : " ") + dependence + missing_note(),
+                   notes + missing_note(),
         .columns = "lrrrrrrrr",
         .header = {"Variant", "$n$", "Better", "Worse", "By coverage", "ATE ratio", "CPU ratio",
                    "Effect", "$p$"},
         .rows = {}};
-    for (const PairedComparison& one : compare_with_baseline(results_)) {
+    for (const PairedComparison& one : comparisons) {
       const std::string p = one.corrected_p < 0.0001 ? "$<$0.0001" : fixed(one.corrected_p, 4);
       table.rows.push_back({latex_text(study_.variants[one.variant].name),
                             std::to_string(one.recordings), std::to_string(one.better),

@@ -131,12 +131,11 @@ PairedComparison comparison_of(std::size_t variant, const std::vector<Pair>& pai
 std::vector<PairedComparison> compare_with_baseline(const StudyResults& results) {
   std::vector<PairedComparison> comparisons;
   const std::vector<Variant>& variants = results.study.variants;
-  const auto baseline = std::ranges::find(variants, results.study.baseline, &Variant::name);
-  if (baseline == variants.end()) return comparisons;
-  const auto index = static_cast<std::size_t>(baseline - variants.begin());
+  const auto baseline = baseline_of(results.study);
+  if (!baseline) return comparisons;
   for (std::size_t variant = 0; variant < variants.size(); ++variant) {
-    if (variant == index) continue;
-    const std::vector<Pair> pairs = Pairs(results, variant, index).all();
+    if (variant == *baseline) continue;
+    const std::vector<Pair> pairs = Pairs(results, variant, *baseline).all();
     if (!pairs.empty()) comparisons.push_back(comparison_of(variant, pairs));
   }
   std::vector<double> p_values;
@@ -144,6 +143,19 @@ std::vector<PairedComparison> compare_with_baseline(const StudyResults& results)
   const std::vector<double> corrected = corrected_for_number(p_values);
   for (std::size_t i = 0; i < comparisons.size(); ++i) comparisons[i].corrected_p = corrected[i];
   return comparisons;
+}
+
+std::string recordings_note(const std::vector<PairedComparison>& comparisons) {
+  // The smallest p of n recordings is 2^(1-n), and that of the first of k comparisons k 2^(1-n).
+  const auto count = static_cast<double>(comparisons.size());
+  std::size_t needed = 1;
+  while (count * std::pow(0.5, static_cast<double>(needed) - 1.0) >= kSignificance) ++needed;
+  if (std::ranges::all_of(comparisons, [&](const auto& one) { return one.recordings >= needed; }))
+    return "";
+  return "With " + std::to_string(comparisons.size()) +
+         (comparisons.size() == 1 ? " comparison, a difference" : " comparisons, a difference") +
+         " on fewer than " + std::to_string(needed) +
+         " recordings cannot be significant, however large it is.";
 }
 
 std::string dependence_note(const Study& study) {

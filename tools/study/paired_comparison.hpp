@@ -10,6 +10,8 @@
 
 namespace stillpoint::study {
 
+inline constexpr double kSignificance = 0.05;  ///< of a corrected p
+
 /// A pair is a recording. The repeats on one recording are no pairs of their own, unless each has a
 /// recording with noise of its own, and neither are sequences that have the same images and differ
 /// in the camera that the pipeline assumes: the median of their logarithms counts.
@@ -29,11 +31,14 @@ struct PairedComparison {
   double p = 1.0;                    ///< of Wilcoxon's test on logarithms of the ratios
   double corrected_p = 1.0;          ///< for the number of variants
 
-  bool is_significant() const { return corrected_p < 0.05; }
+  bool is_significant() const { return corrected_p < kSignificance; }
 };
 
 /// Of every variant but the baseline that shares a recording with it. Empty without a baseline.
 std::vector<PairedComparison> compare_with_baseline(const StudyResults& results);
+
+/// How many recordings a significant difference needs, where a comparison has fewer; else empty.
+std::string recordings_note(const std::vector<PairedComparison>& comparisons);
 
 /// That recordings are not independent, where they are not; else empty.
 std::string dependence_note(const Study& study);

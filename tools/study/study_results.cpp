@@ -104,6 +104,10 @@ std::pair<std::size_t, std::size_t> StudyResults::without_result(std::size_t seq
   return {failed, missing};
 }
 
+bool StudyResults::all_failed(std::size_t sequence, std::size_t variant) const {
+  return without_result(sequence, variant).first == static_cast<std::size_t>(study.repeats);
+}
+
 std::optional<double> dynamic_penalty(const StudyResults& results, std::size_t sequence,
                                       std::size_t variant) {
   const std::vector<Sequence>& sequences = results.study.sequences;
@@ -114,9 +118,13 @@ std::optional<double> dynamic_penalty(const StudyResults& results, std::size_t s
   return ratio(results.spread(sequence, variant, kAte), results.spread(*empty, variant, kAte));
 }
 
+std::optional<std::size_t> baseline_of(const Study& study) {
+  return index_of(study.variants, study.baseline);
+}
+
 std::optional<Spread> improvement_percent(const StudyResults& results, std::size_t sequence,
                                           std::size_t variant) {
-  const auto baseline = index_of(results.study.variants, results.study.baseline);
+  const auto baseline = baseline_of(results.study);
   if (!baseline || *baseline == variant) return std::nullopt;
   std::vector<double> improvements;
   for (int repeat = 0; repeat < results.study.repeats; ++repeat) {

@@ -44,12 +44,17 @@ struct StudyResults {
   /// Of the repeats, those that have failed, and those that are missing.
   std::pair<std::size_t, std::size_t> without_result(std::size_t sequence,
                                                      std::size_t variant) const;
+  /// Whether every repeat has failed.
+  bool all_failed(std::size_t sequence, std::size_t variant) const;
 };
 
 /// ATE on a sequence ÷ ATE on the sequence without anything that moves, in the same study, with the
 /// same variant; medians of the repeats. Nothing without such a sequence.
 std::optional<double> dynamic_penalty(const StudyResults& results, std::size_t sequence,
                                       std::size_t variant);
+
+/// Index of the variant that is the baseline; nothing without one.
+std::optional<std::size_t> baseline_of(const Study& study);
 
 /// 1 - ATE ÷ ATE of the baseline in per cent, the paper's "improvements" (its equation 7), of each
 /// repeat with the baseline's run of the same seed.

@@ -86,12 +86,15 @@ void mark_significant(const Study& study, const std::vector<PairedComparison>& c
 }
 
 Table improvement_table(const StudyResults& results) {
+  const auto baseline = baseline_of(results.study);
   const auto improvement = [&](std::size_t sequence, std::size_t variant) {
     const auto percent = improvement_percent(results, sequence, variant);
     TableCell cell = spread_cell(percent, 1);
-    if (percent)
-      cell.text +=
-          coverage_note(results, sequence, variant) + count_note(*percent, results.study.repeats);
+    if (!percent) return cell;
+    cell.text += coverage_note(results, sequence, variant);
+    const std::string covered = partial_coverage(results, sequence, *baseline, "–");
+    if (!covered.empty()) cell.text += ", baseline " + covered + " %";
+    cell.text += count_note(*percent, results.study.repeats);
     return cell;
   };
   const std::string title = "Improvement of the ATE over " + results.study.baseline + " (%)";

@@ -31,12 +31,18 @@ TableCell number_cell(double value, int digits) {
   return {.text = fixed(value, digits), .value = value};
 }
 
-std::string coverage_note(const StudyResults& results, std::size_t sequence, std::size_t variant) {
+std::string partial_coverage(const StudyResults& results, std::size_t sequence, std::size_t variant,
+                             const std::string& dash) {
   const auto coverage = results.spread(sequence, variant, kCoverage);
   if (!coverage) return "";
   const std::string least = fixed(coverage->min, 1), most = fixed(coverage->max, 1);
   if (least == "100.0") return "";
-  return ", coverage " + (least == most ? least : least + "–" + most) + " %";
+  return least == most ? least : least + dash + most;
+}
+
+std::string coverage_note(const StudyResults& results, std::size_t sequence, std::size_t variant) {
+  const std::string covered = partial_coverage(results, sequence, variant, "–");
+  return covered.empty() ? "" : ", coverage " + covered + " %";
 }
 
 std::string count_note(const Spread& spread, int repeats) {

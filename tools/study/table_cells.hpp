@@ -26,6 +26,11 @@ TableCell number_cell(double value, int digits);
 /// the whole.
 std::string coverage_note(const StudyResults& results, std::size_t sequence, std::size_t variant);
 
+/// "90.0", "40.0–90.0" with a dash: in per cent, of the runs of a variant; empty where all is
+/// covered.
+std::string partial_coverage(const StudyResults& results, std::size_t sequence, std::size_t variant,
+                             const std::string& dash);
+
 /// " [1 of 2]": of so many repeats; empty when all gave the figure.
 std::string count_note(const Spread& spread, int repeats);
 
