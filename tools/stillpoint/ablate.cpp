@@ -106,7 +106,7 @@ class Ablation {
     for (std::size_t i = 0; i < plan.size(); ++i) results.results[i] = valid_result(plan[i]);
     say_what_is_there(results);
     if (!again_) refuse_to_replace(plan);
-    write_text(output_ / "study.yaml", file_.effective_yaml);  // for reports before the end, too
+    write_text(output_ / "study.yaml", file_.effective_yaml);  // for reports before the end
     const CellFinished finished = [this](const Cell& cell, const CellResult& result,
                                          const StudyProgress& progress) {
       report(cell, result, progress);
@@ -236,6 +236,7 @@ class Ablation {
 
   void write(const StudyResults& results) const {
     const std::string tables = markdown_report(results, file_.file.stem().string());
+    write_text(output_ / "study.yaml", file_.effective_yaml);
     write_text(output_ / "results.csv", csv_report(results));
     write_text(output_ / "summary.csv", csv_summary(results));
     write_text(output_ / "tables.tex", latex_report(results, file_.file.stem().string()));

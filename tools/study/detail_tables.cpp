@@ -41,11 +41,12 @@ void add_error_rows(const StudyResults& results, std::size_t sequence, Table& ta
     }
     TableCell& rmse = row[table.names];
     const auto spread = results.spread(sequence, variant, kAte);
+    const bool failed = !spread && results.all_failed(sequence, variant);
     if (spread)
       rmse.text += coverage_note(results, sequence, variant) + count_note(*spread, study.repeats);
-    else if (results.all_failed(sequence, variant))
+    else if (failed)
       rmse.text = "failed";
-    if (spread || rmse.text == "failed") table.rows.push_back(std::move(row));
+    if (spread || failed) table.rows.push_back(std::move(row));
   }
   for (const Published& system : study.published) {
     std::vector<TableCell> row = {{.text = name}, {.text = published_name(system)}};
