@@ -60,7 +60,7 @@ TEST_P(KilledRun, LeavesNoTornFileAndTheNextOneItsOwnOnly) {
 
   const Outcome next = call(arguments);
   EXPECT_EQ(next.exit_code, 0) << next.err;
-  EXPECT_EQ(count_poses(out / "trajectory.txt"), std::size_t{kSimulatedFrames});
+  EXPECT_EQ(count_poses(out / "trajectory.txt"), static_cast<std::size_t>(kSimulatedFrames));
   std::vector<std::string> names;
   for (const fs::path& file : files_below(out)) names.push_back(file.filename());
   EXPECT_THAT(names, UnorderedElementsAre("frames.csv", "keyframes.txt", "log.txt", "pipeline.yaml",
