@@ -27,7 +27,8 @@ Table comparison_table(const Study& study, const std::vector<PairedComparison>& 
               .note = kComparisonNote,
               .header = {"variant", "recordings", "better", "worse", "by coverage", "ATE ratio",
                          "CPU ratio", "effect", "p", "corrected p"}};
-  for (const std::string& note : {recordings_note(comparisons), dependence_note(study)})
+  for (const std::string& note :
+       {left_out_note(study), recordings_note(comparisons), dependence_note(study)})
     if (!note.empty()) table.note += " " + note;
   for (const PairedComparison& one : comparisons) {
     table.rows.push_back({{.text = study.variants[one.variant].name},

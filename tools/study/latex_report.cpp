@@ -223,7 +223,8 @@ class LatexReport {
   LatexTable comparison_table() const {
     const std::vector<PairedComparison> comparisons = compare_with_baseline(results_);
     std::string notes;
-    for (const std::string& note : {recordings_note(comparisons), dependence_note(study_)})
+    for (const std::string& note :
+         {left_out_note(study_), recordings_note(comparisons), dependence_note(study_)})
       if (!note.empty()) notes += " " + note;
     LatexTable table{
         .label = label("comparison"),

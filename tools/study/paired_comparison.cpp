@@ -69,6 +69,7 @@ class Pairs {
     const std::vector<Sequence>& all = results_.study.sequences;
     std::vector<std::vector<std::size_t>> groups;
     for (std::size_t i = 0; i < all.size(); ++i) {
+      if (is_twin_without_motion(results_.study, i)) continue;
       const auto same = std::ranges::find_if(
           groups, [&](const auto& group) { return same_images(all[group.front()], all[i]); });
       if (same == groups.end())
@@ -143,6 +144,13 @@ std::vector<PairedComparison> compare_with_baseline(const StudyResults& results)
   const std::vector<double> corrected = corrected_for_number(p_values);
   for (std::size_t i = 0; i < comparisons.size(); ++i) comparisons[i].corrected_p = corrected[i];
   return comparisons;
+}
+
+std::string left_out_note(const Study& study) {
+  for (std::size_t sequence = 0; sequence < study.sequences.size(); ++sequence)
+    if (is_twin_without_motion(study, sequence))
+      return "Sequences without motion, which the dynamic penalty is measured with, take no part.";
+  return "";
 }
 
 std::string recordings_note(const std::vector<PairedComparison>& comparisons) {

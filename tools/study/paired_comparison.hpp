@@ -12,9 +12,10 @@ namespace stillpoint::study {
 
 inline constexpr double kSignificance = 0.05;  ///< of a corrected p
 
-/// A pair is a recording. The repeats on one recording are no pairs of their own, unless each has a
-/// recording with noise of its own, and neither are sequences that have the same images and differ
-/// in the camera that the pipeline assumes: the median of their logarithms counts.
+/// A pair is a recording. Those that are another's twin without motion are there for the dynamic
+/// penalty, and take no part. The repeats on one recording are no pairs of their own, unless each
+/// has a recording with noise of its own, and neither are sequences that have the same images and
+/// differ in the camera that the pipeline assumes: the median of their logarithms counts.
 ///
 /// Errors are compared only between runs that have covered the same. Of two runs, the one that
 /// failed, or covers less by more than 1 % of the frames, or lost its way where the other did not,
@@ -36,6 +37,9 @@ struct PairedComparison {
 
 /// Of every variant but the baseline that shares a recording with it. Empty without a baseline.
 std::vector<PairedComparison> compare_with_baseline(const StudyResults& results);
+
+/// That twins without motion take no part, where there are any; else empty.
+std::string left_out_note(const Study& study);
 
 /// How many recordings a significant difference needs, where a comparison has fewer; else empty.
 std::string recordings_note(const std::vector<PairedComparison>& comparisons);

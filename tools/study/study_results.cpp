@@ -108,12 +108,21 @@ bool StudyResults::all_failed(std::size_t sequence, std::size_t variant) const {
   return without_result(sequence, variant).first == static_cast<std::size_t>(study.repeats);
 }
 
+std::optional<std::size_t> twin_without_motion(const Study& study, std::size_t sequence) {
+  const Sequence& own = study.sequences[sequence];
+  return index_of(study.sequences,
+                  own.without_motion.empty() ? own.name + "_empty" : own.without_motion);
+}
+
+bool is_twin_without_motion(const Study& study, std::size_t sequence) {
+  for (std::size_t other = 0; other < study.sequences.size(); ++other)
+    if (twin_without_motion(study, other) == sequence) return true;
+  return false;
+}
+
 std::optional<double> dynamic_penalty(const StudyResults& results, std::size_t sequence,
                                       std::size_t variant) {
-  const std::vector<Sequence>& sequences = results.study.sequences;
-  const Sequence& own = sequences[sequence];
-  const auto empty =
-      index_of(sequences, own.without_motion.empty() ? own.name + "_empty" : own.without_motion);
+  const auto empty = twin_without_motion(results.study, sequence);
   if (!empty) return std::nullopt;
   return ratio(results.spread(sequence, variant, kAte), results.spread(*empty, variant, kAte));
 }
