@@ -12,8 +12,12 @@ namespace stillpoint::decision_objects {
 namespace {
 
 constexpr double kUnlikelyLogOdds = -2;  // of moving, below which the weight is surely full
-// Not 0: without any trust in labels, a person in front of the camera would be mapped at once.
+// Not 0: without any trust in labels, a person in front of the camera would be tracked at once.
 constexpr double kMinLabelWeight = 0.05;
+// Share of `contradiction` that it takes to map a surface even where labels are not trusted: two
+// views that mapped it, more than eight that only tracked it. Those who sit still before the camera
+// are tracked before long, and would be mapped.
+constexpr double kLeastContradiction = 0.6;
 
 std::vector<PointCount> count_points(const Segmentation& segmentation, const MovingPoints& moving) {
   std::vector<PointCount> counts(segmentation.objects.size());
@@ -150,7 +154,8 @@ void Bayes::weigh_objects(const Frame& frame, const Segmentation& segmentation,
       lower(weights.map, size, tracked, weight);
       continue;
     }
-    const double contradicted = std::min(outweighed, -trust * options_.contradiction);
+    const double contradicted =
+        std::min(outweighed, -std::max(trust, kLeastContradiction) * options_.contradiction);
     const ObjectMask mapped =
         mask_of(segmentation, i, options_.margin, static_mask(from_map, contradicted, size));
     lower(weights.map, size, mapped, 0);

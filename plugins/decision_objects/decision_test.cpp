@@ -194,31 +194,38 @@ TEST(Bayes, TheMapContradictsLabels) {
   EXPECT_EQ(weight_at(w.map, 250, 350), 0);
 }
 
-// Who sits still is where the map saw them, but they are never mapped.
+// Who sits still is where the map saw them, but they are never mapped: neither in a corner of the
+// image nor close before the camera.
 TEST(Bayes, WhoOnlySitsStillIsNotMapped) {
-  Bayes decision({}, with_classes());
-  StaticWeights w;
-  for (std::uint32_t i = 0; i < 60; ++i)
-    w = decision.decide(make_frame(i), make_labels(), make_points(kNowhere),
-                        make_evidence(kPerson, -2.4F));
-  EXPECT_EQ(weight_at(w.track, 250, 200), 255);
-  EXPECT_EQ(weight_at(w.map, 250, 200), 0);
+  for (const cv::Rect& box : {kPerson, cv::Rect(80, 60, 400, 420)}) {
+    Bayes decision({}, with_classes());
+    StaticWeights w;
+    for (std::uint32_t i = 0; i < 60; ++i)
+      w = decision.decide(make_frame(i), make_labels(15, box), make_points(kNowhere),
+                          make_evidence(box, -2.4F));
+    EXPECT_EQ(weight_at(w.track, 250, 200), 255);
+    EXPECT_EQ(weight_at(w.map, 250, 200), 0);
+  }
 }
 
 // A network that takes the desk and all that is on it for a person leaves little to track by.
 TEST(Bayes, TheMoreIsLabelledTheLessALabelCounts) {
-  const auto weights = [](const cv::Rect& labelled) {
+  const auto weights = [](const cv::Rect& labelled, float evidence) {
     Bayes decision({}, with_classes());
-    return decision.decide(make_frame(), make_labels(15, labelled), {}, make_evidence(kPerson, -1));
+    return decision.decide(make_frame(), make_labels(15, labelled), {},
+                           make_evidence(kPerson, evidence));
   };
-  const StaticWeights few = weights(kPerson);
+  constexpr float kOneTracked = -0.3F, kTwoMapped = -3.1F;  // views
+  const cv::Rect most(0, 0, 640, 440);
+  const StaticWeights few = weights(kPerson, kTwoMapped);
   EXPECT_EQ(weight_at(few.track, 250, 200), 0);
   EXPECT_EQ(weight_at(few.map, 250, 200), 0);
-  const StaticWeights many = weights({0, 0, 640, 440});
+  const StaticWeights many = weights(most, kTwoMapped);
   EXPECT_EQ(weight_at(many.track, 250, 200), 255);
   EXPECT_EQ(weight_at(many.map, 250, 200), 255);
   EXPECT_EQ(weight_at(many.track, 500, 200), 255);
   EXPECT_EQ(weight_at(many.map, 500, 200), 0) << "the map does not know it yet";
+  EXPECT_EQ(weight_at(weights(most, kOneTracked).map, 250, 200), 0) << "nor this";
 }
 
 TEST(Bayes, TheOtherClassesSayNothingOfWhatHasNoLabel) {

@@ -120,7 +120,9 @@ double BundleSolver::cost() const {
     for (std::size_t i = first_observation_[point]; i < first_observation_[point + 1]; ++i) {
       const Camera& camera = cameras_[static_cast<std::size_t>(observations_[i].camera)];
       const Eigen::Vector3d p = camera.rotation * points_[point] + camera.translation;
-      if (evaluate(observations_[i].measurement, p, r)) sum += huber_cost(r.squaredNorm());
+      // Behind the camera, too, it costs something: else that would be the way out of every error.
+      sum +=
+          evaluate(observations_[i].measurement, p, r) ? huber_cost(r.squaredNorm()) : kChiSquare3;
     }
   return 0.5 * sum;
 }

@@ -21,8 +21,9 @@ Pose ConstantVelocity::predict(const Pose& world_from_last, double seconds) cons
 }
 
 void ConstantVelocity::update(const Pose& current_from_last, double seconds, bool smooth) {
+  if (seconds <= 0) return forget();  // two images of one time have no velocity
   const auto before = std::exchange(current_from_last_, current_from_last);
-  if (smooth && before && seconds > 0)
+  if (smooth && before)
     current_from_last_ =
         exp_se3(kNewVelocityWeight * log_se3(current_from_last) +
                 (1 - kNewVelocityWeight) * (seconds / seconds_) * log_se3(*before));

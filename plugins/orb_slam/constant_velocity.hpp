@@ -16,9 +16,9 @@ class ConstantVelocity {
   /// The pose `seconds` after a frame at `world_from_last`.
   Pose predict(const Pose& world_from_last, double seconds) const;
 
-  /// From two tracked frames, `seconds` apart. `smooth`: averaged with the previous velocity, for
-  /// poses that landmarks constrain poorly: the velocity of two frames is then too noisy to predict
-  /// from.
+  /// From two tracked frames, `seconds` apart; forgets it where that is 0. `smooth`: averaged with
+  /// the previous velocity, for poses that landmarks constrain poorly: the velocity of two frames
+  /// is then too noisy to predict from.
   void update(const Pose& current_from_last, double seconds, bool smooth);
 
  private:

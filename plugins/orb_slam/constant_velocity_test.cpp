@@ -35,6 +35,13 @@ TEST(ConstantVelocity, SmoothedOneFollowsSlowly) {
   EXPECT_TRUE(velocity.predict(Pose::Identity(), 1.0).isApprox(Pose::Identity()));
 }
 
+TEST(ConstantVelocity, TwoImagesOfOneTimeHaveNone) {
+  ConstantVelocity velocity;
+  velocity.update(current_from_last(0.5, 0.6), 0.1, true);
+  velocity.update(Pose::Identity(), 0.0, true);
+  EXPECT_FALSE(velocity.known());
+}
+
 TEST(MotionPrior, IsTighterForShorterTimesAndNoneBesideItsPose) {
   const Pose predicted = world_from_camera(2.0);
   const QuadraticCost near = motion_prior(predicted, 0.03), far = motion_prior(predicted, 0.3);

@@ -1,5 +1,6 @@
 #include "orb_slam/depth_view.hpp"
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 
@@ -12,10 +13,12 @@ constexpr int kCell = DepthView::kCell;
 constexpr int kStep = 2;   // px between the samples of a cell
 constexpr int kReach = 2;  // cells around a patch's own that its plane is fitted to
 constexpr int kSamplesPerCell = (kCell / kStep) * (kCell / kStep);
+// Sensors leave holes: so many samples of a cell, and cells of a patch, must be measured.
+constexpr int kMinSamples = kSamplesPerCell / 2;
+constexpr int kMinCells = 20;           // of 25
 constexpr float kSumOfSquares = 50.0F;  // of column (or row) over 5 × 5 cells around the middle
 
-// Mean inverse depth (1/m) and least static weight of a cell; weight 0 unless all of it is
-// measured.
+// Mean inverse depth, 1/m, 0 where too little is measured; and least static weight of a cell.
 struct Cell {
   float inverse_depth = 0.0F;
   float weight = 0.0F;
@@ -23,21 +26,23 @@ struct Cell {
 
 Cell cell_at(const cv::Mat& depth, const cv::Mat& weights, int left, int top) {
   float sum = 0.0F;
-  float least_depth = 1.0F;
+  int measured = 0;
   std::uint8_t least_weight = 255;
   for (int y = top; y < top + kCell; y += kStep) {
     const float* row = depth.ptr<float>(y);
     for (int x = left; x < left + kCell; x += kStep) {
-      sum += 1.0F / row[x];
-      least_depth = std::min(least_depth, row[x]);
+      const bool is_measured = row[x] > 0;  // some sources have NaN
+      sum += is_measured ? 1.0F / row[x] : 0.0F;
+      measured += is_measured;
     }
     if (weights.empty()) continue;
     const std::uint8_t* weight = weights.ptr<std::uint8_t>(y);
     for (int x = left; x < left + kCell; x += kStep)
       least_weight = std::min(least_weight, weight[x]);
   }
-  if (least_depth <= 0 || least_weight < ObservedFrame::kMinWeight) return {};
-  return {sum / kSamplesPerCell, static_cast<float>(least_weight) / 255.0F};
+  if (least_weight < ObservedFrame::kMinWeight) return {};
+  return {measured < kMinSamples ? 0.0F : sum / static_cast<float>(measured),
+          static_cast<float>(least_weight) / 255.0F};
 }
 
 // The inverse depth of a plane is an affine function of the pixel, with the same noise everywhere.
@@ -56,31 +61,33 @@ float max_misfit(float surface_noise) {
   return std::max(kLeastMisfit, 6.0F * surface_noise / std::sqrt(float{kSamplesPerCell}));
 }
 
+// Least squares over the measured cells.
 InversePlane fit(const std::vector<Cell>& cells, int columns, int column, int row,
                  float max_misfit) {
-  InversePlane plane{.weight = 1.0F};
-  const auto cell = [&](int dx, int dy) -> const Cell& {
-    return cells[static_cast<std::size_t>((row + dy) * columns + column + dx)];
+  Eigen::Matrix3f hessian = Eigen::Matrix3f::Zero();
+  Eigen::Vector3f sums = Eigen::Vector3f::Zero();
+  float weight = 1.0F;
+  const auto for_each_cell = [&](auto visit) {
+    for (int dy = -kReach; dy <= kReach; ++dy)
+      for (int dx = -kReach; dx <= kReach; ++dx)
+        visit(cells[static_cast<std::size_t>((row + dy) * columns + column + dx)],
+              Eigen::Vector3f(1, static_cast<float>(dx), static_cast<float>(dy)));
   };
-  for (int dy = -kReach; dy <= kReach; ++dy) {
-    for (int dx = -kReach; dx <= kReach; ++dx) {
-      const Cell& c = cell(dx, dy);
-      plane.weight = std::min(plane.weight, c.weight);
-      plane.middle += c.inverse_depth;
-      plane.by_column += static_cast<float>(dx) * c.inverse_depth;
-      plane.by_row += static_cast<float>(dy) * c.inverse_depth;
-    }
-  }
-  if (plane.weight <= 0) return {};
-  plane.middle /= (2 * kReach + 1) * (2 * kReach + 1);
-  plane.by_column /= kSumOfSquares;
-  plane.by_row /= kSumOfSquares;
-  for (int dy = -kReach; dy <= kReach; ++dy)
-    for (int dx = -kReach; dx <= kReach; ++dx)
-      if (std::abs(plane.middle + static_cast<float>(dx) * plane.by_column +
-                   static_cast<float>(dy) * plane.by_row - cell(dx, dy).inverse_depth) > max_misfit)
-        return {};
-  return plane;
+  for_each_cell([&](const Cell& cell, const Eigen::Vector3f& place) {
+    weight = std::min(weight, cell.weight);
+    if (cell.inverse_depth <= 0) return;
+    hessian += place * place.transpose();
+    sums += cell.inverse_depth * place;
+  });
+  if (weight <= 0 || hessian(0, 0) < kMinCells) return {};
+  const Eigen::Vector3f plane = hessian.ldlt().solve(sums);
+  bool fits = true;
+  for_each_cell([&](const Cell& cell, const Eigen::Vector3f& place) {
+    fits &=
+        cell.inverse_depth <= 0 || std::abs(plane.dot(place) - cell.inverse_depth) <= max_misfit;
+  });
+  if (!fits) return {};
+  return {.middle = plane.x(), .by_column = plane.y(), .by_row = plane.z(), .weight = weight};
 }
 
 }  // namespace

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
+
 #include "orb_slam/test_surfaces.hpp"
 
 namespace stillpoint::orb_slam {
@@ -85,6 +87,28 @@ TEST(DepthView, WhatIsNotMeasuredOrMovesHasNone) {
   EXPECT_EQ(patches_in(view, {400, 0, 240, 480}), 0);
   EXPECT_FLOAT_EQ(view.patch(36, 30).weight, 0.4F);
   EXPECT_FLOAT_EQ(view.patch(25, 30).weight, 1.0F);
+}
+
+// Real sensors have single pixels without depth, and patches of them.
+TEST(DepthView, HolesLeaveThePlanesAroundThem) {
+  const WorldPlane slanted{Eigen::Vector3d(0.3, -0.2, 1).normalized(), 2.0};
+  const auto frame = std::make_shared<Frame>(*see_planes({slanted}, Pose::Identity()));
+  frame->depth = frame->depth.clone();
+  cv::Mat random(frame->depth.size(), CV_8U);
+  cv::RNG(1).fill(random, cv::RNG::UNIFORM, 0, 100);
+  frame->depth.setTo(0, random < 10);
+  frame->depth.setTo(std::numeric_limits<float>::quiet_NaN(), random == 10);
+  frame->depth(cv::Rect(320, 240, 12, 12)) = 0;
+  const DepthView view(*frame, {});
+  EXPECT_GT(patches_of(view), 0.98 * 76 * 56);
+  for (int row = 2; row < 58; ++row) {
+    for (int column = 2; column < 78; ++column) {
+      const PlanePatch& patch = view.patch(column, row);
+      if (patch.weight <= 0) continue;
+      EXPECT_NEAR(patch.point.cast<double>().dot(slanted.normal), 2.0, 0.002);
+      EXPECT_LT((patch.normal.cast<double>() + slanted.normal).norm(), 0.01);
+    }
+  }
 }
 
 TEST(DepthView, OutsideTheImageIsNothing) {

@@ -12,9 +12,6 @@
 namespace stillpoint::orb_slam {
 namespace {
 
-constexpr float kMaxStaticLogOdds =
-    6.0F;  // of being static, clamped: static objects may begin to move
-
 /// Landmarks that prove to have moved are removed.
 void add_evidence(MapEdit& edit, const std::vector<LandmarkEvidence>& evidence) {
   for (const LandmarkEvidence& e : evidence) {

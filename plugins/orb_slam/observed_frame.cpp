@@ -7,18 +7,21 @@
 namespace stillpoint::orb_slam {
 namespace {
 
-constexpr float kMaxDepthStep = 0.04f;  // of the depth; more is a depth discontinuity
+// More is a depth discontinuity: a share of the depth, but no less than so many standard deviations
+// of a pixel's depth, which grows with its square.
+constexpr float kMaxDepthStep = 0.04f;
+constexpr float kMinStepSigmas = 4.0f;
 constexpr int kDepthWindow = 3;         // px around a keypoint
 constexpr double kMinNewWeight = 0.02;  // least weight of a new landmark
 
 // Depth of the surface a keypoint lies on; 0 beside a depth discontinuity, where it may be that of
 // the other side. Such features made estimated motions 0.5 to 1 % too small, since their errors are
 // biased towards the foreground.
-float depth_at(const cv::Mat& depth, cv::Point2f pixel) {
+float depth_at(const cv::Mat& depth, float surface_noise, cv::Point2f pixel) {
   const int u = cvRound(pixel.x), v = cvRound(pixel.y);
   const float centre = depth.at<float>(v, u);
   if (!(centre > 0)) return 0.0f;  // nothing measured; some sources say it by NaN
-  const float limit = kMaxDepthStep * centre;
+  const float limit = centre * std::max(kMaxDepthStep, kMinStepSigmas * surface_noise * centre);
   for (int y = std::max(v - kDepthWindow, 0); y <= std::min(v + kDepthWindow, depth.rows - 1);
        ++y) {
     const float* row = depth.ptr<float>(y);
@@ -58,8 +61,9 @@ double probation_weight(const Landmark& landmark, const SparseMap& map, double t
 
 ObservedFrame observe(FramePtr frame, Features features) {
   features.depth.resize(features.size());
+  const auto surface_noise = static_cast<float>(frame->camera->surface_noise);
   for (std::size_t i = 0; i < features.size(); ++i)
-    features.depth[i] = depth_at(frame->depth, features.keypoints[i].pt);
+    features.depth[i] = depth_at(frame->depth, surface_noise, features.keypoints[i].pt);
   return unmatched(std::move(frame), std::make_shared<Features>(std::move(features)));
 }
 

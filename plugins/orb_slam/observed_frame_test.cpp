@@ -50,6 +50,17 @@ TEST(Observe, SlantedSurfacesKeepTheirDepth) {
   for (const float depth : seen.features->depth) EXPECT_GT(depth, 0);
 }
 
+// 1.5 standard deviations up and down, pixel by pixel: 5 % of the depth between two pixels.
+TEST(Observe, NoiseOfFarSurfacesIsNoDepthEdge) {
+  const auto frame = frame_without_depth();
+  const double sigma = frame->camera->surface_noise * 8 * 8;
+  for (int v = 0; v < 480; ++v)
+    for (int u = 0; u < 640; ++u)
+      frame->depth.at<float>(v, u) = static_cast<float>(8 + ((u + v) % 2 ? 1.5 : -1.5) * sigma);
+  const ObservedFrame seen = observe(frame, features_at({{300, 100}, {320, 200}}));
+  for (const float depth : seen.features->depth) EXPECT_NEAR(depth, 8, 1.6 * sigma);
+}
+
 TEST(ObservedFrame, WeightsDecideWhoMayBeUsed) {
   TestWorld world;
   ObservedFrame frame = observed(world.see(Pose::Identity()));

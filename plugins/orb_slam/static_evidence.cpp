@@ -1,5 +1,6 @@
 #include "orb_slam/static_evidence.hpp"
 
+#include <algorithm>
 #include <vector>
 
 namespace stillpoint::orb_slam {
@@ -8,23 +9,34 @@ namespace {
 constexpr float kInlierLogOdds = 0.2F;  // log-odds of being static per inlier match of full weight
 constexpr float kViolationLogOdds = 0.5F;  // log-odds against it per violation
 constexpr double kFreeSpaceMargin = 0.2;   // relative: measured depth beyond the landmark
+constexpr double kOcclusionMargin = 0.1;   // relative: measured depth before the landmark
 constexpr int kEdgeRadius = 2;  // px; free space beside a depth discontinuity proves nothing
 
-/// Whether all depth around the landmark's projection is farther than the landmark: it would lie in
-/// free space.
-bool violates_free_space(const Frame& frame, const Eigen::Vector3d& in_camera) {
+enum class Visibility { kOpen, kOccluded, kFreeSpace };
+
+/// kFreeSpace: all depth around the landmark's projection is farther than the landmark.
+Visibility visibility(const Frame& frame, const Eigen::Vector3d& in_camera) {
   const Eigen::Vector2d at = frame.camera->project(in_camera);
   const cv::Point pixel(cvRound(at.x()), cvRound(at.y()));
   const cv::Mat& depth = frame.depth;
   const cv::Rect inside(kEdgeRadius, kEdgeRadius, depth.cols - 2 * kEdgeRadius,
                         depth.rows - 2 * kEdgeRadius);
-  if (!inside.contains(pixel)) return false;
+  if (!inside.contains(pixel)) return Visibility::kOpen;
+  const float middle = depth.at<float>(pixel);
+  if (middle > 0 && middle < (1 - kOcclusionMargin) * in_camera.z()) return Visibility::kOccluded;
   for (int y = pixel.y - kEdgeRadius; y <= pixel.y + kEdgeRadius; ++y) {
     const auto* row = depth.ptr<float>(y);
     for (int x = pixel.x - kEdgeRadius; x <= pixel.x + kEdgeRadius; ++x)
-      if (row[x] <= (1 + kFreeSpaceMargin) * in_camera.z()) return false;
+      if (row[x] <= (1 + kFreeSpaceMargin) * in_camera.z()) return Visibility::kOpen;
   }
-  return true;
+  return Visibility::kFreeSpace;
+}
+
+void add(float log_odds, const Landmark& landmark, LandmarkEvidence& evidence) {
+  const float known = landmark.static_log_odds;
+  evidence.static_log_odds = std::clamp(known + evidence.static_log_odds + log_odds,
+                                        -kMaxStaticLogOdds, kMaxStaticLogOdds) -
+                             known;
 }
 
 }  // namespace
@@ -38,15 +50,18 @@ void add_static_evidence(const ObservedFrame& frame, const SparseMap& map,
     matched[id] = true;
     LandmarkEvidence& e = evidence[id];
     ++e.found;
-    e.static_log_odds += kInlierLogOdds * static_cast<float>(frame.track_weights[i]) / 255;
+    add(kInlierLogOdds * static_cast<float>(frame.track_weights[i]) / 255, *map.landmark(id), e);
   }
   const Pose camera_from_world = frame.world_from_camera.inverse();
   for (const LandmarkId id : visible) {
+    const Landmark& landmark = *map.landmark(id);
+    const Visibility seen =
+        matched[id] ? Visibility::kOpen
+                    : visibility(*frame.frame, camera_from_world * landmark.position_in_world);
+    if (seen == Visibility::kOccluded) continue;
     LandmarkEvidence& e = evidence[id];
     ++e.visible;
-    if (matched[id]) continue;
-    if (violates_free_space(*frame.frame, camera_from_world * map.landmark(id)->position_in_world))
-      e.static_log_odds -= kViolationLogOdds;
+    if (seen == Visibility::kFreeSpace) add(-kViolationLogOdds, landmark, e);
   }
 }
 

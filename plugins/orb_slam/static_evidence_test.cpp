@@ -45,9 +45,22 @@ TEST_F(StaticEvidenceTest, ALandmarkThatIsLookedPastCountsAgainst) {
 }
 
 TEST_F(StaticEvidenceTest, OccludedOrUnmeasuredTellsNothing) {
-  EXPECT_EQ(evidence_with_wall(0.5, false).at(landmark_).static_log_odds, 0);
+  EXPECT_FALSE(evidence_with_wall(0.5, false).contains(landmark_)) << "not even visible";
   EXPECT_EQ(evidence_with_wall(0.0, false).at(landmark_).static_log_odds, 0);
   EXPECT_EQ(evidence_with_wall(1.05, false).at(landmark_).static_log_odds, 0);
+}
+
+// A camera at rest makes no key frame for minutes.
+TEST_F(StaticEvidenceTest, WhatWasStaticForMinutesMayBeginToMove) {
+  ObservedFrame seen = observed(view_);
+  seen.landmarks[0] = landmark_;
+  EvidenceByLandmark evidence;
+  for (int frame = 0; frame < 2000; ++frame)
+    add_static_evidence(seen, known_.map, std::vector{landmark_}, evidence);
+  const Landmark& landmark = *known_.map.landmark(landmark_);
+  EXPECT_FLOAT_EQ(landmark.static_log_odds + evidence.at(landmark_).static_log_odds,
+                  kMaxStaticLogOdds);
+  EXPECT_EQ(evidence.at(landmark_).found, 2000u);
 }
 
 }  // namespace

@@ -132,11 +132,14 @@ class Estimator {
 };
 
 // Three matches far apart in the image: near ones determine a motion badly and tend to lie on one
-// object.
+// object. Where all of them crowd in a part of the image, they may be nearer.
 class Sampler {
  public:
   Sampler(std::span<const RigidMatch> matches, const Camera& camera, std::uint64_t seed)
-      : matches_(matches), spacing_(camera.width / 8.0), random_(seed) {}
+      : matches_(matches),
+        spacing_(camera.width / 8.0),
+        least_spacing_(camera.width / 64.0),
+        random_(seed) {}
 
   std::optional<std::array<std::size_t, 3>> draw() {
     for (int attempt = 0; attempt < 20; ++attempt) {
@@ -144,6 +147,7 @@ class Sampler {
       if (apart(sample[0], sample[1]) && apart(sample[1], sample[2]) && apart(sample[0], sample[2]))
         return sample;
     }
+    spacing_ = std::max(spacing_ / 2, least_spacing_);
     return std::nullopt;
   }
 
@@ -154,7 +158,8 @@ class Sampler {
   }
 
   std::span<const RigidMatch> matches_;
-  double spacing_;  // px
+  double spacing_;        // px
+  double least_spacing_;  // px
   std::mt19937_64 random_;
 };
 
@@ -178,7 +183,7 @@ std::optional<RigidMotion> find_rigid_motion(std::span<const RigidMatch> matches
   Sampler sampler(matches, camera, seed);
   for (int i = 0; i < samples; ++i) {
     const auto sample = sampler.draw();
-    if (!sample) break;
+    if (!sample) continue;
     if (const auto pose = estimator.from_sample(*sample)) compete(*pose);
   }
   if (!best) return std::nullopt;
