@@ -203,6 +203,27 @@ TEST_F(OneBagSourceTest, LeavesOutRepeatedStamps) {
               ElementsAre(HasSubstr("1 message is left out for a repeated")));
 }
 
+// The clock of the camera's driver is set back by two seconds, and a little later by 0.2 s.
+TEST_F(OneBagSourceTest, SaysThatStampsGoBack) {
+  info();
+  const std::vector<int> stamps_in_order_of_arrival = {100, 101, 40, 41, 35};
+  for (std::size_t k = 0; k < stamps_in_order_of_arrival.size(); ++k) {
+    const int i = stamps_in_order_of_arrival[k];
+    const std::int64_t arrival = stamp(static_cast<int>(k));
+    add(kColor, "sensor_msgs/Image", arrival,
+        image_message(serialisation_, stamp(i), "color_frame", color_image(i), "bgr8"));
+    add(kDepth, "sensor_msgs/Image", arrival,
+        image_message(serialisation_, stamp(i), "color_frame", depth_image(1000 + i), "16UC1"));
+  }
+  BagSource source = open();
+  std::vector<int> order;
+  for (const Frame& frame : frames_of(source)) order.push_back(frame.bgr.at<cv::Vec3b>(5, 7)[0]);
+  EXPECT_EQ(order, (std::vector<int>{35, 40, 41, 100, 101}));
+  const std::string text =
+      ": the time stamps go back 1 time, by up to 2.0 s: images are used in order of their stamps";
+  EXPECT_THAT(source.report().warnings, ElementsAre(kColor + text, kDepth + text));
+}
+
 TEST_F(OneBagSourceTest, RefusesDepthOfWhichNothingSaysWhereItIs) {
   info();
   color(0);

@@ -1,5 +1,7 @@
 #include "source_openni2/openni2_source.hpp"
 
+#include <algorithm>
+#include <cctype>
 #include <chrono>
 #include <opencv2/core.hpp>
 #include <opencv2/imgproc.hpp>
@@ -33,6 +35,19 @@ void require(openni::Status status, const std::string& what, const std::string& 
 
 /// OpenNI is not shut down again: it would unload drivers whose threads may still run.
 void initialize() { require(OpenNI::initialize(), "OpenNI 2 cannot be initialised", "OpenNI 2"); }
+
+/// OpenNI 2.2.0.33 would open a recording, and hang when it plays it.
+void refuse_recording(const std::string& device) {
+  constexpr std::size_t kLength = 4;
+  std::string ending = device.substr(device.size() - std::min(device.size(), kLength));
+  std::ranges::transform(ending, ending.begin(), [](unsigned char letter) {
+    return static_cast<char>(std::tolower(letter));
+  });
+  if (ending == ".oni")
+    throw Error(Fault::kUsage, "is a recording of OpenNI, which this source does not play", device,
+                "convert it to a folder of the TUM format or to a bag, and give that with "
+                "--dataset; 'stillpoint record' makes such folders of a live camera");
+}
 
 std::string uri_of(const openni::Device& device) { return device.getDeviceInfo().getUri(); }
 
@@ -96,6 +111,7 @@ void OpenNi2Source::Options::visit(OptionVisitor& v) {
 }
 
 OpenNi2Source::Camera::Camera(const Options& options) {
+  refuse_recording(options.device);
   initialize();
   const bool any = options.device.empty();
   const std::string wanted = any ? "OpenNI 2" : options.device;

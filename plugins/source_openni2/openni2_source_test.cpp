@@ -83,5 +83,15 @@ TEST(OpenNi2Source, SaysThatNoSuchCameraIsThere) {
               AllOf(HasSubstr("freenect://7"), HasSubstr("the camera cannot be opened")));
 }
 
+TEST(OpenNi2Source, RefusesRecordings) {
+  auto options = dummy();
+  for (const char* file : {"walk.oni", "/data/WALK.ONI", ".oni"}) {
+    options.device = file;
+    EXPECT_THAT(message_of(options, small_camera()),
+                AllOf(HasSubstr(file), HasSubstr("a recording of OpenNI"), HasSubstr("TUM format"),
+                      HasSubstr("stillpoint record")));
+  }
+}
+
 }  // namespace
 }  // namespace stillpoint::source_openni2

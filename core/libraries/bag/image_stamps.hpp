@@ -19,8 +19,10 @@ struct ImageStamps {
   std::vector<ImageStamp> images;  ///< strictly in order of time
   std::size_t unreadable = 0;      ///< messages that are damaged
   std::size_t repeated = 0;        ///< left out for a stamp that another one has
+  std::size_t steps_back = 0;      ///< of more than a second, from one image to the next to arrive
+  double largest_step_back = 0.0;  ///< seconds
 
-  /// What was left out, a line each; `topic` begins it.
+  /// What was left out or put in another order, a line each; `topic` begins it.
   std::vector<std::string> warnings(const std::string& topic) const;
 };
 

@@ -7,6 +7,9 @@ namespace stillpoint::live_camera {
 namespace {
 
 constexpr double kJump = 1.0;  // seconds; images wait less than that in a driver
+// Share of the difference to the time of arrival that each image makes up for: a device's clock
+// runs faster or slower than this computer's, by up to 0.1 ms per second.
+constexpr double kCorrection = 0.001;
 
 double seconds_of(auto duration) { return std::chrono::duration<double>(duration).count(); }
 
@@ -31,7 +34,7 @@ double SensorClock::seconds(std::uint64_t ticks, double arrival) {
         static_cast<std::int64_t>((ticks - last_->ticks) << unused_bits_) >> unused_bits_;
     const double expected = last_->seconds + static_cast<double>(difference) / ticks_per_second_;
     if (std::abs(expected - arrival) < kJump)
-      seconds = expected;
+      seconds = expected + kCorrection * (arrival - expected);
     else
       ++jumps_;
   }

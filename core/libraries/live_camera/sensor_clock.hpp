@@ -12,8 +12,9 @@ namespace stillpoint::live_camera {
 double host_seconds();
 
 /// Turns the counter of a device into seconds of host_seconds(). Between two images its difference
-/// is exact, while the times of arrival at the computer vary by milliseconds. Not thread-safe,
-/// but for jumps().
+/// is good to microseconds, while the times of arrival at the computer vary by milliseconds. Over
+/// minutes it follows the times of arrival: the two clocks do not run alike. Not thread-safe, but
+/// for jumps().
 class SensorClock {
  public:
   /// A counter of `bits` bits, at most 64, that starts over at its end.

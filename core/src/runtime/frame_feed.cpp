@@ -3,6 +3,7 @@
 #include <chrono>
 #include <condition_variable>
 #include <mutex>
+#include <string>
 #include <utility>
 
 #include "stillpoint/engine/stage_guard.hpp"
@@ -14,6 +15,8 @@ namespace stillpoint {
 namespace {
 
 constexpr std::size_t kFramesAhead = 2;
+// A longer step of the recording's time is no pause of it: a clock was set. Seconds.
+constexpr double kLongestWait = 3600.0;
 
 std::optional<Frame> next_of(Source& source, std::uint32_t index, const Frame* previous,
                              bool thorough) {
@@ -66,6 +69,17 @@ void FrameFeed::end() {
   if (failure_ && StageGuard::has_ended_a_call()) stop_.fail(failure_);
 }
 
+SourceReport FrameFeed::report() {
+  if (!source_.usable()) return {};
+  SourceReport report = source_.call_unmeasured({}, &Source::report);
+  if (clock_steps_ > 0)
+    report.warnings.push_back("the recording's time goes on by more than an hour, " +
+                              std::to_string(clock_steps_) +
+                              (clock_steps_ == 1 ? " time" : " times") +
+                              ": a clock was set, and `pace: sensor` did not wait for it");
+  return report;
+}
+
 FramePtr FrameFeed::next() {
   FramePtr frame;
   if (!thread_.joinable()) {
@@ -106,6 +120,11 @@ void FrameFeed::deliver(FramePtr frame) {
     return;
   }
   const double time = frame->time;
+  if (last_time_ && time - *last_time_ > kLongestWait) {
+    clock_ahead_.reset();  // due at once
+    ++clock_steps_;
+  }
+  last_time_ = time;
   if (clock_ahead_) clock_.wait_until(time + *clock_ahead_, stop_.token());
   const bool paused = run_.paused();
   if (clock_ahead_ && !paused) {

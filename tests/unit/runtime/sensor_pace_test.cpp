@@ -98,6 +98,35 @@ TEST_P(SensorPace, WhilePausedTheRecordingWaitsAndNothingIsDropped) {
   EXPECT_EQ(f.output->dropped, 0);
 }
 
+/// Its clock is set two days on after the third frame.
+class SetClock final : public Source {
+ public:
+  std::optional<Frame> next() override {
+    if (next_ == 6) return std::nullopt;
+    Frame frame = testing::make_frame(next_++);
+    if (frame.index >= 3) frame.time += 2 * 86400;
+    return frame;
+  }
+
+ private:
+  std::uint32_t next_ = 0;
+};
+
+TEST_P(SensorPace, AClockThatWasSetIsNotWaitedFor) {
+  EngineFixture f;
+  f.source = std::make_shared<SetClock>();
+  auto clock = std::make_unique<ManualClock>();
+  clock->set(100);
+  ManualClock* time = clock.get();
+  f.calls.hook = [&](const std::string& entry) {
+    if (entry.starts_with("output")) time->set(time->now() + 0.1);
+  };
+  Engine(f.stages(), runtime(GetParam(), Pace::kSensor), {}, std::move(clock)).run();
+  EXPECT_EQ(f.calls.entries("track").size(), 6u);
+  ASSERT_EQ(f.output->source.warnings.size(), 1u);
+  EXPECT_THAT(f.output->source.warnings[0], ::testing::HasSubstr("more than an hour, 1 time:"));
+}
+
 TEST_P(SensorPace, AStopEndsTheWait) {
   EngineFixture f(8);
   std::stop_source stop;

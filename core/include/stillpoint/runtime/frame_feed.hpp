@@ -17,7 +17,9 @@ namespace stillpoint {
 /// `inline` and `pace: free`: next() asks the source. Otherwise the source has a thread of its own:
 /// * `free`: it decodes up to two frames ahead, and every frame is used;
 /// * `sensor`: it delivers frames at the rate at which they were recorded. Two may wait; when a
-///   third comes, the oldest is dropped and counted. While the run is paused, it waits instead.
+///   third comes, the oldest is dropped and counted. While the run is paused, it waits instead. A
+///   step of more than an hour is a clock that was set: it is not waited for, and the report says
+///   so.
 class FrameFeed {
  public:
   FrameFeed(Stage<Source> source, const RuntimeOptions& options, PaceClock& clock,
@@ -31,9 +33,7 @@ class FrameFeed {
   void end();
 
   /// Only after end().
-  SourceReport report() {
-    return source_.usable() ? source_.call_unmeasured({}, &Source::report) : SourceReport();
-  }
+  SourceReport report();
   std::size_t dropped() const { return dropped_; }
 
  private:
@@ -52,6 +52,8 @@ class FrameFeed {
   FramePtr previous_;  // the last one read
   std::size_t dropped_ = 0;
   std::optional<double> clock_ahead_;  // seconds from the recording's time to that of the clock
+  std::optional<double> last_time_;    // seconds, of the recording, delivered
+  int clock_steps_ = 0;                // too long to be waited for
   std::exception_ptr failure_;         // written before the queue is closed, read after
   BoundedQueue<FramePtr> queue_;
   std::jthread thread_;  // last: it uses all the others
