@@ -1,5 +1,7 @@
 // The page in headless Chromium.
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 
 #include "output_web/fake_run.hpp"
 #include "output_web/live_view_fixture.hpp"
@@ -59,6 +61,40 @@ TEST_F(InABrowser, ARecordingPlaysWithoutAServer) {
                           "document.getElementById('replay-play').textContent == 'Play' && "
                           "document.getElementById('legend').children.length > 0");
   for (const char* figure : kFigures) EXPECT_NE(dom.find(figure), std::string::npos) << figure;
+}
+
+// Of a process that was killed while it wrote: of 101 letters of base64, the last is no whole byte;
+// 100 end within a record.
+TEST_F(InABrowser, OfARecordingThatIsCutOffTheRestPlays) {
+  output.reset();
+  std::ifstream stream(folder / "live.html");
+  const std::string whole(std::istreambuf_iterator<char>(stream), {});
+  const std::string begin = "<script type=\"text/plain\" class=\"message\">";
+  const std::size_t message = whole.find(begin);
+  ASSERT_NE(message, std::string::npos);
+  for (const std::size_t letters : {100u, 101u}) {
+    const fs::path file =
+        temporary.write("cut_" + std::to_string(letters) + ".html",
+                        whole + begin + whole.substr(message + begin.size(), letters));
+    const std::string dom = document_in_browser(
+        "file://" + file.string(),
+        "document.getElementById('replay-play').textContent == 'Play' && "
+        "document.getElementById('connection').textContent == 'the recording ends early' && "
+        "document.getElementById('legend').children.length > 0");
+    for (const char* figure : kFigures) EXPECT_NE(dom.find(figure), std::string::npos) << figure;
+  }
+}
+
+// As the page of another version does, which does not know the number of this protocol.
+TEST_F(InABrowser, APageOfAnotherVersionAsksToBeReloaded) {
+  document_in_browser(
+      output->url(),
+      "document.getElementById('connection').textContent.endsWith('reload it') || "
+      "(window.realSend ??= WebSocket.prototype.send, "
+      "WebSocket.prototype.send = function(bytes) { bytes[0] = 99; realSend.call(this, bytes); }, "
+      "document.getElementById('steering').hidden || document.getElementById('pause').click(), "
+      "false)");
+  EXPECT_TRUE(run->calls().empty());
 }
 
 }  // namespace

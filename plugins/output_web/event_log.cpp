@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
-#include <span>
 #include <utility>
 
 #include "output_web/json_text.hpp"
@@ -15,8 +14,9 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::size_t kTimesKept = 12'000;    // about 600 frames
-constexpr std::size_t kCloudsPerMessage = 8;  // 29 kB each for 640 × 480 px
+constexpr std::size_t kTimesKept = 12'000;      // about 600 frames
+constexpr std::size_t kFramesPerMessage = 700;  // 92 bytes each
+constexpr std::size_t kCloudsPerMessage = 8;    // 29 kB each for 640 × 480 px
 constexpr std::size_t kCloudsKept = 2000;
 constexpr std::size_t kVoxelsPerMessage = 50'000;  // 17 bytes each
 constexpr std::size_t kFirstFit = 10;              // frames
@@ -33,8 +33,8 @@ void write_text(Record kind, const std::string& text, MessageWriter& writer) {
 
 struct EventLog::Snapshot {
   FrameReport latest;
-  std::vector<FrameEntry> frames;  // new ones, or all for a fit
-  std::size_t first_new = 0;       // of these
+  std::vector<FrameEntry> frames;
+  std::vector<FrameEntry> fit;  // of the truth: to all frames; empty: it is new enough
   std::vector<std::string> stages;
   std::size_t first_stage = 0;
   std::vector<TimeEntry> times;
@@ -43,13 +43,11 @@ struct EventLog::Snapshot {
   std::string steering;
   VoxelsPtr voxels;  // null: nothing new
   std::string end;
-  bool fit = false;
 
   bool empty() const {
-    return first_new == frames.size() && times.empty() && clouds.empty() && steering.empty() &&
-           !voxels && end.empty();
+    return frames.empty() && times.empty() && clouds.empty() && steering.empty() && !voxels &&
+           end.empty();
   }
-  std::span<const FrameEntry> new_frames() const { return std::span(frames).subspan(first_new); }
 };
 
 void EventLog::add(const FrameReport& report) {
@@ -115,7 +113,8 @@ void EventLog::add_times(const std::vector<StageTime>& times) {
 // Compares with the map before: what mapping has moved meanwhile is among it.
 void EventLog::add_loop(const FrameReport& report) {
   if (!latest_.map || !report.map || report.loops_closed == latest_.loops_closed) return;
-  LoopEntry loop{.frame = report.frame->index};
+  LoopEntry loop{.frame = report.frame->index,
+                 .count = static_cast<std::uint32_t>(report.loops_closed - latest_.loops_closed)};
   for (KeyFrameId id = 0; id < latest_.map->keyframe_id_end(); ++id) {
     const KeyFrame* before = latest_.map->keyframe(id);
     const KeyFrame* after = report.map->keyframe(id);
@@ -132,6 +131,7 @@ void EventLog::finish(const RunSummary& summary) {
   const Json json = {{"complete", summary.complete},
                      {"failure", summary.failure},
                      {"dropped_frames", summary.dropped_frames},
+                     {"source_skipped", summary.source.skipped},
                      {"loops_closed", summary.loops_closed},
                      {"wall_seconds", summary.wall_seconds}};
   if (shows_voxels()) set_voxels(sorted_voxels(summary.dense_map()));
@@ -155,13 +155,13 @@ std::string EventLog::news(Seen& seen, const Request& request) {
     write_map_changes(*seen.map, *now.latest.map, writer);
     seen.map = now.latest.map;
   }
-  write_frames(now.new_frames(), writer);
+  write_frames(now.frames, writer);
   write_times(now.times, writer);
   for (const auto& cloud : now.clouds) writer.text(*cloud);
   if (now.voxels)
     seen.voxels = write_voxel_changes(seen.voxels, now.voxels, kVoxelsPerMessage, writer);
   write_loops(now.loops, writer);
-  if (now.fit && now.latest.map) write_fit(now.frames, *now.latest.map, writer);
+  if (!now.fit.empty() && now.latest.map) write_fit(now.fit, *now.latest.map, writer);
   if (request.image && now.latest.frame && seen.image != now.latest.frame->index) {
     writer.text(picture(now.latest));
     seen.image = now.latest.frame->index;
@@ -178,12 +178,14 @@ EventLog::Snapshot EventLog::snapshot(Seen& seen, const Request& request) const 
   seen.stages = stages_.size();
 
   const auto grown = static_cast<std::size_t>(kFitGrowth * static_cast<double>(seen.fitted_frames));
-  now.fit = run_.truth.known() && frames_.size() >= std::max(kFirstFit, grown + 1);
-  const std::size_t first = now.fit ? 0 : seen.frames;
-  now.frames.assign(frames_.begin() + static_cast<std::ptrdiff_t>(first), frames_.end());
-  now.first_new = seen.frames - first;
-  seen.frames = frames_.size();
-  if (now.fit) seen.fitted_frames = frames_.size();
+  if (run_.truth.known() && frames_.size() >= std::max(kFirstFit, grown + 1)) {
+    now.fit = frames_;
+    seen.fitted_frames = frames_.size();
+  }
+  const auto first = frames_.begin() + static_cast<std::ptrdiff_t>(seen.frames);
+  const std::size_t count = std::min(frames_.size() - seen.frames, kFramesPerMessage);
+  now.frames.assign(first, first + static_cast<std::ptrdiff_t>(count));
+  seen.frames += count;
 
   const std::size_t times = std::max(seen.times, times_dropped_) - times_dropped_;
   now.times.assign(times_.begin() + static_cast<std::ptrdiff_t>(times), times_.end());
@@ -199,8 +201,10 @@ EventLog::Snapshot EventLog::snapshot(Seen& seen, const Request& request) const 
   if (seen.steering != steering_changes_) now.steering = steering_;
   seen.steering = steering_changes_;
   if (request.voxels && voxels_ && seen.voxels != voxels_) now.voxels = voxels_;
-  if (!seen.end) now.end = end_;
-  seen.end = !end_.empty();
+  if (!seen.end && seen.frames == frames_.size()) {
+    now.end = end_;
+    seen.end = !end_.empty();
+  }
   return now;
 }
 

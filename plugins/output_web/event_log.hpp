@@ -47,6 +47,7 @@ class EventLog {
   void set_voxels(VoxelsPtr voxels);
 
   /// A message with all that is new to a viewer, as far as it asks for that; empty when nothing is.
+  /// Who comes late gets frames and surfaces in parts, one with each message.
   std::string news(Seen& seen, const Request& request);
 
  private:

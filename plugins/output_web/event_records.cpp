@@ -63,6 +63,7 @@ void write_loops(std::span<const LoopEntry> loops, MessageWriter& writer) {
     writer.number(loop.frame);
     writer.number(loop.moved);
     writer.number(loop.largest_shift_m);
+    writer.number(loop.count);
     writer.end();
   }
 }

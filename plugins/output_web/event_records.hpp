@@ -27,6 +27,7 @@ struct LoopEntry {
   std::uint32_t frame = 0;
   std::uint32_t moved = 0;    ///< key frames
   float largest_shift_m = 0;  ///< of them
+  std::uint32_t count = 1;    ///< loops closed since the frame before
 };
 
 /// Names of stages, numbered from `first`.

@@ -24,7 +24,8 @@ class LiveView : public ::testing::Test {
   static void finish(WebOutput& output) {
     const SparseMap map;
     const std::vector<TrackedPose> poses;
-    const SourceReport source;
+    SourceReport source;
+    source.skipped = 3;
     const std::vector<StageTime> times;
     output.finish({.map = map, .poses = poses, .source = source, .times = times});
   }

@@ -12,7 +12,7 @@
 namespace stillpoint::output_web {
 
 /// First byte of every message, in both directions. Raised when a layout changes.
-inline constexpr std::uint8_t kProtocol = 2;
+inline constexpr std::uint8_t kProtocol = 3;
 
 enum class Record : std::uint8_t {
   kRunInfo = 1,

@@ -56,7 +56,7 @@ TEST_F(LiveView, TellsOfLoops) {
   edit.keyframe(2).world_from_camera.translation().x() += 0.5;
   report = report_of(1);
   report.map = std::make_shared<const SparseMap>(std::move(edit).finish());
-  report.loops_closed = 1;
+  report.loops_closed = 2;
   output->frame(report);
   TestViewer viewer(port(*output));
   const auto records = viewer.asked();
@@ -65,6 +65,35 @@ TEST_F(LiveView, TellsOfLoops) {
   EXPECT_EQ(number_at<std::uint32_t>(loop, 0), 1u);
   EXPECT_EQ(number_at<std::uint32_t>(loop, 4), 1u);
   EXPECT_FLOAT_EQ(number_at<float>(loop, 8), 0.5f);
+  EXPECT_EQ(number_at<std::uint32_t>(loop, 12), 2u);
+}
+
+TEST_F(LiveView, GivesALateViewerTheFramesInParts) {
+  constexpr std::uint32_t kFrames = 1500;
+  constexpr std::size_t kFrameSize = 92, kLargest = 64 << 10;  // bytes
+  FrameReport report = report_of(1);
+  for (std::uint32_t i = 0; i < kFrames; ++i) {
+    auto frame = std::make_shared<Frame>(*report.frame);
+    frame->index = i;
+    report.frame = frame;
+    output->frame(report);
+  }
+  finish(*output);
+  TestViewer viewer(port(*output));
+  std::uint32_t next = 0;
+  std::size_t messages = 0;
+  for (bool ended = false; !ended; ++messages) {
+    const auto records = viewer.asked(2);
+    ASSERT_TRUE(records);
+    ended = records->contains(Record::kEnd);
+    if (!records->contains(Record::kFrames)) continue;
+    const std::string& frames = records->at(Record::kFrames).at(0);
+    EXPECT_LE(frames.size(), kLargest);
+    for (std::size_t at = 0; at < frames.size(); at += kFrameSize)
+      EXPECT_EQ(number_at<std::uint32_t>(frames, at), next++);
+  }
+  EXPECT_EQ(next, kFrames);
+  EXPECT_EQ(messages, 3u);
 }
 
 TEST_F(LiveView, SaysHowTheRunHasEndedThenGoodBye) {
@@ -75,7 +104,9 @@ TEST_F(LiveView, SaysHowTheRunHasEndedThenGoodBye) {
   finish(*output);
   const auto records = viewer.next();
   ASSERT_TRUE(records);
-  EXPECT_TRUE(nlohmann::json::parse(records->at(Record::kEnd).at(0))["complete"]);
+  const auto end_record = nlohmann::json::parse(records->at(Record::kEnd).at(0));
+  EXPECT_TRUE(end_record["complete"]);
+  EXPECT_EQ(end_record["source_skipped"], 3);
   std::thread end([&] { output.reset(); });
   EXPECT_FALSE(viewer.next());
   EXPECT_EQ(viewer.close_code(), 1001);

@@ -13,9 +13,10 @@ bool Steering::execute(const void* viewer, Command command) {
   switch (command) {
     case Command::kPause:
       if (!pause_) pause_ = run_->pause();
-      pausing_viewer_ = viewer;
+      pausing_viewers_.insert(viewer);
       break;
     case Command::kResume:
+      pausing_viewers_.clear();
       pause_.reset();
       break;
     case Command::kStep:
@@ -33,7 +34,7 @@ bool Steering::execute(const void* viewer, Command command) {
 }
 
 bool Steering::leave(const void* viewer) {
-  if (!pause_ || viewer != pausing_viewer_) return false;
+  if (pausing_viewers_.erase(viewer) == 0 || !pausing_viewers_.empty()) return false;
   pause_.reset();
   return true;
 }

@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <optional>
+#include <set>
 #include <stillpoint/sdk.hpp>
 #include <string>
 
@@ -19,7 +20,7 @@ class Steering {
   void begin(std::shared_ptr<LiveRun> run) { run_ = std::move(run); }
   /// False where viewers may only look. Before begin(), nothing happens.
   bool execute(const void* viewer, Command command);
-  /// A pause ends with the viewer that has asked for it. Whether that was so.
+  /// A pause ends with the last viewer that has asked for it. Whether that was so.
   bool leave(const void* viewer);
 
   /// JSON: `allowed`; `paused`, `ending`; `map_file`, where the map would be saved, without its
@@ -33,7 +34,7 @@ class Steering {
   const bool allowed_;
   const Log log_;
   std::shared_ptr<LiveRun> run_;
-  const void* pausing_viewer_ = nullptr;
+  std::set<const void*> pausing_viewers_;
   LiveRun::Pause pause_;
   bool ending_ = false;
   int notes_ = 0;

@@ -3,6 +3,7 @@
 
 #include "output_web/fake_run.hpp"
 #include "output_web/live_view_fixture.hpp"
+#include "output_web/steering.hpp"
 
 namespace stillpoint::output_web {
 namespace {
@@ -66,6 +67,25 @@ TEST_F(Steered, GoesOnWhenTheViewerThatPausedHasGone) {
   }
   EXPECT_FALSE(state(witness)["paused"]);
   EXPECT_EQ(run->calls(), (Calls{"pause", "go on"}));
+}
+
+TEST(Steering, APauseLastsWhileAnyViewerThatPausedIsThere) {
+  const auto run = std::make_shared<FakeRun>();
+  Steering steering(true, [](LogLevel, std::string_view) {});
+  steering.begin(run);
+  const int first = 1, second = 2, idle = 3;  // by their addresses
+  for (const int* viewer : {&first, &second, &second})
+    EXPECT_TRUE(steering.execute(viewer, Command::kPause));
+  EXPECT_FALSE(steering.leave(&second));
+  EXPECT_FALSE(steering.leave(&idle));
+  EXPECT_EQ(run->calls(), std::vector<std::string>{"pause"});
+  EXPECT_TRUE(steering.leave(&first));
+  EXPECT_EQ(run->calls(), (std::vector<std::string>{"pause", "go on"}));
+
+  steering.execute(&first, Command::kPause);
+  steering.execute(&second, Command::kResume);
+  EXPECT_FALSE(steering.leave(&first));
+  EXPECT_EQ(run->calls().size(), 4u);
 }
 
 TEST_F(Steered, GoesOnWhenTheServerEnds) {

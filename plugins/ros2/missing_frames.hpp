@@ -1,4 +1,4 @@
-// How many frames did not come, by the times of those that did.
+// How many frames did not come, and how far apart they are, by the times of those that did.
 #pragma once
 
 #include <cstddef>
@@ -16,6 +16,8 @@ class MissingFrames {
   /// counts as n - 1. The period is that of the shorter intervals: the median would be twice as
   /// long if every other frame were missing.
   std::size_t count() const;
+  /// Of the camera, in seconds; that of 30 Hz before there are two frames.
+  double period() const;
 
  private:
   double last_ = 0.0;              // s

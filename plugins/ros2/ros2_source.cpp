@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <iomanip>
 #include <sstream>
 
 #include "bag/bag_reader.hpp"
@@ -14,10 +15,19 @@ namespace {
 
 using std::chrono::steady_clock;
 
+constexpr double kStepBack = 1.0;  // seconds; images that come out of order are nearer
+
 template <class... Parts>
 std::string text_of(const Parts&... parts) {
   std::ostringstream text;
   (text << ... << parts);
+  return text.str();
+}
+
+/// Also of 1.7e9 seconds.
+std::string tenths(double seconds) {
+  std::ostringstream text;
+  text << std::fixed << std::setprecision(1) << seconds;
   return text.str();
 }
 
@@ -128,30 +138,53 @@ std::optional<Frame> Ros2Source::next() {
   return std::nullopt;
 }
 
+bool Ros2Source::is_pair() {
+  const double ahead = color_->stamp - depth_->stamp;
+  const double apart = std::abs(ahead);
+  if (apart <= (options_.approximate ? options_.max_difference : 0.0)) return true;
+  if (ahead < 0) missing_.add(color_->stamp + shift_);  // it did come
+  unpaired_depth_ += ahead > 0 ? 1 : 0;
+  // The later one would wait for ever for a clock that was set back: both go.
+  const bool two_clocks = apart > kStepBack && goes_back(std::min(color_->stamp, depth_->stamp));
+  if (ahead < 0 || two_clocks) color_.reset();
+  if (ahead > 0 || two_clocks) depth_.reset();
+  unpaired_ += two_clocks ? 2 : 1;
+  if (given_ == 0 && unpaired_ % 100 == 0)
+    log_(LogLevel::kWarning,
+         text_of(unpaired_, " images, and no two with the same stamp: set source.approximate"));
+  return false;
+}
+
 std::optional<Frame> Ros2Source::frame_of_waiting() {
-  const double ahead = color_->time - depth_->time;
-  if (std::abs(ahead) > (options_.approximate ? options_.max_difference : 0.0)) {
-    if (ahead < 0) missing_.add(color_->time);  // it did come
-    unpaired_depth_ += ahead > 0 ? 1 : 0;
-    (ahead < 0 ? color_ : depth_).reset();
-    ++unpaired_;
-    if (given_ == 0 && unpaired_ % 100 == 0)
-      log_(LogLevel::kWarning,
-           text_of(unpaired_, " images, and no two with the same stamp: set source.approximate"));
-    return std::nullopt;
-  }
+  if (!is_pair()) return std::nullopt;
   const Image color = *std::exchange(color_, std::nullopt);
   const Image depth = *std::exchange(depth_, std::nullopt);
-  if (given_ > 0 && color.time <= last_time_) {
+  if (goes_back(color.stamp)) go_on_from(color.stamp);
+  const double time = color.stamp + shift_;
+  if (given_ > 0 && time <= last_time_) {
     ++backwards_;
     return std::nullopt;
   }
-  Frame frame = reading(color_reader_,
-                        [&] { return rectifier_->frame(color.time, color.pixels, depth.pixels); });
+  Frame frame =
+      reading(color_reader_, [&] { return rectifier_->frame(time, color.pixels, depth.pixels); });
   frame.index = given_++;
   last_time_ = frame.time;
   missing_.add(frame.time);
   return frame;
+}
+
+bool Ros2Source::goes_back(double stamp) const {
+  return given_ > 0 && stamp + shift_ < last_time_ - kStepBack;
+}
+
+void Ros2Source::go_on_from(double stamp) {
+  const double step = last_time_ - (stamp + shift_);
+  shift_ = last_time_ + missing_.period() - stamp;
+  ++returns_;
+  log_(LogLevel::kWarning,
+       text_of("the stamps went back by ", tenths(step),
+               " s: a clock was set back, or a bag is played again; times go on, from here on ",
+               tenths(shift_), " s later than the stamps"));
 }
 
 void Ros2Source::fail(const Reader& missing) const {
@@ -179,6 +212,11 @@ SourceReport Ros2Source::report() const {
                 "ones came before they could be used (queue_size, reliable)"));
   if (unpaired_ > 0)
     report.warnings.push_back(text_of(unpaired_, " images had no partner of the same time"));
+  if (returns_ > 0)
+    report.warnings.push_back(text_of("the stamps went back by more than a second, ", returns_,
+                                      returns_ == 1 ? " time" : " times",
+                                      ": later poses have times that are up to ", tenths(shift_),
+                                      " s later than the stamps of their images"));
   if (backwards_ > 0)
     report.warnings.push_back(
         text_of(backwards_, " pairs of images were not later than the one before"));

@@ -15,7 +15,9 @@ namespace stillpoint::ros2 {
 
 /// Listens from its construction on. next() waits for CameraInfo, where the pipeline names no
 /// camera, and for a pair of images; it throws Error(kData) when none comes, and for images that
-/// cannot be read. Silence after the first pair is the end.
+/// cannot be read. Silence after the first pair is the end. Where stamps go back by more than a
+/// second, because a clock was set back or a bag is played again, times go on by one interval:
+/// those of all later frames differ from their stamps.
 class Ros2Source final : public Source {
  public:
   struct Options {
@@ -42,7 +44,7 @@ class Ros2Source final : public Source {
 
  private:
   struct Image {
-    double time = 0.0;  ///< seconds, of the header
+    double stamp = 0.0;  ///< seconds, of the header
     cv::Mat pixels;
   };
   enum class Kind { kColor, kDepth };
@@ -50,9 +52,14 @@ class Ros2Source final : public Source {
   void wait_for_camera();
   /// The next image of a topic becomes `image`, unless there is one. False when none comes in time.
   bool wait_for(std::optional<Image>& image, const Reader& reader, Kind kind) const;
-  /// The waiting images, if they belong together and come after the frame before; otherwise one of
-  /// them is dropped.
+  /// Whether the waiting images belong together; otherwise one of them is dropped, or both.
+  bool is_pair();
+  /// The waiting images, if they belong together and come after the frame before.
   std::optional<Frame> frame_of_waiting();
+  /// Whether a stamp is of a clock that was set back since the last frame.
+  bool goes_back(double stamp) const;
+  /// Times go on behind the last frame with this stamp.
+  void go_on_from(double stamp);
   [[noreturn]] void fail(const Reader& missing) const;
 
   Options options_;
@@ -65,6 +72,8 @@ class Ros2Source final : public Source {
   bool ended_ = false;
   std::uint32_t given_ = 0;   // frames
   double last_time_ = 0.0;    // of the last frame, seconds
+  double shift_ = 0.0;        // from stamps to times, seconds
+  std::size_t returns_ = 0;   // of the stamps, to a time that has been
   std::size_t unpaired_ = 0;  // images
   std::size_t unpaired_depth_ = 0;
   std::size_t backwards_ = 0;  // pairs that are not later than the one before

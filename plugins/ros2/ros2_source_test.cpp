@@ -14,13 +14,16 @@ namespace {
 using ::testing::AllOf;
 using testing::camera_info_message;
 using testing::color_image;
+using ::testing::Contains;
 using testing::depth_image;
+using ::testing::DoubleNear;
 using ::testing::ElementsAre;
 using testing::error_text;
 using ::testing::HasSubstr;
 using testing::image_message;
 using ::testing::IsEmpty;
 using testing::loopback_domain;
+using ::testing::Pointwise;
 
 constexpr std::int64_t kStart = 1'305'031'102'175'304'000;  // ns
 constexpr std::int64_t kInterval = 33'333'000;              // ns
@@ -190,6 +193,43 @@ TEST_F(Ros2SourceTest, TimeGoesForward) {
   EXPECT_DOUBLE_EQ(source().next()->time, bag::seconds(stamp(5)));
   EXPECT_DOUBLE_EQ(source().next()->time, bag::seconds(stamp(6)));
   EXPECT_THAT(source().report().warnings, ElementsAre(HasSubstr("1 pairs of images were not")));
+}
+
+/// Those that the stamps of these images would have.
+std::vector<double> times_of_stamps(std::initializer_list<int> images) {
+  std::vector<double> times;
+  for (const int i : images) times.push_back(bag::seconds(kStart + kInterval * i));
+  return times;
+}
+
+std::vector<double> times_of(Source& source) {
+  std::vector<double> times;
+  for (const Frame& frame : testing::frames_of(source)) times.push_back(frame.time);
+  return times;
+}
+
+// By 2.1 s, then by 1.3 s.
+TEST_F(Ros2SourceTest, TimeGoesOnWhenStampsGoBack) {
+  info();
+  for (const int i : {100, 101, 102, 40, 41, 39, 3, 4}) {
+    color(i);
+    depth(i);
+  }
+  EXPECT_THAT(times_of(source()),
+              Pointwise(DoubleNear(1e-6), times_of_stamps({100, 101, 102, 103, 104, 105, 106})));
+  EXPECT_THAT(log_, Contains(HasSubstr("the stamps went back by 2.1 s")).Times(1));
+  EXPECT_THAT(log_, Contains(HasSubstr("the stamps went back by 1.3 s")).Times(1));
+  EXPECT_EQ(source().report().skipped, 1U);  // the image 39, which is late
+  EXPECT_THAT(source().report().warnings,
+              ElementsAre(AllOf(HasSubstr("2 times"), HasSubstr("up to 3.4 s later")),
+                          HasSubstr("1 pairs of images were not")));
+}
+
+TEST_F(Ros2SourceTest, AnImageOfTheOldClockBlocksNobody) {
+  info();
+  for (const int i : {100, 40, 41, 42}) color(i);
+  for (const int i : {100, 101, 40, 41, 42}) depth(i);
+  EXPECT_THAT(times_of(source()), Pointwise(DoubleNear(1e-3), times_of_stamps({100, 101, 102})));
 }
 
 TEST_F(Ros2SourceTest, SaysWhichTopicIsSilent) {

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
-"""foreign_reader_test.py FOLDER: what Foxglove's readers find in the files of specification_test.py is what is in
-them. Skipped (exit code 77) without npm or its registry."""
+"""foreign_reader_test.py PROGRAM FOLDER: what Foxglove's readers find in the files of specification_test.py is what is
+in them, and a recording that Foxglove's writer has written is run as the one it was made of. Skipped (exit code 77)
+without npm or its registry."""
 import json
 import pathlib
 import shutil
@@ -9,7 +10,7 @@ import sys
 
 from read_mcap import Mcap
 
-FOLDER = pathlib.Path(sys.argv[1])
+PROGRAM, FOLDER = sys.argv[1], pathlib.Path(sys.argv[2])
 HERE = pathlib.Path(__file__).parent / "foreign_reader"
 
 
@@ -31,8 +32,16 @@ def install():
                    "--fetch-timeout=20000"]
         if subprocess.run(command, cwd=reader, capture_output=True).returncode != 0:
             skip("npm could not fetch the packages of " + str(lock))
-    shutil.copy(HERE / "read.mjs", reader)
-    return reader / "read.mjs"
+    for script in HERE.glob("*.mjs"):
+        shutil.copy(script, reader)
+    return reader
+
+
+def output_of(*command):
+    done = subprocess.run([str(word) for word in command], capture_output=True, text=True)
+    if done.returncode != 0:
+        sys.exit(f"{command[0]} {command[1]} ended with {done.returncode}: {done.stdout}{done.stderr}")
+    return done.stdout
 
 
 def without_bytes(message):
@@ -43,12 +52,16 @@ def without_bytes(message):
     return len(message) if isinstance(message, bytes) else message
 
 
-script = install()
+def trajectory(dataset):
+    out = FOLDER / "foreign_run"
+    shutil.rmtree(out, ignore_errors=True)
+    output_of(PROGRAM, "run", "orb_baseline", "--dataset", dataset, "-o", out, "--set", "runtime.mode=inline")
+    return (out / "trajectory.txt").read_text()
+
+
+scripts = install()
 files = [FOLDER / name for name in ("run/zstd.mcap", "run/lz4.mcap", "run/none.mcap", "recording.mcap")]
-read = subprocess.run(["node", script, *files], capture_output=True, text=True)
-if read.returncode != 0:
-    sys.exit(read.stderr)
-for name, topics in json.loads(read.stdout).items():
+for name, topics in json.loads(output_of("node", scripts / "read.mjs", *files)).items():
     file = Mcap(pathlib.Path(name).read_bytes())
     for topic, schema in file.channels.values():
         expected = file.messages[topic]
@@ -59,3 +72,11 @@ for name, topics in json.loads(read.stdout).items():
         assert last == without_bytes(expected[-1][1]), f"{topic}: {got['last']} != {expected[-1][1]}"
     assert not topics, topics
 print("Foxglove's readers find the same")
+
+chunks, plain = FOLDER / "foreign_chunks.mcap", FOLDER / "foreign_plain.mcap"
+output_of("node", scripts / "rewrite.mjs", FOLDER / "recording.mcap", chunks, plain)
+expected = trajectory(FOLDER / "recording.mcap")
+assert len(expected.splitlines()) > 20, expected
+for file in chunks, plain:
+    assert trajectory(file) == expected, file
+print("What Foxglove's writer has written gives the same trajectory")

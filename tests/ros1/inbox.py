@@ -1,5 +1,6 @@
 """What the node has published so far."""
 import threading
+import time
 
 import rospy
 from diagnostic_msgs.msg import DiagnosticStatus
@@ -41,10 +42,20 @@ class Inbox:
 
     def wait(self, name, fits, what):
         """The first message that fits."""
-        def found():
-            return next((message for message in self.messages[name] if fits(message)), None)
         with self.changed:
-            self.changed.wait_for(lambda: found() is not None, PATIENCE)
-            message = found()
+            self.changed.wait_for(lambda: self.first(name, fits) is not None, PATIENCE)
+            message = self.first(name, fits)
         expect(message is not None, what)
         return message
+
+    def wait_while(self, publish, name, fits, what):
+        """The same; `publish` is called again and again until then."""
+        end = time.monotonic() + PATIENCE
+        with self.changed:
+            while self.first(name, fits) is None and time.monotonic() < end:
+                publish()
+                self.changed.wait_for(lambda: self.first(name, fits) is not None, 0.2)
+        return self.wait(name, fits, what)
+
+    def first(self, name, fits):
+        return next((message for message in self.messages[name] if fits(message)), None)

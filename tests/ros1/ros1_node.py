@@ -6,6 +6,7 @@ usage: ros1_node.py PACKAGE RECORDING FOLDER
 PACKAGE is the folder of the installed node.
 
 Exits with 77, skipped, where the node was not built or a package of ROS is missing."""
+import itertools
 import os
 import pathlib
 import shutil
@@ -20,11 +21,11 @@ try:
     import tf2_ros
     from diagnostic_msgs.msg import DiagnosticStatus
     from geometry_msgs.msg import TransformStamped
-    from sensor_msgs.msg import Image
+    from sensor_msgs.msg import CameraInfo, Image
     from std_srvs.srv import Trigger
     from inbox import PATIENCE, Inbox, expect
     from processes import Processes
-    from recording_bag import CAMERA, CAMERA_FRAME, Truth, image_message, matrix, write_bag
+    from recording_bag import CAMERA, CAMERA_FRAME, Truth, image_message, info_message, matrix, write_bag
 except ImportError as missing:
     print(f"skipped: {missing}; tools/setup --tests installs the packages")
     sys.exit(77)
@@ -78,9 +79,13 @@ def start_node(processes, parameters, command=NODE):
     rospy.wait_for_service("/stillpoint/reset", PATIENCE)
 
 
-def play(processes, inbox, bag, last_frame=FRAMES - 1):
+def start_playing(processes, inbox, bag):
     inbox.clear()
     processes.start("play", "rosbag", "play", "-q", "-r", "0.7", "--wait-for-subscribers", bag)
+
+
+def play(processes, inbox, bag, last_frame=FRAMES - 1):
+    start_playing(processes, inbox, bag)
     expect(processes.wait("play", PATIENCE) == 0, f"{bag.name} is played")
     inbox.wait("state", lambda its: values(its).get("frame") == str(last_frame), "all frames come through")
 
@@ -199,7 +204,7 @@ def check_other_images(inbox):
     depth = numpy.full((240, 320), 5000, numpy.uint16)
     publishers[0].publish(image_message(numpy.zeros((240, 320, 3), numpy.uint8), "rgb8", rospy.Time(2000)))
     publishers[1].publish(image_message(depth, "16UC1", rospy.Time(2000)))
-    state = inbox.wait("state", lambda its: True, "a black image is answered")
+    state = inbox.wait("state", lambda its: "frame" in values(its), "a black image is answered")
     expect(state.message == "lost" and state.level == DiagnosticStatus.WARN and not inbox.messages["pose"] and
            not inbox.messages["tf"], "the camera is lost, and there is no pose")
     publishers[0].publish(image_message(numpy.zeros((240, 320, 2), numpy.uint8), "yuv422", rospy.Time(2001)))
@@ -208,6 +213,46 @@ def check_other_images(inbox):
     expect("'yuv422'" in state.message, state.message)
     for publisher in publishers:
         publisher.unregister()
+
+
+def check_another_camera(inbox):
+    """Of 480 x 360 pixels: it is taken after a reset."""
+    kinds = {"color/image_raw": Image, "aligned_depth_to_color/image_raw": Image, "color/camera_info": CameraInfo}
+    publishers = [rospy.Publisher(f"{CAMERA}/{topic}", kind, queue_size=1) for topic, kind in kinds.items()]
+    color, depth = numpy.zeros((360, 480, 3), numpy.uint8), numpy.full((360, 480), 5000, numpy.uint16)
+    camera = {"width": 480, "height": 360, "fx": 400.0, "fy": 400.0, "cx": 240.0, "cy": 180.0}
+    seconds = itertools.count(3000)
+
+    def publish():
+        stamp = rospy.Time(next(seconds))
+        images = image_message(color, "rgb8", stamp), image_message(depth, "16UC1", stamp)
+        for publisher, message in zip(publishers, (*images, info_message(camera, stamp))):
+            publisher.publish(message)
+
+    inbox.clear()
+    state = inbox.wait_while(publish, "state", lambda its: "service reset" in its.message, "another size is refused")
+    expect(state.level == DiagnosticStatus.ERROR and "480 x 360" in state.message, state.message)
+    answer = call("reset")
+    expect(answer.success, answer.message)
+    inbox.clear()
+    state = inbox.wait_while(publish, "state", lambda its: "frame" in values(its), "it is tracked after a reset")
+    expect(state.message == "waiting", "black images begin no map")
+    for publisher in publishers:
+        publisher.unregister()
+
+
+def check_second_play(processes, inbox, bag, truth, map_from_room):
+    """Of the same bag, whose player ends in the middle of it."""
+    answer = call("reset")
+    expect(answer.success, answer.message)
+    start_playing(processes, inbox, bag)
+    inbox.wait("state", lambda its: values(its).get("frame") == "20", "after a reset, the same bag is tracked again")
+    processes.stop("play")
+    error = worst_error(list(inbox.messages["pose"]), truth, map_from_room, numpy.eye(4))
+    expect(error < LIMIT, f"its poses are right, to {error * 1000:.1f} mm")
+    inbox.clear()
+    state = inbox.wait("state", lambda its: its.message.startswith("no pair of images for "), "then no images come")
+    expect(state.level == DiagnosticStatus.WARN, state.message)
 
 
 def robot_with_odometry(processes, inbox, truth, tf_buffer):
@@ -223,6 +268,7 @@ def robot_with_odometry(processes, inbox, truth, tf_buffer):
     check_maps(inbox, map_from_room)
     check_services(processes, inbox, truth, map_from_room)
     check_other_images(inbox)
+    check_another_camera(inbox)
     expect(processes.stop("node") == 0, "the node ends at Ctrl-C")
 
 
@@ -233,10 +279,11 @@ def camera_alone(processes, inbox, truth):
     play(processes, inbox, bag, FRAMES - 2)  # the last pair waits for a later one that might fit better
     optical = numpy.eye(4)
     optical[:3, :3] = [[0, 0, 1], [-1, 0, 0], [0, -1, 0]]
-    error = worst_error(inbox.messages["pose"], truth, optical @ numpy.linalg.inv(truth.room_from_camera(first)),
-                        numpy.eye(4))
+    map_from_room = optical @ numpy.linalg.inv(truth.room_from_camera(first))
+    error = worst_error(inbox.messages["pose"], truth, map_from_room, numpy.eye(4))
     expect(error < LIMIT, f"depth in metres, 4 ms later: the camera's poses are right, to {error * 1000:.1f} mm")
     expect(inbox.messages["tf"][-1].transforms[0].child_frame_id == CAMERA_FRAME, "tf goes from map to the camera")
+    check_second_play(processes, inbox, bag, truth, map_from_room)
     expect(processes.stop("node") == 0, "the launched node ends at Ctrl-C")
 
 
@@ -244,6 +291,7 @@ def faulty_parameters(processes):
     for code, parameters, message in (
             (2, {"pipeline": "stillpiont"}, "did you mean 'stillpoint'?"),
             (2, {"aproximate": True}, "aproximate: there is no such parameter; did you mean 'approximate'?"),
+            (2, {"max_difference": 2.0}, "/stillpoint/max_difference: must be from 0 to 1 s"),
             (2, {"queue_size": "many"}, "/stillpoint/queue_size: the parameter has another type"),
             (3, {"load_map": True, "map_file": "/no/such.map"}, "/no/such.map: this map cannot be used")):
         rospy.delete_param("/stillpoint")

@@ -5,8 +5,8 @@ import './style.css';
 import {ChartPanel} from './chart_panel.js';
 import {ImagePanel} from './image_panel.js';
 import {MapPanel} from './map_panel.js';
-import {order, read, request} from './protocol.js';
-import {recordedMessages, Replay} from './replay.js';
+import {order, OTHER_VERSION, read, request} from './protocol.js';
+import {recording, Replay} from './replay.js';
 import {Run} from './run.js';
 import {SteeringPanel} from './steering_panel.js';
 
@@ -14,6 +14,7 @@ const BETWEEN_REQUESTS = 66;  // ms
 const BETWEEN_CHARTS = 500;   // ms
 const RETRY = 1500;           // ms
 const TOAST = 6000;           // ms
+const POLICY_ERROR = 1008;    // the server closes with it what does not speak its protocol
 
 const byId = (id) => document.getElementById(id);
 const image = new ImagePanel();
@@ -50,23 +51,36 @@ function connect() {
   socket.onmessage = async ({data}) => {
     const begin = performance.now();
     const changed = new Set();
-    take(data, changed);
+    try {
+      take(data, changed);
+    } catch (error) {
+      if (error.message !== OTHER_VERSION) throw error;
+      socket.close();
+      return giveUp();
+    }
     await draw(changed);
     const rest = BETWEEN_REQUESTS - (performance.now() - begin);
     setTimeout(() => requestAnimationFrame(ask), Math.max(0, rest));
   };
-  socket.onclose = () => {
+  socket.onclose = ({code}) => {
+    if (code === POLICY_ERROR) return giveUp();
     steering.reset();
     say(run.end ? endWords(run.end) : 'no connection, trying again');
     setTimeout(connect, RETRY);
   };
+  const giveUp = () => {  // asking again would not help
+    socket.onclose = null;
+    steering.reset();
+    say(OTHER_VERSION);
+  };
 }
 
 /** Shows a recording that is within the page. */
-function replay(messages) {
+function replay({messages, endsEarly}) {
   byId('surfaces').value = 'voxels';
   map.chooseSurfaces();
-  say('recording');
+  say(endsEarly ? 'the recording ends early' : 'recording');
+  if (messages.length === 0) return;
   new Replay(messages, {take, draw, clock: () => run.frames.at(-1)?.time ?? 0});
 }
 
@@ -117,8 +131,9 @@ function begin() {
   chartsDrawn = -Infinity;
 }
 
-function loopWords({frame, moved, shift}) {
-  return `Loop closed at frame ${frame}: ${moved} key frames moved, by up to ${(100 * shift).toFixed(1)} cm`;
+function loopWords({frame, moved, shift, count}) {
+  const what = count === 1 ? 'Loop' : `${count} loops`;
+  return `${what} closed at frame ${frame}: ${moved} key frames moved, by up to ${(100 * shift).toFixed(1)} cm`;
 }
 
 function toast(text) {
@@ -149,8 +164,9 @@ function showFigures() {
     ['frames', run.seen],
     ...live.socket || run.end ? [['frames/s', framesPerSecond().toFixed(1)]] : [],  // a recording has its own pace
     ['coverage', `${(100 * run.tracked / run.seen).toFixed(0)} %`], ['times lost', run.timesLost],
-    ['dropped', run.dropped], ['key frames', run.keyframeCount], ['landmarks', run.landmarks.size],
-    ['loops', run.loops.length]];
+    ['dropped', run.dropped], ...run.leftOut ? [['left out by the source', run.leftOut]] : [],
+    ['key frames', run.keyframeCount], ['landmarks', run.landmarks.size],
+    ['loops', run.loopsClosed]];
   if (run.fit) figures.push(['ATE, RMSE', `${(100 * run.fit.rmse).toFixed(1)} cm`]);
   byId('figures').replaceChildren(...figures.map(([name, value]) => {
     const box = document.createElement('div');
@@ -164,7 +180,7 @@ function showFigures() {
 
 // The messages of a recording come after this script.
 document.addEventListener('DOMContentLoaded', () => {
-  const messages = recordedMessages();
-  if (messages.length > 0) replay(messages);
+  const recorded = recording();
+  if (recorded) replay(recorded);
   else connect();
 });

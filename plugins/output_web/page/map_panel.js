@@ -126,6 +126,7 @@ export class MapPanel {
     this.clouds.clear();
     this.cloudGroup.clear();
     this.followed = null;
+    this.path = null;
   }
 
   /** `changed`: names of the records that have come. */
@@ -137,6 +138,7 @@ export class MapPanel {
       this.voxels.paint(run, this.surfaceColor.value);
     if (changed.has('landmarks')) this.setLandmarks();
     if (changed.has('keyframes')) this.setKeyframes();
+    if (changed.has('keyframes') || changed.has('fit')) this.path = null;  // all of it may have moved
     if (changed.has('frames')) this.setTrajectory();
     this.followCamera();
     this.paint();
@@ -171,24 +173,26 @@ export class MapPanel {
   }
 
   setTrajectory() {
-    const path = [], truth = [];
-    let before = null, beforeTruth = null;
-    for (const frame of this.run.frames) {
-      const trueNow = this.run.truthOf(frame);
-      if (trueNow && beforeTruth) truth.push(...beforeTruth, ...trueNow);
-      beforeTruth = trueNow ?? beforeTruth;
-      if (frame.state !== 'tracking') continue;
-      const now = {at: this.run.positionOf(frame), index: frame.index};
-      if (before && now.index - before.index <= LONGEST_GAP) path.push(...before.at, ...now.at);
-      before = now;
-    }
-    setPositions(this.trajectory, new Float32Array(path));
-    setPositions(this.truth, new Float32Array(truth));
+    this.path ??= {frames: 0, line: [], truth: [], before: null, beforeTruth: null};
+    while (this.path.frames < this.run.frames.length) this.goOnTo(this.run.frames[this.path.frames++]);
+    setPositions(this.trajectory, new Float32Array(this.path.line));
+    setPositions(this.truth, new Float32Array(this.path.truth));
     const last = this.run.frames.findLast((frame) => frame.state === 'tracking');
     if (!last) return;
     this.pose = this.run.poseOf(last);
     const shape = frustum(this.run.hello.camera, 0.25).flatMap((point) => moved(this.pose, point));
     setPositions(this.camera, new Float32Array(shape));
+  }
+
+  goOnTo(frame) {
+    const {line, truth, before, beforeTruth} = this.path;
+    const trueNow = this.run.truthOf(frame);
+    if (trueNow && beforeTruth) truth.push(...beforeTruth, ...trueNow);
+    this.path.beforeTruth = trueNow ?? beforeTruth;
+    if (frame.state !== 'tracking') return;
+    const now = {at: this.run.positionOf(frame), index: frame.index};
+    if (before && now.index - before.index <= LONGEST_GAP) line.push(...before.at, ...now.at);
+    this.path.before = now;
   }
 
   addClouds() {

@@ -1,6 +1,7 @@
 // Messages as the plugin's README.md lays them out: little-endian numbers in records.
 
-export const PROTOCOL = 2;
+export const PROTOCOL = 3;
+export const OTHER_VERSION = 'this page is of another version of Stillpoint: reload it';
 const ASK = 1, DO = 2;
 export const COMMANDS = {pause: 1, goOn: 2, step: 3, end: 4, saveMap: 5};
 
@@ -89,7 +90,7 @@ const RECORDS = {
   10: ['landmarks', (r) => r.counted(() => ({
     id: r.u32(), position: r.floats(3), staticLogOdds: r.i8() / 8, observations: r.u8()}))],
   11: ['cloud', cloud],
-  12: ['loop', (r) => ({frame: r.u32(), moved: r.u32(), shift: r.f32()})],
+  12: ['loop', (r) => ({frame: r.u32(), moved: r.u32(), shift: r.f32(), count: r.u32()})],
   13: ['fit', (r) => ({worldFromTruth: r.pose(), rmse: r.f32(), pairs: r.u32()})],
   14: ['end', (r) => JSON.parse(r.text())],
   15: ['steering', (r) => JSON.parse(r.text())],
@@ -101,7 +102,7 @@ const RECORDS = {
 /** Calls `take(name, content)` for each record; unknown ones are left out. */
 export function read(buffer, take) {
   const view = new DataView(buffer);
-  if (view.getUint8(0) !== PROTOCOL) throw new Error('this page is of another version of Stillpoint: reload it');
+  if (view.getUint8(0) !== PROTOCOL) throw new Error(OTHER_VERSION);
   for (let at = 1; at < view.byteLength;) {
     const record = RECORDS[view.getUint8(at)];
     const begin = at + 5;

@@ -1,8 +1,25 @@
 // A recorded run, whose messages are within the page.
+import {read} from './protocol.js';
+
 const byId = (id) => document.getElementById(id);
 const LONGEST_WAIT = 1000;  // ms between two messages
 
-export function recordedMessages() { return [...document.querySelectorAll('script.message')]; }
+/** Null where the page is none. Of a process that was killed, the last message may be cut off: it is left out. */
+export function recording() {
+  const messages = [...document.querySelectorAll('script.message')];
+  if (messages.length === 0) return null;
+  const whole = isWhole(messages.at(-1));
+  return {messages: whole ? messages : messages.slice(0, -1), endsEarly: !whole};
+}
+
+function isWhole(message) {
+  try {
+    read(bytesOf(message), () => {});
+    return true;
+  } catch {
+    return false;
+  }
+}
 
 function bytesOf(element) {
   const text = atob(element.textContent);

@@ -102,5 +102,7 @@ export class Run {
   }
 
   get seen() { return this.frames.length ? this.frames.at(-1).index + 1 : 0; }  // of the recording
+  get loopsClosed() { return this.end ? this.end.loops_closed : this.loops.reduce((sum, loop) => sum + loop.count, 0); }
+  get leftOut() { return this.end?.source_skipped ?? 0; }  // by the source, which tells at the end only
   get dropped() { return this.end ? this.end.dropped_frames : this.seen - this.frames.length; }
 }

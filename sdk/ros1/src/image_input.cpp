@@ -2,6 +2,8 @@
 
 #include <ros/console.h>
 
+#include <utility>
+
 namespace stillpoint_ros {
 namespace {
 
@@ -9,8 +11,10 @@ constexpr std::uint32_t kUnpaired = 30;  // images that may wait for the other o
 
 }  // namespace
 
-ImageInput::ImageInput(ros::NodeHandle node, bool approximate, std::size_t queue_size)
-    : queue_size_(queue_size),
+ImageInput::ImageInput(ros::NodeHandle node, const Parameters& parameters)
+    : approximate_stamps_(parameters.approximate),
+      max_difference_(parameters.max_difference),
+      queue_size_(static_cast<std::size_t>(parameters.queue_size)),
       color_(node, "rgb/image_raw", kUnpaired),
       depth_(node, "depth_registered/image_raw", kUnpaired),
       info_subscriber_(node.subscribe<sensor_msgs::CameraInfo>(
@@ -21,9 +25,15 @@ ImageInput::ImageInput(ros::NodeHandle node, bool approximate, std::size_t queue
           })) {
   ROS_INFO("waiting for images on %s, %s and %s", color_.getTopic().c_str(),
            depth_.getTopic().c_str(), info_subscriber_.getTopic().c_str());
-  if (approximate) {
-    using Policy = message_filters::sync_policies::ApproximateTime<Image, Image>;
-    approximate_ = std::make_unique<Approximate>(Policy(kUnpaired), color_, depth_);
+  make_pairs();
+}
+
+void ImageInput::make_pairs() {
+  if (approximate_stamps_) {
+    message_filters::sync_policies::ApproximateTime<Image, Image> policy(kUnpaired);
+    policy.setMaxIntervalDuration(max_difference_);
+    // Not const, it would be taken for a third topic.
+    approximate_ = std::make_unique<Approximate>(std::as_const(policy), color_, depth_);
     approximate_->registerCallback(&ImageInput::add, this);
   } else {
     using Policy = message_filters::sync_policies::ExactTime<Image, Image>;
@@ -39,6 +49,7 @@ std::optional<ImagePair> ImageInput::take() {
   ImagePair pair = std::move(pairs_.front());
   pair.info = info_;
   pairs_.pop_front();
+  last_ = Clock::now();
   return pair;
 }
 
@@ -46,6 +57,21 @@ void ImageInput::stop() {
   const std::lock_guard lock(mutex_);
   stopped_ = true;
   changed_.notify_all();
+}
+
+// What waits for a partner is within the synchroniser: with ApproximateTime, the last pair of a bag
+// waits there, and would be the first one of the next bag.
+void ImageInput::forget() {
+  make_pairs();
+  const std::lock_guard lock(mutex_);
+  pairs_.clear();
+  last_ = Clock::now();
+}
+
+double ImageInput::silence() const {
+  const std::lock_guard lock(mutex_);
+  if (info_ && !pairs_.empty()) return 0.0;
+  return std::chrono::duration<double>(Clock::now() - last_).count();
 }
 
 int ImageInput::dropped() const {
@@ -64,6 +90,7 @@ void ImageInput::add(const sensor_msgs::ImageConstPtr& color,
     ++dropped_;
   }
   pairs_.push_back({color, depth, nullptr});
+  last_ = Clock::now();
   changed_.notify_one();
 }
 

@@ -53,6 +53,8 @@ void check(const Parameters& of, const ros::NodeHandle& node) {
   require(!of.map_frame.empty(), node, "map_frame", "the name of a frame");
   require(of.odom_frame.empty() || !of.base_frame.empty(), node, "base_frame",
           "given with odom_frame");
+  require(of.max_difference >= 0 && of.max_difference <= 1, node, "max_difference",
+          "from 0 to 1 s");
   require(of.queue_size >= 1, node, "queue_size", "1 or more");
   require(of.depth_factor > 0, node, "depth_factor", "larger than 0");
   require(of.min_depth >= 0 && of.min_depth < of.max_depth, node, "min_depth",
@@ -75,6 +77,7 @@ Parameters read_parameters(const ros::NodeHandle& node) {
   reader.read("base_frame", p.base_frame);
   reader.read("camera_frame", p.camera_frame);
   reader.read("approximate", p.approximate);
+  reader.read("max_difference", p.max_difference);
   reader.read("queue_size", p.queue_size);
   reader.read("rectified", p.rectified);
   reader.read("depth_factor", p.depth_factor);

@@ -19,7 +19,8 @@ struct Parameters {
   std::string camera_frame;  ///< empty: that of the colour images
 
   bool approximate = false;  ///< the two images of a pair need not have the very same time stamp
-  int queue_size = 1;        ///< pairs that may wait for tracking; the oldest are dropped
+  double max_difference = 0.02;  ///< seconds between the images of a pair, if approximate
+  int queue_size = 1;            ///< pairs that may wait for tracking; the oldest are dropped
 
   bool rectified = false;  ///< images are rectified: P of CameraInfo describes them, not K and D
   double depth_factor = 1000;  ///< value of one metre in depth images with 16 bits (REP 118: 1000)

@@ -75,6 +75,11 @@ void PosePublisher::publish_failure(const std::string& message) {
   state_.publish(status(DiagnosticStatus::ERROR, message));
 }
 
+void PosePublisher::publish_silence(double seconds) {
+  const std::string whole = std::to_string(static_cast<int>(seconds));
+  state_.publish(status(DiagnosticStatus::WARN, "no pair of images for " + whole + " s"));
+}
+
 void PosePublisher::publish_pose(const TrackedFrame& frame, const ros::Time& stamp) {
   const Mounting mounting = *frames_.mounting();
   const stillpoint::Pose map_from_base = mounting.map_from_base(frame.world_from_camera);

@@ -20,6 +20,8 @@ class PosePublisher {
   void publish(const TrackedFrame& frame, const ros::Time& stamp, int dropped);
   /// `state` with an error: there is no pose.
   void publish_failure(const std::string& message);
+  /// `state` with a warning: no pair of images has come for so long.
+  void publish_silence(double seconds);
 
  private:
   void publish_pose(const TrackedFrame& frame, const ros::Time& stamp);

@@ -9,10 +9,17 @@
 
 namespace stillpoint_ros {
 
-Services::Services(const ros::NodeHandle& node, Session& session) : node_(node), session_(session) {
+Services::Services(const ros::NodeHandle& node, Session& session, ImageInput& input)
+    : node_(node), session_(session), input_(input) {
   add("save_map", [this] { return session_.save_map(map_file(node_)); });
-  add("load_map", [this] { return session_.load_map(map_file(node_)); });
-  add("reset", [this] { return session_.reset(); });
+  add("load_map", [this] {
+    input_.forget();
+    return session_.load_map(map_file(node_));
+  });
+  add("reset", [this] {
+    input_.forget();
+    return session_.reset();
+  });
 }
 
 void Services::add(const std::string& name, std::function<std::string()> action) {

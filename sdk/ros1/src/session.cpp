@@ -4,6 +4,7 @@
 #include <stillpoint/engine/map_file.hpp>
 #include <stillpoint/support/option_check.hpp>
 #include <stillpoint/support/rectifier.hpp>
+#include <stillpoint/support/trajectory.hpp>
 #include <utility>
 
 namespace stillpoint_ros {
@@ -48,6 +49,32 @@ TrackedFrame tracked_frame(const stillpoint::FrameReport& report) {
   return frame;
 }
 
+/// In what CameraInfo says; the rest are parameters of the node.
+bool is_same(const SensorCamera& a, const SensorCamera& b) {
+  return a.width == b.width && a.height == b.height && a.fx == b.fx && a.fy == b.fy &&
+         a.cx == b.cx && a.cy == b.cy && a.distortion == b.distortion;
+}
+
+std::string size_of(const SensorCamera& camera) {
+  return std::to_string(camera.width) + " x " + std::to_string(camera.height) + " pixels";
+}
+
+stillpoint::CameraModel model_of(const SensorCamera& camera) {
+  return {.name = "CameraInfo",
+          .width = camera.width,
+          .height = camera.height,
+          .fx = camera.fx,
+          .fy = camera.fy,
+          .cx = camera.cx,
+          .cy = camera.cy,
+          .distortion = camera.distortion,
+          .depth_factor = camera.depth_factor,
+          .min_depth = camera.min_depth,
+          .max_depth = camera.max_depth,
+          .depth_noise = camera.depth_noise,
+          .surface_noise = camera.surface_noise};
+}
+
 }  // namespace
 
 Session::Session(SessionOptions options, const std::filesystem::path& map_file)
@@ -55,34 +82,28 @@ Session::Session(SessionOptions options, const std::filesystem::path& map_file)
   begin(map_file.empty() ? SparseMap() : stillpoint::load_map(map_file));
 }
 
-bool Session::has_camera() const {
-  const std::lock_guard lock(mutex_);
-  return rectifier_ != nullptr;
+void Session::take_camera(const SensorCamera& camera) {
+  if (rectifier_ && is_same(camera, camera_)) return;
+  if (!last_time_) {
+    const stillpoint::CameraModel model = model_of(camera);
+    stillpoint::check_options(model, "the camera of CameraInfo");
+    rectifier_ = std::make_shared<const stillpoint::Rectifier>(model);
+    camera_ = camera;
+    return;
+  }
+  const std::string remedy = "the service reset begins anew with it";
+  if (camera.width != camera_.width || camera.height != camera_.height)
+    throw Error(Fault::kData,
+                "now has " + size_of(camera) + ", but the map was begun with " + size_of(camera_),
+                "CameraInfo", remedy);
+  options_.warn("CameraInfo is another one than at the first image, which stays in use; " + remedy);
 }
 
-void Session::set_camera(const SensorCamera& camera) {
-  const stillpoint::CameraModel model{.name = "CameraInfo",
-                                      .width = camera.width,
-                                      .height = camera.height,
-                                      .fx = camera.fx,
-                                      .fy = camera.fy,
-                                      .cx = camera.cx,
-                                      .cy = camera.cy,
-                                      .distortion = camera.distortion,
-                                      .depth_factor = camera.depth_factor,
-                                      .min_depth = camera.min_depth,
-                                      .max_depth = camera.max_depth,
-                                      .depth_noise = camera.depth_noise,
-                                      .surface_noise = camera.surface_noise};
-  stillpoint::check_options(model, "the camera of CameraInfo");
-  auto rectifier = std::make_shared<const stillpoint::Rectifier>(model);
-  const std::lock_guard lock(mutex_);
-  rectifier_ = std::move(rectifier);
-}
-
-std::optional<TrackedFrame> Session::process(const SensorImages& images) {
+std::optional<TrackedFrame> Session::process(const SensorImages& images,
+                                             const SensorCamera& camera) {
   const std::lock_guard lock(mutex_);
   if (last_time_ && images.time <= *last_time_) return std::nullopt;
+  take_camera(camera);
   stillpoint::Frame frame = rectifier_->frame(images.time, images.bgr, images.depth);
   last_time_ = images.time;
   return tracked_frame(*engine_->process(std::move(frame)));
@@ -107,9 +128,21 @@ std::string Session::reset() {
   return "begun anew, without a map";
 }
 
+// As Engine::trajectory(), but that only the copy of the poses makes tracking wait.
 std::vector<stillpoint::StampedPose> Session::trajectory() const {
-  const std::lock_guard lock(mutex_);
-  return engine_->trajectory();
+  std::shared_ptr<const Engine> engine;
+  std::vector<stillpoint::TrackedPose> poses;
+  {
+    const std::lock_guard lock(mutex_);
+    engine = engine_;
+    poses = engine->poses();
+  }
+  const auto map = engine->map();
+  std::vector<stillpoint::StampedPose> trajectory;
+  for (const stillpoint::TrackedPose& pose : poses)
+    if (const auto in_world = stillpoint::world_from_camera(*map, pose))
+      trajectory.push_back({pose.time, *in_world});
+  return trajectory;
 }
 
 std::vector<Eigen::Vector3f> Session::landmarks() const {

@@ -64,13 +64,13 @@ class Session {
   /// `map_file` empty: the first frame begins a map.
   Session(SessionOptions options, const std::filesystem::path& map_file);
 
-  bool has_camera() const;
-  /// Once, before process(). Throws for a camera that is none.
-  void set_camera(const SensorCamera& camera);
-  /// Nothing for a frame that is not newer than the last. Throws when images do not fit the camera;
-  /// or when a stage has failed, now or before: no pose follows then until a map is loaded or the
-  /// session reset, but maps can be read and saved.
-  std::optional<TrackedFrame> process(const SensorImages& images);
+  /// Nothing for a frame that is not newer than the last. The camera is that of the first frame
+  /// until a map is loaded or the session reset; of another one with the same size a warning tells.
+  ///
+  /// Throws for a camera that is none or of another size than the one in use, and when images do
+  /// not fit it; or when a stage has failed, now or before: no pose follows then until a map is
+  /// loaded or the session reset, but maps can be read and saved.
+  std::optional<TrackedFrame> process(const SensorImages& images, const SensorCamera& camera);
 
   /// These say what they did. When one throws, all is as before.
   std::string save_map(const std::filesystem::path& file) const;
@@ -85,11 +85,13 @@ class Session {
 
  private:
   void begin(stillpoint::SparseMap known_map);
+  void take_camera(const SensorCamera& camera);  // under the lock
   std::shared_ptr<const stillpoint::Engine> engine() const;
 
   const SessionOptions options_;
   mutable std::mutex mutex_;
-  std::shared_ptr<const stillpoint::Rectifier> rectifier_;
+  SensorCamera camera_;
+  std::shared_ptr<const stillpoint::Rectifier> rectifier_;  // of the camera; null before the first
   std::shared_ptr<stillpoint::Engine> engine_;
   std::optional<double> last_time_;  // seconds, of the last frame
 };

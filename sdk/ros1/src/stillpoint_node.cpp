@@ -21,6 +21,9 @@
 namespace stillpoint_ros {
 namespace {
 
+constexpr double kSilence = 2.0;        // seconds without images until ~state says so
+constexpr double kSilencePeriod = 1.0;  // seconds from one such message to the next
+
 /// What the engine says every time that a map is written is logged once.
 class WarnOnce {
  public:
@@ -52,8 +55,10 @@ class Node {
         frames_(parameters),
         poses_(node, frames_),
         maps_(node, session_, frames_, parameters.map_period),
-        services_(node, session_),
-        input_({}, parameters.approximate, static_cast<std::size_t>(parameters.queue_size)) {}
+        input_({}, parameters),
+        services_(node, session_, input_),
+        silence_timer_(node.createWallTimer(ros::WallDuration(kSilencePeriod),
+                                            [this](const auto&) { tell_of_silence(); })) {}
 
   /// Until the node is shut down.
   void run() {
@@ -71,9 +76,9 @@ class Node {
   void track(const ImagePair& pair) try {
     const std_msgs::Header& header = pair.color->header;
     if (!frames_.find_mounting(header.frame_id)) return;
-    if (!session_.has_camera()) session_.set_camera(camera_of(*pair.info, parameters_));
     const auto frame = session_.process(
-        {header.stamp.toSec(), color_pixels(*pair.color), depth_pixels(*pair.depth)});
+        {header.stamp.toSec(), color_pixels(*pair.color), depth_pixels(*pair.depth)},
+        camera_of(*pair.info, parameters_));
     if (frame)
       poses_.publish(*frame, header.stamp, input_.dropped());
     else
@@ -85,13 +90,20 @@ class Node {
     poses_.publish_failure(error.what());
   }
 
+  // The state is latched: that of the last image would be there for ever.
+  void tell_of_silence() {
+    const double silence = input_.silence();
+    if (silence >= kSilence) poses_.publish_silence(silence);
+  }
+
   const Parameters parameters_;
   Session session_;
   Frames frames_;
   PosePublisher poses_;
   MapPublisher maps_;
-  Services services_;
   ImageInput input_;
+  Services services_;
+  ros::WallTimer silence_timer_;
 };
 
 }  // namespace

@@ -1,25 +1,11 @@
 // node read.mjs FILE.mcap…: reads every message as Foxglove does and prints, for each file, its topics as JSON:
 // {topic: {schema, messages, last}}, where `last` is the last message, with byte arrays as their lengths.
-import {readFile} from "node:fs/promises";
-import {McapIndexedReader} from "@mcap/core";
 import {parse} from "@foxglove/rosmsg";
 import {MessageReader} from "@foxglove/rosmsg2-serialization";
-import lz4 from "@foxglove/wasm-lz4";
-import zstd from "@foxglove/wasm-zstd";
-
-await Promise.all([lz4.isLoaded, zstd.isLoaded]);
-const decompressHandlers = {
-  lz4: (data, size) => lz4(data, Number(size)),
-  zstd: (data, size) => zstd.decompress(data, Number(size)),
-};
+import {open} from "./open.mjs";
 
 async function topicsOf(file) {
-  const bytes = await readFile(file);
-  const readable = {
-    size: async () => BigInt(bytes.length),
-    read: async (offset, length) => bytes.subarray(Number(offset), Number(offset + length)),
-  };
-  const reader = await McapIndexedReader.Initialize({readable, decompressHandlers});
+  const reader = await open(file);
   const topics = {};
   const decoders = new Map();
   for (const channel of reader.channelsById.values()) {
