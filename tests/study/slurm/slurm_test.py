@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""slurm_test.py STILLPOINT: `stillpoint ablate --executor slurm` with a real Slurm, which is set up for the
-test. Exits with 77 where Slurm or munge is not installed."""
+"""slurm_test.py STILLPOINT CLASS: `stillpoint ablate --executor slurm` with a real Slurm, which is set up for
+the tests of CLASS. Exits with 77 where Slurm or munge is not installed."""
 import csv
 import os
 import re
@@ -68,7 +68,9 @@ class Call:
         return self.process.returncode, out, self.err
 
 
-class Slurm(unittest.TestCase):
+class StudyInQueue(unittest.TestCase):
+    """A cluster of its own, a short recording and an endless one."""
+
     @classmethod
     def setUpClass(cls):
         cls.folder = Path(cls.enterClassContext(tempfile.TemporaryDirectory()))
@@ -96,6 +98,19 @@ class Slurm(unittest.TestCase):
     def queued(self):
         return command("squeue", "--noheader").stdout
 
+
+class SlurmTimeLimit(StudyInQueue):
+    """Slurm's shortest is a minute, and it looks every half minute."""
+
+    def test_a_run_that_takes_too_long_has_failed(self):
+        code, out, err = self.follow(ENDLESS.replace("options:", 'time: "1", options:')).finish()
+        self.assertEqual(code, 1, err)
+        self.assertIn("* endless/plain/0: exit code 124: left no result; Slurm says TIMEOUT", out)
+        row = self.rows(self.out)[0]
+        self.assertEqual((row["state"], row["exit_code"]), ("failed", "124"))
+
+
+class Slurm(StudyInQueue):
     def test_gives_what_runs_on_this_machine_give(self):
         code, out, err = self.follow(TWO_VARIANTS).finish()
         self.assertEqual(code, 0, err)
@@ -214,4 +229,4 @@ if __name__ == "__main__":
     signal.signal(signal.SIGALRM, lambda *_: sys.exit("took too long"))
     signal.signal(signal.SIGTERM, lambda *_: sys.exit("ended by SIGTERM"))
     signal.alarm(TIME_LIMIT)
-    unittest.main(argv=[sys.argv[0]], verbosity=2)
+    unittest.main(argv=[sys.argv[0], sys.argv[2]], verbosity=2)
