@@ -1,5 +1,6 @@
 # Stillpoint from its packages: `docker build -t stillpoint .`, then
 #   docker run --rm -v "$PWD:/data" -w /data stillpoint run stillpoint --dataset DIR -o OUT
+# Other programs, such as stillpoint-get-models, are named with --entrypoint: docs/quickstart.md.
 FROM debian:bookworm-slim AS build
 COPY . /stillpoint
 WORKDIR /stillpoint
@@ -12,6 +13,6 @@ FROM debian:bookworm-slim
 COPY --from=build /stillpoint/build/release/packages/*.deb /packages/
 RUN apt-get update \
  && DEBIAN_FRONTEND=noninteractive apt-get install -y --no-install-recommends \
-      /packages/*.deb cmake make libgtest-dev \
+      /packages/*.deb libgtest-dev nlohmann-json3-dev curl ca-certificates \
  && rm -rf /var/lib/apt/lists/* /packages
 ENTRYPOINT ["stillpoint"]

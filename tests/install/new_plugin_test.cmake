@@ -32,6 +32,16 @@ if(NOT effective MATCHES "type: ${name}" OR size LESS 300)
   message(FATAL_ERROR "${name} was not used, or nothing was tracked:\n${output}")
 endif()
 
+if(KIND STREQUAL segmenter)  # this decision uses all that has no label
+  run(${program} run ${name}/pipeline.yaml --dataset ${recording_with_people} -o labelled
+    --set decision.type=semantic_only)
+  file(STRINGS ${elsewhere}/labelled/frames.csv labelled REGEX ",[0-9]*[1-9][0-9]*\\.[0-9]+$")
+  list(LENGTH labelled count)
+  if(count LESS 20)
+    message(FATAL_ERROR "${count} of 40 frames have more than 1 % with labels:\n${labelled}")
+  endif()
+endif()
+
 if(KIND STREQUAL tracker)
   run(${program} run ${name}/pipeline.yaml --dataset ${recording} -o run)
   expect_small_error("${elsewhere}/run" 0.03)

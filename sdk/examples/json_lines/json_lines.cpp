@@ -85,11 +85,10 @@ JsonLines::JsonLines(const Options& options, const stillpoint::StageContext& con
                                 : (context.output_directory / options.file).string()),
       classes_(context.classes),
       log_(context.log),
-      file_(options.file == "-" ? stdout : std::fopen(name_.c_str(), "w")) {
-  if (!file_) fail(name_);
-}
+      to_standard_output_(options.file == "-") {}
 
 void JsonLines::frame(const FrameReport& report) {
+  if (!opened_) open();
   if (!file_) return;
   // Class names may come from anywhere and need not be valid UTF-8.
   const std::string line =
@@ -100,6 +99,13 @@ void JsonLines::frame(const FrameReport& report) {
   if (errno != EPIPE) fail(name_);
   log_(stillpoint::LogLevel::kInfo, name_ + " is closed: no more lines are written");
   file_.reset();
+}
+
+/// Not in the constructor: a run without a frame leaves the file of an earlier one.
+void JsonLines::open() {
+  file_.reset(to_standard_output_ ? stdout : std::fopen(name_.c_str(), "w"));
+  if (!file_) fail(name_);
+  opened_ = true;
 }
 
 STILLPOINT_PLUGIN(json_lines, "0.1.0",

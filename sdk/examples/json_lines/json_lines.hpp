@@ -20,9 +20,9 @@ class JsonLines final : public stillpoint::Output {
     }
   };
 
-  /// Throws Error when the file cannot be made.
   JsonLines(const Options& options, const stillpoint::StageContext& context);
 
+  /// Throws Error when the file cannot be made or written.
   void frame(const stillpoint::FrameReport& report) override;
 
  private:
@@ -32,8 +32,12 @@ class JsonLines final : public stillpoint::Output {
     }
   };
 
+  void open();
+
   std::string name_;  // of the file
   stillpoint::ClassNames classes_;
   std::function<void(stillpoint::LogLevel, std::string_view)> log_;
-  std::unique_ptr<std::FILE, Close> file_;  // null: the reader has gone
+  bool to_standard_output_;
+  bool opened_ = false;                     // at the first frame
+  std::unique_ptr<std::FILE, Close> file_;  // null before, and when the reader has gone
 };

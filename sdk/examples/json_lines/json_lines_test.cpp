@@ -61,6 +61,21 @@ TEST(JsonLines, WritesALinePerFrame) {
   fs::remove(file);
 }
 
+TEST(JsonLines, AnEarlierFileStaysUntilTheFirstFrame) {
+  stillpoint::StageContext context = stillpoint::testing::test_context();
+  context.output_directory = ::testing::TempDir();
+  const fs::path file = context.output_directory / "json_lines_earlier_test.jsonl";
+  std::ofstream(file) << "an earlier run\n";
+  JsonLines output({.file = file.filename()}, context);
+  EXPECT_EQ(fs::file_size(file), 15u);
+  output.frame(report());
+  std::ifstream stream(file);
+  std::string line;
+  std::getline(stream, line);
+  EXPECT_EQ(line.rfind(R"({"frame":1,)", 0), 0u) << line;
+  fs::remove(file);
+}
+
 TEST(JsonLines, EndsQuietlyWhenItsReaderGoes) {
   std::signal(SIGPIPE, SIG_IGN);  // as the program does
   std::array<int, 2> ends{};

@@ -6,7 +6,8 @@
 namespace plugins::my_plugin {
 namespace {
 
-/// 255 where hue, saturation and value are in the range; hue is a circle of 180 steps.
+/// 255 where hue, saturation and value are in the range. OpenCV's hues in 8 bits are 0 to 179, in
+/// steps of two degrees.
 cv::Mat in_range(const cv::Mat& hsv, const MyPlugin::Options& options) {
   const auto between = [&](int low, int high) {
     cv::Mat mask;
@@ -14,17 +15,19 @@ cv::Mat in_range(const cv::Mat& hsv, const MyPlugin::Options& options) {
                 cv::Scalar(high, 255, 255), mask);
     return mask;
   };
-  if (options.min_hue <= options.max_hue) return between(options.min_hue, options.max_hue);
-  return between(options.min_hue, 179) | between(0, options.max_hue);
+  const int first = options.min_hue / 2, last = options.max_hue / 2;
+  if (options.min_hue <= options.max_hue) return between(first, last);
+  return between(first, 179) | between(0, last);
 }
 
 }  // namespace
 
 void MyPlugin::Options::visit(stillpoint::OptionVisitor& v) {
   v("class_name", class_name, {.help = "what it is; decisions ask for it by this name"});
-  v("min_hue", min_hue, {.min = 0, .max = 179, .unit = "2 degrees", .help = "first hue"});
+  v("min_hue", min_hue,
+    {.min = 0, .max = 359, .unit = "degrees", .help = "first hue; 0 red, 120 green, 240 blue"});
   v("max_hue", max_hue,
-    {.min = 0, .max = 179, .unit = "2 degrees", .help = "last hue; below min_hue: across red"});
+    {.min = 0, .max = 359, .unit = "degrees", .help = "last hue; below min_hue: across red"});
   v("min_saturation", min_saturation, {.min = 0, .max = 255, .help = "what is greyer is not it"});
   v("min_value", min_value, {.min = 0, .max = 255, .help = "what is darker is not it"});
   v("min_pixels", min_pixels, {.min = 1, .unit = "px", .help = "smaller objects are background"});

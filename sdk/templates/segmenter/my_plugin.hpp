@@ -10,8 +10,8 @@ class MyPlugin final : public stillpoint::Segmenter {
  public:
   struct Options {
     std::string class_name = "person";
-    int min_hue = 50;
-    int max_hue = 70;
+    int min_hue = 60;  // degrees: 0 red, 60 yellow, 120 green, 240 blue
+    int max_hue = 100;
     int min_saturation = 100;
     int min_value = 50;
     int min_pixels = 50;

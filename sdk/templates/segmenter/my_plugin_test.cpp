@@ -9,7 +9,7 @@ namespace plugins::my_plugin {
 namespace {
 
 const cv::Rect kThing(100, 60, 40, 50);
-const cv::Scalar kGreen(0, 200, 0), kRed(0, 0, 200);
+const cv::Scalar kYellow(0, 200, 150), kRed(0, 0, 200);
 
 /// A frame of a room, in which one rectangle has the colour.
 stillpoint::Frame frame_with(const cv::Scalar& colour) {
@@ -22,7 +22,7 @@ stillpoint::Frame frame_with(const cv::Scalar& colour) {
 
 TEST(MyPlugin, LabelsWhatHasTheColour) {
   MyPlugin segmenter(MyPlugin::Options{});
-  const auto result = segmenter.segment(frame_with(kGreen));
+  const auto result = segmenter.segment(frame_with(kYellow));
   EXPECT_EQ(segmenter.classes(), (stillpoint::ClassNames{"background", "person"}));
   ASSERT_EQ(result.objects.size(), 1u);
   EXPECT_EQ(result.objects[0].label, 1);
@@ -31,15 +31,15 @@ TEST(MyPlugin, LabelsWhatHasTheColour) {
 }
 
 TEST(MyPlugin, HuesCanGoAcrossRed) {
-  MyPlugin segmenter({.min_hue = 170, .max_hue = 10, .min_saturation = 200});
+  MyPlugin segmenter({.min_hue = 340, .max_hue = 20, .min_saturation = 200});
   const auto result = segmenter.segment(frame_with(kRed));
   ASSERT_EQ(result.objects.size(), 1u);
   EXPECT_EQ(result.objects[0].box, kThing);
-  EXPECT_TRUE(segmenter.segment(frame_with(kGreen)).objects.empty());
+  EXPECT_TRUE(segmenter.segment(frame_with(kYellow)).objects.empty());
 }
 
 TEST(MyPlugin, WithoutTheColourAllIsBackground) {
-  stillpoint::Frame frame = frame_with(kGreen);
+  stillpoint::Frame frame = frame_with(kYellow);
   frame.bgr = cv::Mat(frame.bgr.size(), CV_8UC3, cv::Scalar(0));
   const auto result = MyPlugin(MyPlugin::Options{}).segment(frame);
   EXPECT_TRUE(result.known());

@@ -1,6 +1,5 @@
 // Tracker `my_plugin`: visual odometry with depth. ORB features are matched with those of the last
-// key frame, and the rigid motion of their points
-// is the pose.
+// key frame, and the rigid motion of their points is the pose.
 #pragma once
 
 #include <opencv2/features2d.hpp>
