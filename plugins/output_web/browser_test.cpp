@@ -90,7 +90,7 @@ TEST_F(InABrowser, APageOfAnotherVersionAsksToBeReloaded) {
   document_in_browser(
       output->url(),
       "document.getElementById('connection').textContent.endsWith('reload it') || "
-      "(window.realSend ??= WebSocket.prototype.send, "
+      "(window.realSend = window.realSend || WebSocket.prototype.send, "
       "WebSocket.prototype.send = function(bytes) { bytes[0] = 99; realSend.call(this, bytes); }, "
       "document.getElementById('steering').hidden || document.getElementById('pause').click(), "
       "false)");

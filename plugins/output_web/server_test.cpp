@@ -20,9 +20,25 @@ TEST_F(LiveView, HasAPageThatLoadsNothingFromElsewhere) {
               StartsWith("HTTP/1.1 405"));
 }
 
+/// Noise, which JPEG makes more than a megabyte of.
+FrameReport report_with_a_large_picture() {
+  FrameReport report = report_of(0);
+  auto frame = std::make_shared<Frame>(*report.frame);
+  frame->bgr = cv::Mat(1200, 1600, CV_8UC3);
+  cv::RNG(1).fill(frame->bgr, cv::RNG::UNIFORM, 0, 256);
+  report.frame = std::move(frame);
+  return report;
+}
+
+// The message is larger than all buffers between them: the rest of it waits in the server.
 TEST_F(LiveView, ServesOthersWhileOneDoesNotRead) {
-  TestViewer hanging(port(*output)), viewer(port(*output));
+  constexpr int kSmallBuffer = 4096;  // bytes
+  TestViewer hanging(port(*output), "/live", kSmallBuffer), viewer(port(*output));
+  output->frame(report_with_a_large_picture());
   hanging.ask();
+  const auto large = viewer.asked();
+  ASSERT_TRUE(large);
+  ASSERT_GT(large->at(Record::kImage).front().size(), 1'000'000u);
   for (int round = 0; round < 50; ++round) {
     FrameReport report = report_of(1);
     auto frame = std::make_shared<Frame>(*report.frame);

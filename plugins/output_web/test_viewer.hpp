@@ -95,8 +95,13 @@ inline std::string get(std::uint16_t port, const std::string& target,
 /// A page that looks.
 class TestViewer {
  public:
-  explicit TestViewer(std::uint16_t port, const std::string& target = "/live") {
+  /// `receive_buffer`: bytes that wait unread in this computer; 0: as many as it likes.
+  explicit TestViewer(std::uint16_t port, const std::string& target = "/live",
+                      int receive_buffer = 0) {
     namespace ip = boost::asio::ip;
+    socket_.next_layer().open(ip::tcp::v4());
+    if (receive_buffer > 0)
+      socket_.next_layer().set_option(ip::tcp::socket::receive_buffer_size(receive_buffer));
     socket_.next_layer().connect(ip::tcp::endpoint(ip::make_address("127.0.0.1"), port));
     socket_.next_layer().set_option(ip::tcp::no_delay(true));
     socket_.binary(true);

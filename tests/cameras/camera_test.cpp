@@ -110,6 +110,19 @@ TEST_F(LiveKinect, IsTracked) {
   EXPECT_LT(absolute_error(recording.path(), estimate), 0.005);  // metres
 }
 
+TEST_F(LiveKinect, IsRecorded) {
+  const Dump dump(recording);
+  const fs::path folder_of_images = folder.path() / "recorded";
+  const Outcome outcome =
+      call({"record", "orb_baseline", "--set", "source.type=freenect", "--set",
+            "source.limit=" + std::to_string(kUsed), "--camera",
+            (recording.path() / "camera.yaml").string(), "-o", folder_of_images.string()},
+           with_fakenect(dump.path()));
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr(std::to_string(kUsed) + " frames of"));
+  EXPECT_EQ(call({"inspect", folder_of_images.string()}).exit_code, 0);
+}
+
 // fakenect ends with its images, as if the cable was pulled.
 TEST_F(LiveKinect, KeepsWhatWasTrackedWhenItIsUnplugged) {
   const Outcome outcome = run(0);

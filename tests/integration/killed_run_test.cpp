@@ -8,6 +8,7 @@
 #include <opencv2/imgcodecs.hpp>
 #include <string>
 
+#include "output_web/test_viewer.hpp"
 #include "support/program.hpp"
 #include "support/simulated_recording.hpp"
 
@@ -51,6 +52,10 @@ TEST_P(KilledRun, LeavesNoTornFileAndTheNextOneItsOwnOnly) {
     watched.emplace_back(more);
   watched.push_back((out / "sparse.map").string());
   Program program(watched);
+  const std::string told = program.wait_for_line("live view at ");
+  ASSERT_FALSE(told.empty());
+  output_web::TestViewer viewer(output_web::port_of(told));
+  ASSERT_TRUE(viewer.asked());
   ASSERT_TRUE(program.wait_for(GetParam()));
   program.send(SIGKILL);
   EXPECT_EQ(program.finish().signal, SIGKILL);

@@ -178,6 +178,18 @@ TEST_F(Record, AKilledOneLeavesWhatItsListsName) {
   EXPECT_GT(count_whole_frames(), 0u);
 }
 
+TEST_F(Record, AKilledMcapFileIsReadAsFarAsItGoes) {
+  const fs::path file = folder_.path() / "out.mcap";
+  Program program({"record", simulated_pipeline(400), "-o", file.string()});
+  ASSERT_TRUE(program.wait_for("frames/s"));
+  program.send(SIGKILL);
+  EXPECT_EQ(program.finish().signal, SIGKILL);
+  const Outcome outcome = call({"run", "orb_baseline", "--dataset", file.string(), "-o",
+                                (folder_.path() / "run").string(), "--set", "source.limit=5"});
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_EQ(count_poses(folder_.path() / "run/trajectory.txt"), 5u);
+}
+
 TEST_F(Record, AFolderThatCannotBeMadeIsNamed) {
   folder_.write("file", "");
   const RecordingCopy original(1);

@@ -51,7 +51,9 @@ TEST(SensorClock, FollowsAClockThatRunsFasterOrSlower) {
       const double seconds = clock.seconds(static_cast<std::uint64_t>(taken * rate * kMegahertz),
                                            taken + 0.01 + 0.005 * (image % 3));
       ASSERT_NEAR(seconds, taken, 0.03) << "after " << taken << " s";
-      if (image > 0) ASSERT_NEAR(seconds - last, 1 / 30.0, kExact);
+      if (image > 0) {
+        ASSERT_NEAR(seconds - last, 1 / 30.0, kExact);
+      }
       last = seconds;
     }
     EXPECT_EQ(clock.jumps(), 0);
