@@ -1,6 +1,6 @@
 #include "orb_slam/depth_view.hpp"
 
-#include <Eigen/Cholesky>
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 
@@ -15,7 +15,8 @@ constexpr int kReach = 2;  // cells around a patch's own that its plane is fitte
 constexpr int kSamplesPerCell = (kCell / kStep) * (kCell / kStep);
 // Sensors leave holes: so many samples of a cell, and cells of a patch, must be measured.
 constexpr int kMinSamples = kSamplesPerCell / 2;
-constexpr int kMinCells = 20;           // of 25
+constexpr int kCells = (2 * kReach + 1) * (2 * kReach + 1);
+constexpr int kMinCells = 20;
 constexpr float kSumOfSquares = 50.0F;  // of column (or row) over 5 × 5 cells around the middle
 
 // Mean inverse depth, 1/m, 0 where too little is measured; and least static weight of a cell.
@@ -61,32 +62,34 @@ float max_misfit(float surface_noise) {
   return std::max(kLeastMisfit, 6.0F * surface_noise / std::sqrt(float{kSamplesPerCell}));
 }
 
-// Least squares over the measured cells.
+// Least squares over the measured cells. Those that are not have an inverse depth of 0, and add
+// nothing to the sums; the Hessian is that of all cells less theirs.
 InversePlane fit(const std::vector<Cell>& cells, int columns, int column, int row,
                  float max_misfit) {
-  Eigen::Matrix3f hessian = Eigen::Matrix3f::Zero();
-  Eigen::Vector3f sums = Eigen::Vector3f::Zero();
-  float weight = 1.0F;
-  const auto for_each_cell = [&](auto visit) {
-    for (int dy = -kReach; dy <= kReach; ++dy)
-      for (int dx = -kReach; dx <= kReach; ++dx)
-        visit(cells[static_cast<std::size_t>((row + dy) * columns + column + dx)],
-              Eigen::Vector3f(1, static_cast<float>(dx), static_cast<float>(dy)));
+  const auto cell = [&](int dx, int dy) -> const Cell& {
+    return cells[static_cast<std::size_t>((row + dy) * columns + column + dx)];
   };
-  for_each_cell([&](const Cell& cell, const Eigen::Vector3f& place) {
-    weight = std::min(weight, cell.weight);
-    if (cell.inverse_depth <= 0) return;
-    hessian += place * place.transpose();
-    sums += cell.inverse_depth * place;
-  });
+  float weight = 1.0F;
+  Eigen::Vector3f sums = Eigen::Vector3f::Zero();
+  Eigen::Matrix3f hessian = Eigen::Vector3f(kCells, kSumOfSquares, kSumOfSquares).asDiagonal();
+  for (int dy = -kReach; dy <= kReach; ++dy) {
+    for (int dx = -kReach; dx <= kReach; ++dx) {
+      const Cell& c = cell(dx, dy);
+      const Eigen::Vector3f place(1, static_cast<float>(dx), static_cast<float>(dy));
+      weight = std::min(weight, c.weight);
+      sums += c.inverse_depth * place;
+      if (c.inverse_depth <= 0) hessian -= place * place.transpose();
+    }
+  }
   if (weight <= 0 || hessian(0, 0) < kMinCells) return {};
-  const Eigen::Vector3f plane = hessian.ldlt().solve(sums);
-  bool fits = true;
-  for_each_cell([&](const Cell& cell, const Eigen::Vector3f& place) {
-    fits &=
-        cell.inverse_depth <= 0 || std::abs(plane.dot(place) - cell.inverse_depth) <= max_misfit;
-  });
-  if (!fits) return {};
+  const Eigen::Vector3f plane = hessian.inverse() * sums;
+  for (int dy = -kReach; dy <= kReach; ++dy)
+    for (int dx = -kReach; dx <= kReach; ++dx) {
+      const float measured = cell(dx, dy).inverse_depth;
+      const float expected =
+          plane.x() + static_cast<float>(dx) * plane.y() + static_cast<float>(dy) * plane.z();
+      if (measured > 0 && std::abs(expected - measured) > max_misfit) return {};
+    }
   return {.middle = plane.x(), .by_column = plane.y(), .by_row = plane.z(), .weight = weight};
 }
 
