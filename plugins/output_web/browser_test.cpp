@@ -35,8 +35,11 @@ class InABrowser : public ::testing::Test {
   std::unique_ptr<WebOutput> output;
 };
 
-constexpr const char* kFigures[] = {"<dt>frames</dt><dd>4</dd>", "class=\"badge tracking\"",
-                                    "1 fit the pose", "<td>track</td><td class=\"number\">5.0</td>",
+constexpr const char* kFigures[] = {"<dt>frames</dt><dd>4</dd>",
+                                    "<dt>left out by the source</dt><dd>6</dd>",
+                                    "class=\"badge tracking\"",
+                                    "1 fit the pose",
+                                    "<td>track</td><td class=\"number\">5.0</td>",
                                     "data-engine=\"three.js"};
 
 TEST_F(InABrowser, TheRunIsShownAndPausedByAClick) {

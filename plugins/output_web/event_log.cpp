@@ -156,6 +156,10 @@ std::string EventLog::news(Seen& seen, const Request& request) {
     seen.map = now.latest.map;
   }
   write_frames(now.frames, writer);
+  if (now.latest.left_out != seen.left_out) {
+    write_left_out(now.latest.left_out, writer);
+    seen.left_out = now.latest.left_out;
+  }
   write_times(now.times, writer);
   for (const auto& cloud : now.clouds) writer.text(*cloud);
   if (now.voxels)

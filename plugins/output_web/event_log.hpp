@@ -24,6 +24,7 @@ struct Seen {
   bool end = false;
   std::size_t stages = 0, frames = 0, times = 0, clouds = 0, loops = 0, steering = 0;
   std::size_t fitted_frames = 0;  ///< that the last fit of the truth was made of
+  std::size_t left_out = 0;       ///< images, by the source
   std::optional<std::uint32_t> image;
   std::shared_ptr<const SparseMap> map = std::make_shared<const SparseMap>();
   VoxelsPtr voxels = std::make_shared<const Voxels>();

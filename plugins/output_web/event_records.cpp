@@ -46,6 +46,12 @@ void write_frames(std::span<const FrameEntry> frames, MessageWriter& writer) {
   writer.end();
 }
 
+void write_left_out(std::size_t images, MessageWriter& writer) {
+  writer.begin(Record::kLeftOut);
+  writer.number(static_cast<std::uint32_t>(images));
+  writer.end();
+}
+
 void write_times(std::span<const TimeEntry> times, MessageWriter& writer) {
   if (times.empty()) return;
   writer.begin(Record::kTimes);

@@ -33,6 +33,8 @@ struct LoopEntry {
 /// Names of stages, numbered from `first`.
 void write_stages(std::span<const std::string> names, std::size_t first, MessageWriter& writer);
 void write_frames(std::span<const FrameEntry> frames, MessageWriter& writer);
+/// Images, by the source so far.
+void write_left_out(std::size_t images, MessageWriter& writer);
 void write_times(std::span<const TimeEntry> times, MessageWriter& writer);
 void write_loops(std::span<const LoopEntry> loops, MessageWriter& writer);
 /// Of the truth to all frames in the map as it is now; with too few of them, nothing.

@@ -31,7 +31,8 @@ enum class Record : std::uint8_t {
   kEnd = 14,
   kSteering = 15,
   kVoxels = 16,
-  kVoxelsRemoved = 17
+  kVoxelsRemoved = 17,
+  kLeftOut = 18
 };
 
 /// Appends to a string of bytes.

@@ -29,6 +29,7 @@ TEST_F(LiveView, ShowsARunFromItsBeginning) {
   EXPECT_EQ(number_at<std::uint16_t>(frames, second + 18 + 56), 1000);
   EXPECT_EQ(number_at<std::uint32_t>(records->at(Record::kImage).at(0), 0), 1u);
   EXPECT_EQ(records->count(Record::kCloud), 1u);
+  EXPECT_EQ(number_at<std::uint32_t>(records->at(Record::kLeftOut).at(0), 0), 2u);
 }
 
 TEST_F(LiveView, SendsWhatIsNewAndAskedFor) {
@@ -46,6 +47,7 @@ TEST_F(LiveView, SendsWhatIsNewAndAskedFor) {
   ASSERT_TRUE(records);
   EXPECT_TRUE(records->contains(Record::kCloud));
   EXPECT_FALSE(records->contains(Record::kFrames));
+  EXPECT_FALSE(records->contains(Record::kLeftOut));
 }
 
 TEST_F(LiveView, TellsOfLoops) {

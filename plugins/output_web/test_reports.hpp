@@ -41,7 +41,8 @@ inline FrameReport report_of(std::size_t i) {
                      .moving = recording().moving_points(i),
                      .weights = recording().weights(i),
                      .times = {{"track", 5, 4, static_cast<std::uint32_t>(i)}},
-                     .map = std::make_shared<const SparseMap>()};
+                     .map = std::make_shared<const SparseMap>(),
+                     .left_out = 2 * i};
   report.result.state = TrackState::kTracking;
   report.result.reference = 0;
   report.result.world_from_camera = recording().world_from_camera(i);

@@ -20,16 +20,19 @@ class WebOutput final : public Output {
     std::string record;
 
     void visit(OptionVisitor& v) {
-      v("port", port, {.min = 0, .max = 65535, .help = "of the page; 0 takes any that is free"});
+      v("port", port,
+        {.min = 0, .max = 65535, .help = "TCP port of the page; 0: any that is free"});
       v("address", address,
-        {.help = "of this machine to listen at, in numbers; 0.0.0.0 is all of them, for other "
-                 "machines, too"});
+        {.help = "IP address of this machine to listen on; 127.0.0.1: for this machine only; "
+                 "0.0.0.0: also for others"});
       v("token", token,
-        {.help =
-             "that viewers must have in the page's address; empty: none for 127.0.0.1, a random "
-             "one otherwise"});
-      v("viewers", viewers, {.min = 1, .max = 32, .help = "at once"});
-      v("control", control, {.help = "viewers may pause and end the run and have its map saved"});
+        {.help = "secret word that the address of the page must end in, as in ?token=WORD; empty: "
+                 "none for 127.0.0.1, a random one otherwise"});
+      v("viewers", viewers,
+        {.min = 1,
+         .max = 32,
+         .help = "browsers that may watch at the same time; more are turned away"});
+      v("control", control, {.help = "viewers may pause and end the run, and have its map saved"});
       v("record", record,
         {.help = "name of a page in the run folder that shows the run again, such as live.html; "
                  "empty: none"});

@@ -15,6 +15,7 @@ namespace {
 constexpr int kLastDomain = 232;                         // later ones have no ports
 constexpr dds_duration_t kMaxBlocking = DDS_MSECS(100);  // of writers with readers that are slow
 constexpr int kShortHistory = 10;                        // messages
+constexpr dds_duration_t kLongestWait = DDS_MSECS(100);  // until a stop is noticed
 
 // Participants find each other by their ports, of which the first 32 are tried.
 constexpr const char* kLoopbackOnly =
@@ -147,8 +148,9 @@ Reader::Reader(const Participant& participant, const std::string& topic, std::st
 
 int Reader::writers() const { return std::max(0, dds_get_matched_publications(id_, nullptr, 0)); }
 
-std::optional<Bytes> Reader::take(std::chrono::steady_clock::time_point deadline) const {
-  for (;;) {
+std::optional<Bytes> Reader::take(std::chrono::steady_clock::time_point deadline,
+                                  const std::stop_token& stop) const {
+  while (!stop.stop_requested()) {
     Bytes message;
     void* sample = &message;
     dds_sample_info_t info;
@@ -157,9 +159,11 @@ std::optional<Bytes> Reader::take(std::chrono::steady_clock::time_point deadline
     if (taken > 0) continue;  // a writer has gone
     const auto left = std::chrono::duration_cast<std::chrono::nanoseconds>(
         deadline - std::chrono::steady_clock::now());
-    if (left.count() <= 0) return std::nullopt;
-    required(dds_waitset_wait(waitset_, nullptr, 0, left.count()), "DDS fails", topic_);
+    if (left.count() <= 0) break;
+    required(dds_waitset_wait(waitset_, nullptr, 0, std::min(left.count(), kLongestWait)),
+             "DDS fails", topic_);
   }
+  return std::nullopt;
 }
 
 }  // namespace stillpoint::ros2

@@ -5,6 +5,7 @@
 
 #include <chrono>
 #include <optional>
+#include <stop_token>
 #include <string>
 #include <string_view>
 
@@ -70,8 +71,9 @@ class Reader {
   const std::string& topic() const { return topic_; }
   /// Writers that are known.
   int writers() const;
-  /// The next message, waiting for it until then.
-  std::optional<Bytes> take(std::chrono::steady_clock::time_point deadline) const;
+  /// The next message, waiting for it until then, or until a stop is requested.
+  std::optional<Bytes> take(std::chrono::steady_clock::time_point deadline,
+                            const std::stop_token& stop = {}) const;
 
  private:
   std::string topic_;

@@ -67,24 +67,31 @@ TrackedPose tracked_pose(const FrameReport& report) {
 }  // namespace
 
 void Ros2Output::Options::visit(OptionVisitor& v) {
-  v("name", name, {.help = "before the names of all topics but /tf"});
+  v("name", name, {.help = "namespace of all topics but /tf"});
   v("domain", domain,
     {.min = -1, .max = 232, .help = "DDS domain; -1: that of ROS_DOMAIN_ID, or 0"});
-  v("map_frame", map_frame, {.help = "where the base was at the first frame"});
+  v("map_frame", map_frame, {.help = "tf frame of the map: the base at the first frame"});
   v("base_frame", base_frame,
-    {.help = "frame of the robot; without odom_frame it must have no parent in tf"});
+    {.help = "tf frame of the robot; without odom_frame it must have no parent in tf"});
   v("base_from_camera", base_from_camera,
     {.help = "x, y, z and quaternion x, y, z, w of the camera in the base; empty: the base is the "
              "camera, and the map has x where it looked, z up"});
   v("camera_frame", camera_frame,
-    {.help = "frame of the images: where it is on the base is asked of tf, instead of "
+    {.help = "tf frame of the images; its place on the base is then asked of tf, instead of "
              "base_from_camera"});
   v("odom_frame", odom_frame,
-    {.help = "in which tf has the base, by the robot's odometry: map → odom is published, as REP "
-             "105 has it, instead of map → base"});
-  v("path_period", path_period, {.min = 0, .unit = "s", .help = "from one path to the next"});
+    {.help = "tf frame of the robot's odometry, the parent of the base; with it, map → odom is "
+             "published instead of map → base, as REP 105 has it"});
+  v("path_period", path_period,
+    {.min = 0,
+     .unit = "s",
+     .help = "time between two messages of the topic path, which is sent while somebody subscribes "
+             "it; smaller: more network traffic"});
   v("map_period", map_period,
-    {.min = 0, .unit = "s", .help = "from one landmarks, dense_map, octomap and grid to the next"});
+    {.min = 0,
+     .unit = "s",
+     .help = "time between two messages of each of the map topics landmarks, dense_map, octomap "
+             "and grid; smaller: more network traffic and processor time"});
 }
 
 Ros2Output::Ros2Output(const Options& options, const StageContext& context)
@@ -209,6 +216,7 @@ void Ros2Output::publish_state(const FrameReport& report) {
                   .name = options_.name,
                   .message = lost ? "lost" : name_of(result.state)};
   state.values = {{"frame", std::to_string(report.frame->index)},
+                  {"dropped", std::to_string(report.left_out)},
                   {"inliers", std::to_string(result.inliers)},
                   {"loops_closed", std::to_string(report.loops_closed)}};
   if (tracking && result.uncertainty)

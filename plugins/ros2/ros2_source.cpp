@@ -16,6 +16,8 @@ namespace {
 using std::chrono::steady_clock;
 
 constexpr double kStepBack = 1.0;  // seconds; images that come out of order are nearer
+// How many are missing is estimated from all intervals so far.
+constexpr std::uint32_t kFramesPerCount = 30;
 
 template <class... Parts>
 std::string text_of(const Parts&... parts) {
@@ -54,26 +56,36 @@ CameraModel with_depth_factor(CameraModel model, double depth_factor) {
 }  // namespace
 
 void Ros2Source::Options::visit(OptionVisitor& v) {
-  v("color_topic", color_topic, {.help = "sensor_msgs/Image"});
+  v("color_topic", color_topic, {.help = "topic of the colour images, sensor_msgs/Image"});
   v("depth_topic", depth_topic,
-    {.help = "sensor_msgs/Image, of the size and view of the colour images"});
+    {.help = "topic of the depth images, sensor_msgs/Image, registered to the colour images and as "
+             "large"});
   v("info_topic", info_topic,
-    {.help = "sensor_msgs/CameraInfo of the colour images; not used with a camera section"});
+    {.help = "topic of the colour images' sensor_msgs/CameraInfo; not used with a camera section"});
   v("domain", domain,
     {.min = -1, .max = 232, .help = "DDS domain; -1: that of ROS_DOMAIN_ID, or 0"});
   v("reliable", reliable,
-    {.help = "have lost packets sent again; publishers that are not reliable are not heard"});
+    {.help = "quality of service: true has lost packets sent again, but does not hear best-effort "
+             "publishers, as most cameras are"});
   v("queue_size", queue_size,
     {.min = 1,
      .max = 10000,
      .unit = "images",
      .help = "images of a topic that may wait; older ones are dropped"});
-  v("approximate", approximate, {.help = "stamps of colour and depth may differ"});
+  v("approximate", approximate,
+    {.help = "pair images whose stamps differ by up to max_difference; false: only equal stamps"});
   v("max_difference", max_difference,
-    {.min = 0, .max = 1, .unit = "s", .help = "largest time difference of a pair, if approximate"});
-  v("rectified", rectified, {.help = "the images are rectified: P of CameraInfo holds, not K, D"});
+    {.min = 0,
+     .max = 1,
+     .unit = "s",
+     .help = "largest time difference of a colour and a depth image in a pair, if approximate"});
+  v("rectified", rectified,
+    {.help = "the images are rectified: use the matrix P of CameraInfo instead of K and D"});
   v("depth_factor", depth_factor,
-    {.min = 0, .max = 1e9, .help = "16-bit depth of one metre; 0: the camera's, 1000 in ROS"});
+    {.min = 0,
+     .max = 1e9,
+     .help = "value of one metre in 16-bit depth images; 0: that of the camera section, or 1000 "
+             "(millimetres, as ROS has it)"});
   v("timeout", timeout,
     {.min = 0.1,
      .max = 86400,
@@ -99,7 +111,8 @@ Ros2Source::Ros2Source(const Options& options, const StageContext& context)
 }
 
 void Ros2Source::wait_for_camera() {
-  const auto message = info_reader_->take(after(options_.timeout));
+  const auto message = info_reader_->take(after(options_.timeout), stop_);
+  if (!message && stop_.stop_requested()) return;
   if (!message) fail(*info_reader_);
   const CameraModel model = reading(*info_reader_, [&] {
     return bag::camera_model(bag::read_camera_info(*message, bag::Serialisation::kCdr),
@@ -110,7 +123,7 @@ void Ros2Source::wait_for_camera() {
 
 bool Ros2Source::wait_for(std::optional<Image>& image, const Reader& reader, Kind kind) const {
   if (image) return true;
-  const auto bytes = reader.take(after(options_.timeout));
+  const auto bytes = reader.take(after(options_.timeout), stop_);
   if (!bytes) return false;
   image = reading(reader, [&] {
     const bag::ImageMessage message = bag::read_image(*bytes, bag::Serialisation::kCdr, false);
@@ -124,9 +137,10 @@ bool Ros2Source::wait_for(std::optional<Image>& image, const Reader& reader, Kin
 std::optional<Frame> Ros2Source::next() {
   if (options_.limit > 0 && given_ == static_cast<std::uint32_t>(options_.limit)) ended_ = true;
   if (!ended_ && !rectifier_) wait_for_camera();
-  while (!ended_) {
+  while (!ended_ && !stop_.stop_requested()) {
     const bool has_color = wait_for(color_, color_reader_, Kind::kColor);
     if (!has_color || !wait_for(depth_, depth_reader_, Kind::kDepth)) {
+      if (stop_.stop_requested()) return std::nullopt;
       if (given_ == 0) fail(has_color ? depth_reader_ : color_reader_);
       log_(LogLevel::kWarning,
            text_of("no images for ", options_.timeout, " s: this is taken for the end"));
@@ -170,6 +184,7 @@ std::optional<Frame> Ros2Source::frame_of_waiting() {
   frame.index = given_++;
   last_time_ = frame.time;
   missing_.add(frame.time);
+  if (given_ % kFramesPerCount == 0) left_out_ = count_left_out();
   return frame;
 }
 
@@ -200,11 +215,18 @@ void Ros2Source::fail(const Reader& missing) const {
                     "source.timeout is how long to wait");
 }
 
+// Of a colour image that is missing, the depth image has been counted if it came.
+std::size_t Ros2Source::count_missing() const {
+  const std::size_t missing = missing_.count();
+  return missing - std::min(missing, unpaired_depth_);
+}
+
+std::size_t Ros2Source::count_left_out() const { return unpaired_ + backwards_ + count_missing(); }
+
 SourceReport Ros2Source::report() const {
   SourceReport report;
-  // Of a colour image that is missing, the depth image has been counted if it came.
-  const std::size_t missing = missing_.count() - std::min(missing_.count(), unpaired_depth_);
-  report.skipped = unpaired_ + backwards_ + missing;
+  const std::size_t missing = count_missing();
+  report.skipped = count_left_out();
   if (missing > 0)
     report.warnings.push_back(
         text_of("about ", missing,

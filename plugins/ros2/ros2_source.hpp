@@ -4,7 +4,9 @@
 #include <functional>
 #include <opencv2/core/mat.hpp>
 #include <optional>
+#include <stop_token>
 #include <string>
+#include <utility>
 
 #include "ros2/missing_frames.hpp"
 #include "ros2/participant.hpp"
@@ -39,7 +41,9 @@ class Ros2Source final : public Source {
 
   Ros2Source(const Options& options, const StageContext& context);
 
+  void begin(std::stop_token stop) override { stop_ = std::move(stop); }
   std::optional<Frame> next() override;
+  std::size_t left_out() const override { return left_out_; }
   SourceReport report() const override;
 
  private:
@@ -49,6 +53,11 @@ class Ros2Source final : public Source {
   };
   enum class Kind { kColor, kDepth };
 
+  /// An estimate of the frames that never came.
+  std::size_t count_missing() const;
+  /// With images without a partner, and pairs that came late.
+  std::size_t count_left_out() const;
+  /// Only a stop ends the wait without one.
   void wait_for_camera();
   /// The next image of a topic becomes `image`, unless there is one. False when none comes in time.
   bool wait_for(std::optional<Image>& image, const Reader& reader, Kind kind) const;
@@ -68,6 +77,7 @@ class Ros2Source final : public Source {
   Reader color_reader_, depth_reader_;
   std::optional<Reader> info_reader_;
   std::optional<Rectifier> rectifier_;
+  std::stop_token stop_;
   std::optional<Image> color_, depth_;  // waiting for each other
   bool ended_ = false;
   std::uint32_t given_ = 0;   // frames
@@ -78,6 +88,7 @@ class Ros2Source final : public Source {
   std::size_t unpaired_depth_ = 0;
   std::size_t backwards_ = 0;  // pairs that are not later than the one before
   MissingFrames missing_;      // by the times of colour images
+  std::size_t left_out_ = 0;   // images, as counted last
 };
 
 }  // namespace stillpoint::ros2

@@ -3,6 +3,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <stop_token>
+#include <thread>
+
 #include "support/bag_messages.hpp"
 #include "support/dds_loopback.hpp"
 #include "support/error_text.hpp"
@@ -17,6 +20,7 @@ using testing::color_image;
 using ::testing::Contains;
 using testing::depth_image;
 using ::testing::DoubleNear;
+using ::testing::Each;
 using ::testing::ElementsAre;
 using testing::error_text;
 using ::testing::HasSubstr;
@@ -162,6 +166,21 @@ TEST_F(Ros2SourceTest, CountsAnImageOnce) {
   EXPECT_THAT(source().report().warnings, ElementsAre(HasSubstr("2 images had no partner")));
 }
 
+// Meanwhile it is counted after each 30 frames.
+TEST_F(Ros2SourceTest, TellsWhileItGoesOnWhatIsMissing) {
+  options_.queue_size = 40;
+  info();
+  for (int i = 0; i < 31; ++i) {
+    if (i == 5) continue;
+    color(i);
+    depth(i);
+  }
+  for (int i = 0; i < 29; ++i) ASSERT_TRUE(source().next());
+  EXPECT_EQ(source().left_out(), 0U);
+  ASSERT_TRUE(source().next());
+  EXPECT_EQ(source().left_out(), 1U);
+}
+
 TEST(MissingFrames, AreCountedByTheShorterIntervals) {
   MissingFrames frames;
   for (const int i : {0, 2, 4, 5, 7, 9, 10, 12, 14, 16}) frames.add(7.0 + i / 30.0);
@@ -230,6 +249,22 @@ TEST_F(Ros2SourceTest, AnImageOfTheOldClockBlocksNobody) {
   for (const int i : {100, 40, 41, 42}) color(i);
   for (const int i : {100, 101, 40, 41, 42}) depth(i);
   EXPECT_THAT(times_of(source()), Pointwise(DoubleNear(1e-3), times_of_stamps({100, 101, 102})));
+}
+
+// It would wait for an hour: for a camera, or for images of one that is known.
+TEST_F(Ros2SourceTest, AStopEndsTheWait) {
+  options_.timeout = 3600;
+  for (const bool camera_is_known : {false, true}) {
+    source_.reset();
+    if (camera_is_known)
+      context_.camera = CameraModel{
+          .name = "mine", .width = testing::kImageWidth, .height = testing::kImageHeight, .fx = 60};
+    std::stop_source stop;
+    source().begin(stop.get_token());
+    std::jthread user([&] { stop.request_stop(); });
+    EXPECT_FALSE(source().next());
+  }
+  EXPECT_THAT(log_, Each(HasSubstr("waiting for")));
 }
 
 TEST_F(Ros2SourceTest, SaysWhichTopicIsSilent) {

@@ -38,21 +38,27 @@ std::vector<double> times_of(const std::vector<bag::ImageStamp>& stamps) {
 void BagSource::Options::visit(OptionVisitor& v) {
   v("path", path,
     {.help = "bag: a .bag, .mcap or .db3 file, or a folder with such files", .is_path = true});
-  v("color_topic", topics.color, {.help = "colour images; empty: found"});
-  v("depth_topic", topics.depth, {.help = "depth images; empty: found"});
-  v("info_topic", topics.info, {.help = "the colour camera's CameraInfo; empty: found"});
+  v("color_topic", topics.color,
+    {.help = "topic of the colour images; empty: chosen by type and name"});
+  v("depth_topic", topics.depth,
+    {.help = "topic of the depth images; empty: chosen by type and name"});
+  v("info_topic", topics.info,
+    {.help = "topic of the colour camera's CameraInfo; empty: that beside the colour images"});
   v("depth_info_topic", topics.depth_info,
-    {.help = "the depth camera's CameraInfo, of depth that is not registered; empty: found"});
+    {.help = "topic of the depth camera's CameraInfo, for depth that is not registered to colour; "
+             "empty: that beside the depth images"});
   v("max_difference", max_difference,
     {.min = 0, .max = 10, .unit = "s", .help = "largest time difference of an associated pair"});
   v("time_offset", time_offset,
     {.min = -10, .max = 10, .unit = "s", .help = "added to the depth stamps before pairing"});
   v("registered", registered,
-    {.help = "depth is seen from the colour camera, although its frame is another one"});
+    {.help =
+         "take the depth images as registered to colour, although their frame_id says otherwise"});
   v("depth_factor", depth_factor,
     {.min = 0,
      .max = 1e9,
-     .help = "16-bit depth of one metre; 0: the camera's, 1000 where that comes from the bag"});
+     .help = "value of one metre in 16-bit depth images; 0: that of the camera section, or 1000 "
+             "(millimetres) where the camera comes from the bag"});
   selection.visit(v);
 }
 

@@ -60,24 +60,30 @@ FreenectSource::Kinect::Kinect(const std::string& serial) {
 }
 
 FreenectSource::FreenectSource(const Options& options, const StageContext& context)
-    : kinect_(options.serial),
+    : serial_(options.serial),
+      kinect_(std::in_place, serial_),
       frames_(options.live,
               live_camera::live_model(context, kDevice, kWidth, kHeight, kFieldOfView), kDevice,
               kTicksPerSecond, kCounterBits, context.log) {}
 
+FreenectSource::~FreenectSource() { FreenectSource::close(); }
+
 // The thread ends before the camera is closed.
-FreenectSource::~FreenectSource() {
-  if (!thread_.joinable()) return;
-  thread_.request_stop();
-  thread_.join();
-  live_camera::undo_in_driver([this] {
-    freenect_stop_video(kinect_.device());
-    freenect_stop_depth(kinect_.device());
-  });
+void FreenectSource::close() {
+  if (thread_.joinable()) {
+    thread_.request_stop();
+    thread_.join();
+    live_camera::undo_in_driver([this] {
+      freenect_stop_video(kinect_->device());
+      freenect_stop_depth(kinect_->device());
+    });
+  }
+  kinect_.reset();
 }
 
 void FreenectSource::start() {
-  freenect_device* device = kinect_.device();
+  if (!kinect_) kinect_.emplace(serial_);
+  freenect_device* device = kinect_->device();
   freenect_set_user(device, &frames_);
   freenect_set_video_callback(device, color_came);
   freenect_set_depth_callback(device, depth_came);
@@ -94,15 +100,10 @@ void FreenectSource::start() {
 void FreenectSource::process_events(std::stop_token stop) {
   while (!stop.stop_requested()) {
     timeval timeout{.tv_sec = 0, .tv_usec = 100'000};
-    if (freenect_process_events_timeout(kinect_.context(), &timeout) >= 0) continue;
+    if (freenect_process_events_timeout(kinect_->context(), &timeout) >= 0) continue;
     frames_.end("the camera was unplugged");
     return;
   }
-}
-
-std::optional<Frame> FreenectSource::next() {
-  if (!thread_.joinable()) start();
-  return frames_.next();
 }
 
 }  // namespace stillpoint::source_freenect

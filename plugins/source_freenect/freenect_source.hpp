@@ -4,8 +4,10 @@
 #include <libfreenect.h>
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <thread>
+#include <utility>
 
 #include "live_camera/live_frames.hpp"
 #include "stillpoint/sdk.hpp"
@@ -14,8 +16,8 @@ namespace stillpoint::source_freenect {
 
 /// 640 x 480 pixels at 30 Hz, depth registered to colour by the driver. The camera sends from the
 /// first call of next() on. Throws Error(kData) without a camera, and when it sends nothing any
-/// more.
-class FreenectSource final : public Source {
+/// more and is not back in time.
+class FreenectSource final : public Source, private live_camera::LiveDriver {
  public:
   struct Options {
     std::string serial;  ///< of the camera; empty: the first one
@@ -27,7 +29,9 @@ class FreenectSource final : public Source {
   FreenectSource(const Options& options, const StageContext& context);
   ~FreenectSource() override;
 
-  std::optional<Frame> next() override;
+  void begin(std::stop_token stop) override { frames_.begin(std::move(stop)); }
+  std::optional<Frame> next() override { return frames_.next(*this); }
+  std::size_t left_out() const override { return frames_.left_out(); }
   SourceReport report() const override { return frames_.report(); }
 
  private:
@@ -49,10 +53,12 @@ class FreenectSource final : public Source {
     std::unique_ptr<freenect_device, Close> device_;
   };
 
-  void start();
+  void start() override;
+  void close() override;
   void process_events(std::stop_token stop);  // on the driver's thread
 
-  Kinect kinect_;
+  const std::string serial_;
+  std::optional<Kinect> kinect_;
   live_camera::LiveFrames frames_;
   std::jthread thread_;  // last: it uses all the others
 };

@@ -150,40 +150,48 @@ void OpenNi2Source::Disconnection::onDeviceDisconnected(const openni::DeviceInfo
 }
 
 OpenNi2Source::OpenNi2Source(const Options& options, const StageContext& context)
-    : camera_(options),
+    : options_(options),
+      camera_(std::in_place, options),
       frames_(options.live,
-              live_camera::live_model(context, camera_.name, options.width, options.height,
-                                      camera_.color.getHorizontalFieldOfView()),
-              camera_.name, kTicksPerSecond, kCounterBits, context.log),
-      disconnection_(uri_of(camera_.device), frames_) {
-  if (!camera_.registered)
+              live_camera::live_model(context, camera_->name, options.width, options.height,
+                                      camera_->color.getHorizontalFieldOfView()),
+              camera_->name, kTicksPerSecond, kCounterBits, context.log) {
+  if (!camera_->registered)
     context.log(LogLevel::kWarning,
-                camera_.name +
+                camera_->name +
                     ": the device does not register depth to colour; unless both have the "
                     "same view, the estimate will be poor");
 }
 
+OpenNi2Source::~OpenNi2Source() { OpenNi2Source::close(); }
+
 // The thread ends before the streams are stopped.
-OpenNi2Source::~OpenNi2Source() {
-  if (!thread_.joinable()) return;
-  thread_.request_stop();
-  thread_.join();
-  live_camera::undo_in_driver([this] {
-    camera_.color.stop();
-    camera_.depth.stop();
-    if (uri_of(camera_.device) == "Dummy") std::this_thread::sleep_for(kLastFrameOfDriver);
-  });
+void OpenNi2Source::close() {
+  if (thread_.joinable()) {
+    thread_.request_stop();
+    thread_.join();
+    live_camera::undo_in_driver([this] {
+      camera_->color.stop();
+      camera_->depth.stop();
+      if (uri_of(camera_->device) == "Dummy") std::this_thread::sleep_for(kLastFrameOfDriver);
+    });
+  }
+  disconnection_.reset();
+  camera_.reset();
 }
 
+// A camera that was plugged in again may have another URI.
 void OpenNi2Source::start() {
-  require(camera_.color.start(), "the camera does not start", camera_.name);
-  require(camera_.depth.start(), "the camera does not start", camera_.name);
+  if (!camera_) camera_.emplace(options_);
+  disconnection_.emplace(uri_of(camera_->device), frames_);
+  require(camera_->color.start(), "the camera does not start", camera_->name);
+  require(camera_->depth.start(), "the camera does not start", camera_->name);
   thread_ = std::jthread([this](std::stop_token stop) { read(std::move(stop)); });
 }
 
 void OpenNi2Source::read(std::stop_token stop) {
   constexpr int kTimeout = 100;  // ms
-  VideoStream* streams[] = {&camera_.color, &camera_.depth};
+  VideoStream* streams[] = {&camera_->color, &camera_->depth};
   while (!stop.stop_requested()) {
     int ready = 0;
     VideoFrameRef frame;
@@ -193,7 +201,7 @@ void OpenNi2Source::read(std::stop_token stop) {
       frames_.end("the camera sends no more images");
       return;
     }
-    if (streams[ready] == &camera_.color) {
+    if (streams[ready] == &camera_->color) {
       cv::Mat bgr;
       cv::cvtColor(pixels_of(frame, CV_8UC3), bgr, cv::COLOR_RGB2BGR);
       frames_.put_color(frame.getTimestamp(), bgr);
@@ -202,12 +210,5 @@ void OpenNi2Source::read(std::stop_token stop) {
     }
   }
 }
-
-std::optional<Frame> OpenNi2Source::next() {
-  if (!thread_.joinable()) start();
-  return frames_.next();
-}
-
-SourceReport OpenNi2Source::report() const { return frames_.report(); }
 
 }  // namespace stillpoint::source_openni2

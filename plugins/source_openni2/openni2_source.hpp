@@ -3,8 +3,10 @@
 
 #include <OpenNI.h>
 
+#include <optional>
 #include <string>
 #include <thread>
+#include <utility>
 
 #include "live_camera/live_frames.hpp"
 #include "stillpoint/sdk.hpp"
@@ -12,8 +14,9 @@
 namespace stillpoint::source_openni2 {
 
 /// Depth is registered to colour by the device. The camera sends from the first call of next() on.
-/// Throws Error(kData) without a camera, and when it sends nothing any more.
-class OpenNi2Source final : public Source {
+/// Throws Error(kData) without a camera, and when it sends nothing any more and is not back in
+/// time.
+class OpenNi2Source final : public Source, private live_camera::LiveDriver {
  public:
   struct Options {
     std::string device;         ///< URI; empty: the first one
@@ -29,8 +32,10 @@ class OpenNi2Source final : public Source {
   OpenNi2Source(const Options& options, const StageContext& context);
   ~OpenNi2Source() override;
 
-  std::optional<Frame> next() override;
-  SourceReport report() const override;
+  void begin(std::stop_token stop) override { frames_.begin(std::move(stop)); }
+  std::optional<Frame> next() override { return frames_.next(*this); }
+  std::size_t left_out() const override { return frames_.left_out(); }
+  SourceReport report() const override { return frames_.report(); }
 
  private:
   /// The device with both streams, not started yet.
@@ -52,12 +57,14 @@ class OpenNi2Source final : public Source {
     live_camera::LiveFrames& frames;
   };
 
-  void start();
+  void start() override;
+  void close() override;
   void read(std::stop_token stop);  // on the thread
 
-  Camera camera_;
+  const Options options_;
+  std::optional<Camera> camera_;
   live_camera::LiveFrames frames_;
-  Disconnection disconnection_;
+  std::optional<Disconnection> disconnection_;
   std::jthread thread_;  // last: it uses all the others
 };
 

@@ -1,12 +1,14 @@
 // Live cameras without hardware: libfreenect's own stand-in for a Kinect, `fakenect`, plays images
-// from a folder.
+// from a folder; OpenNI's DummyDevice makes them up. A preloaded library unplugs them.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <csignal>
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <opencv2/imgproc.hpp>
 #include <string>
 #include <utility>
@@ -63,10 +65,26 @@ class Dump {
   std::string index_;
 };
 
-Surroundings with_fakenect(const std::string& dump) {
-  return {.environment = {{"LD_LIBRARY_PATH", STILLPOINT_FAKENECT},
-                          {"LD_PRELOAD", STILLPOINT_REGISTERED_DEPTH},
-                          {"FAKENECT_PATH", dump}}};
+using Variables = std::map<std::string, std::string>;
+
+Surroundings with_fakenect(const std::string& dump, Variables more = {}) {
+  more.merge(Variables{{"LD_LIBRARY_PATH", STILLPOINT_FAKENECT},
+                       {"LD_PRELOAD", STILLPOINT_REGISTERED_DEPTH ":" STILLPOINT_UNPLUGGED},
+                       {"FAKENECT_PATH", dump}});
+  return {.environment = std::move(more)};
+}
+
+std::size_t count(const std::string& text, const std::string& part) {
+  std::size_t found = 0;
+  for (auto at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++found;
+  return found;
+}
+
+void expect_gone_and_back(const Outcome& outcome, const fs::path& run) {
+  EXPECT_EQ(count(outcome.err, "; trying to open it again for 30 s"), 1u) << outcome.err;
+  EXPECT_EQ(count(outcome.err, "the camera is back, after "), 1u) << outcome.err;
+  EXPECT_THAT(json_file(run / "summary.json")["warnings"].dump(),
+              HasSubstr("the camera was gone 1 time, for "));
 }
 
 // Gives the poses the times of the recording: the camera's begin when it is started.
@@ -86,13 +104,19 @@ void write_with_times_of(const fs::path& recording, const fs::path& estimate, co
 /// A run of the recording as a Kinect would give it.
 class LiveKinect : public ::testing::Test {
  protected:
-  Outcome run(int limit) const {  // frames; 0: until fakenect has no more
-    const Dump dump(recording);
-    return call({"run", "orb_baseline", "--set", "source.type=freenect", "--set",
-                 "source.limit=" + std::to_string(limit), "--camera",
-                 (recording.path() / "camera.yaml").string(), "-o", out.string()},
-                with_fakenect(dump.path()));
+  std::vector<std::string> arguments(const std::vector<std::string>& settings) const {
+    std::vector<std::string> all = {"run",      "orb_baseline",
+                                    "-o",       out.string(),
+                                    "--camera", (recording.path() / "camera.yaml").string()};
+    all.insert(all.end(), {"--set", "source.type=freenect"});
+    for (const std::string& setting : settings) all.insert(all.end(), {"--set", setting});
+    return all;
   }
+  Outcome run(const std::vector<std::string>& settings, const Variables& more = {}) const {
+    const Dump dump(recording);
+    return call(arguments(settings), with_fakenect(dump.path(), more));
+  }
+  static std::string limit_of(int frames) { return "source.limit=" + std::to_string(frames); }
 
   const RecordingCopy recording{kFrames};
   const TemporaryFolder folder;
@@ -100,7 +124,7 @@ class LiveKinect : public ::testing::Test {
 };
 
 TEST_F(LiveKinect, IsTracked) {
-  const Outcome outcome = run(kUsed);
+  const Outcome outcome = run({limit_of(kUsed)});
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   const auto summary = json_file(out / "summary.json");
   EXPECT_EQ(summary["tracked_frames"], kUsed) << summary;
@@ -123,13 +147,68 @@ TEST_F(LiveKinect, IsRecorded) {
   EXPECT_EQ(call({"inspect", folder_of_images.string()}).exit_code, 0);
 }
 
+// But for what cannot be the same again, in two runs and in two stages at once.
+TEST_F(LiveKinect, KeepsItsContract) {
+  const Dump dump(recording);
+  const fs::path library =
+      build_folder() / "lib/stillpoint/plugins/libstillpoint_source_freenect.so";
+  const Outcome outcome = call({"plugins", "check", library.string(), "--set", "limit=5",
+                                "--camera", (recording.path() / "camera.yaml").string()},
+                               with_fakenect(dump.path()));
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.out << outcome.err;
+  for (const char* passed : {"usual recording", "options", "destroyed at any time"})
+    EXPECT_THAT(outcome.out, HasSubstr(std::string("ok    ") + passed));
+}
+
 // fakenect ends with its images, as if the cable was pulled.
 TEST_F(LiveKinect, KeepsWhatWasTrackedWhenItIsUnplugged) {
-  const Outcome outcome = run(0);
+  const Outcome outcome = run({"source.reconnect_for=0"});
   EXPECT_EQ(outcome.exit_code, 3);
   EXPECT_THAT(outcome.err, HasSubstr("Kinect: the camera was unplugged"));
   EXPECT_GE(count_poses(out / "trajectory.txt"), std::size_t{kUsed});
   EXPECT_FALSE(json_file(out / "summary.json")["complete"]);
+}
+
+// After the colour image of a pair, which is lost.
+TEST_F(LiveKinect, GoesOnWhenItIsPluggedInAgain) {
+  const Outcome outcome = run({limit_of(kUsed)}, {{"STILLPOINT_UNPLUG_AFTER", "21"}});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_THAT(outcome.err, HasSubstr("Kinect: the camera was unplugged; trying"));
+  expect_gone_and_back(outcome, out);
+  EXPECT_EQ(json_file(out / "summary.json")["frames"], kUsed);
+  const auto poses = evaluation::read_trajectory(out / "trajectory.txt").poses;
+  EXPECT_GT(poses.size(), 10u);
+  for (std::size_t i = 1; i < poses.size(); ++i) EXPECT_GT(poses[i].time, poses[i - 1].time);
+}
+
+// It would hang for an hour.
+TEST_F(LiveKinect, CtrlCEndsARunWithACameraThatHangs) {
+  const Dump dump(recording);
+  Program program(arguments({"source.timeout=3600"}),
+                  with_fakenect(dump.path(), {{"STILLPOINT_STALL_AFTER", "20"}}));
+  ASSERT_TRUE(program.wait_for("the camera hangs"));
+  program.send(SIGINT);
+  EXPECT_EQ(program.finish().signal, SIGINT);
+}
+
+TEST(LiveOpenNi, GoesOnWhenItIsPluggedInAgain) {
+  const std::string dummy = STILLPOINT_DUMMY_DEVICE;
+  if (!fs::exists(dummy)) GTEST_SKIP() << "OpenNI 2 has no driver DummyDevice here";
+  const TemporaryFolder folder;
+  const fs::path camera = folder.write(
+      "small.yaml",
+      "camera: {name: small, width: 320, height: 240, fx: 260, fy: 260, cx: 159.5, cy: 119.5}\n");
+  std::vector<std::string> arguments = {
+      "run", "orb_baseline", "--camera", camera.string(), "-o", (folder.path() / "out").string()};
+  for (const char* setting : {"source.type=openni2", "source.device=Dummy", "source.width=320",
+                              "source.height=240", "source.limit=12"})
+    arguments.insert(arguments.end(), {"--set", setting});
+  const Outcome outcome = call(arguments, {.environment = {{"LD_PRELOAD", STILLPOINT_UNPLUGGED},
+                                                           {"STILLPOINT_UNPLUG_AFTER", "9"}}});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_THAT(outcome.err, HasSubstr("Dummy: the camera sends no more images; trying"));
+  expect_gone_and_back(outcome, folder.path() / "out");
+  EXPECT_EQ(json_file(folder.path() / "out/summary.json")["frames"], 12);
 }
 
 TEST(LiveCamera, MayBeMissing) {

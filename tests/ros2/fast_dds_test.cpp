@@ -1,10 +1,13 @@
 // A run that hears images of Fast DDS, and whose topics Fast DDS reads.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <csignal>
 #include <fstream>
 #include <opencv2/imgproc.hpp>
 #include <sstream>
@@ -240,6 +243,7 @@ TEST_F(FastDdsTest, HearsADriverAndReadsPosesAndMaps) {
   EXPECT_EQ(last.level, 0);
   EXPECT_EQ(last.message, "tracking");
   EXPECT_THAT(last.values, Contains(std::pair<std::string, std::string>("frame", "29")));
+  EXPECT_THAT(last.values, Contains(std::pair<std::string, std::string>("dropped", "0")));
 
   const FastCloud points = read_cloud(landmarks.messages().back());
   EXPECT_THAT(points.fields, ElementsAre("x", "y", "z"));
@@ -307,6 +311,50 @@ TEST_F(FastDdsTest, TellsAnEncodingThatIsNotRead) {
   const FastState failure = read_state(state.messages().back());
   EXPECT_EQ(failure.level, 2);
   EXPECT_THAT(failure.message, HasSubstr("'nv21'"));
+}
+
+/// Again and again, with stamps that go on.
+[[noreturn]] void publish_for_ever(int domain, const std::vector<Images>& images) noexcept {
+  FastNode node(domain);
+  FastWriter& color = node.publish("/rgb/image_raw", type("sensor_msgs", "Image"));
+  FastWriter& depth = node.publish("/depth_registered/image_raw", type("sensor_msgs", "Image"));
+  node.wait_for_partners();
+  for (std::int32_t second = 0;; ++second)
+    for (const Images& each : images) {
+      FastHeader header = each.header;
+      header.sec += second;
+      cv::Mat millimetres;
+      each.depth.convertTo(millimetres, CV_16U, 0.2);
+      color.write(image_payload(header, each.color, "bgr8"));
+      depth.write(image_payload(header, millimetres, "16UC1"));
+    }
+}
+
+// A driver that crashes, or a player of a bag that is killed.
+TEST(FastDdsPublisher, WhenItIsKilledTheRunEndsByItselfWithWhatItHas) {
+  constexpr std::size_t kFrames = 5;
+  const int domain = loopback_domain();
+  const std::vector<Images> images = recorded_images(kFrames);
+  const pid_t driver = ::fork();  // before this process has threads of DDS
+  if (driver == 0) publish_for_ever(domain, images);
+  const TemporaryFolder folder;
+  const fs::path out = folder.path() / "out";
+  FastNode node(domain);
+  FastReader& state =
+      node.subscribe("/stillpoint/state", type("diagnostic_msgs", "DiagnosticStatus"));
+  Program program(
+      {"run", "orb_baseline", "-o", out.string(), "--with", "ros2", "--camera",
+       (simulated_recording() / "camera.yaml").string(), "--set", "source.type=ros2", "--set",
+       "source.reliable=true", "--set", "source.depth_factor=1000", "--set", "source.timeout=2"},
+      {.folder = folder.path(), .environment = {{"ROS_DOMAIN_ID", std::to_string(domain)}}});
+  EXPECT_TRUE(node.news().wait([&] { return state.messages().size() >= kFrames; }));
+  ::kill(driver, SIGKILL);
+  ::waitpid(driver, nullptr, 0);
+  const Outcome outcome = program.finish();
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_THAT(outcome.err, HasSubstr("no images for 2 s: this is taken for the end"));
+  EXPECT_TRUE(json_file(out / "summary.json")["complete"]);
+  EXPECT_GE(count_poses(out / "trajectory.txt"), kFrames - 1);
 }
 
 }  // namespace

@@ -30,6 +30,7 @@ void Progress::frame(const FrameReport& report) {
   done_ = report.frame->index + 1;
   ++processed_;
   if (report.result.keyframe) ++keyframes_;
+  left_out_ = report.left_out;
   const Clock::time_point now = Clock::now();
   if (!due(now)) return;
   last_shown_ = now;
@@ -60,9 +61,11 @@ std::string Progress::describe(double seconds, const TrackResult& result) const 
                   minutes(seconds / share() * (1.0 - share())).c_str());
   else
     std::snprintf(text.data(), text.size(), "%zu  %.1f frames/s", done_, rate);
-  if (what_ == Of::kRecording) return text.data();
-  return std::string(text.data()) + "  " + std::to_string(keyframes_) + " key frames  " +
-         name_of(result.state);
+  std::string line = text.data();
+  if (what_ == Of::kTracking)
+    line += "  " + std::to_string(keyframes_) + " key frames  " + name_of(result.state);
+  if (left_out_ > 0) line += "  " + std::to_string(left_out_) + " left out";
+  return line;
 }
 
 }  // namespace stillpoint

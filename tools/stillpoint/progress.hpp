@@ -38,6 +38,7 @@ class Progress final : public Output {
   std::size_t done_ = 0;  // of the recording, dropped frames included
   std::size_t processed_ = 0;
   std::size_t keyframes_ = 0;
+  std::size_t left_out_ = 0;  // by the source
 };
 
 }  // namespace stillpoint

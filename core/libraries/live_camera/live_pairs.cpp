@@ -60,10 +60,20 @@ void LivePairs::end(std::string why) {
   changed_.notify_one();
 }
 
-std::optional<LivePair> LivePairs::take(std::chrono::milliseconds timeout) {
+void LivePairs::restart() {
+  const std::lock_guard lock(mutex_);
+  dropped_ += pairs_.size();
+  unpaired_ += colors_.size() + depths_.size();
+  pairs_.clear();
+  colors_.clear();
+  depths_.clear();
+  why_ended_.clear();
+}
+
+std::optional<LivePair> LivePairs::take(std::chrono::milliseconds timeout, std::stop_token stop) {
   std::unique_lock lock(mutex_);
-  changed_.wait_for(lock, timeout, [&] { return !pairs_.empty() || !why_ended_.empty(); });
-  if (pairs_.empty()) return std::nullopt;
+  changed_.wait_for(lock, stop, timeout, [&] { return !pairs_.empty() || !why_ended_.empty(); });
+  if (pairs_.empty() || stop.stop_requested()) return std::nullopt;
   LivePair pair = std::move(pairs_.front());
   pairs_.pop_front();
   return pair;

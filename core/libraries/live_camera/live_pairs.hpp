@@ -8,6 +8,7 @@
 #include <mutex>
 #include <opencv2/core/mat.hpp>
 #include <optional>
+#include <stop_token>
 #include <string>
 
 namespace stillpoint::live_camera {
@@ -32,8 +33,12 @@ class LivePairs {
   /// The driver ends, for this reason: waiting pairs are still given, then `why` is known.
   void end(std::string why);
 
-  /// The oldest waiting pair; nothing when none has come within `timeout`, or after end().
-  std::optional<LivePair> take(std::chrono::milliseconds timeout);
+  /// The driver begins anew: what waits, and why it had ended, is forgotten. Counts go on.
+  void restart();
+
+  /// The oldest waiting pair; nothing when none has come within `timeout`, after end(), or when a
+  /// stop is requested.
+  std::optional<LivePair> take(std::chrono::milliseconds timeout, std::stop_token stop = {});
 
   std::string why_ended() const;  ///< empty while the driver works
   std::size_t dropped() const;    ///< pairs that nobody took in time
@@ -54,8 +59,8 @@ class LivePairs {
 
   const double max_difference_;
   mutable std::mutex mutex_;
-  std::condition_variable changed_;
-  Waiting colors_, depths_;  // without partner yet
+  std::condition_variable_any changed_;  // knows stop tokens
+  Waiting colors_, depths_;              // without partner yet
   std::deque<LivePair> pairs_;
   std::string why_ended_;
   std::size_t dropped_ = 0;

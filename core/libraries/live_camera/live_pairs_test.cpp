@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <stop_token>
 #include <thread>
 
 namespace stillpoint::live_camera {
@@ -77,6 +78,26 @@ TEST(LivePairs, GivesWhatWaitsBeforeTheEnd) {
   EXPECT_TRUE(pairs.take(60s));
   EXPECT_FALSE(pairs.take(60s));
   EXPECT_EQ(pairs.why_ended(), "unplugged");
+}
+
+TEST(LivePairs, AStopEndsTheWait) {
+  LivePairs pairs(0.02);
+  std::stop_source stop;
+  std::jthread user([&] { stop.request_stop(); });
+  EXPECT_FALSE(pairs.take(1h, stop.get_token()));
+}
+
+TEST(LivePairs, BeginAnew) {
+  LivePairs pairs(0.02);
+  pairs.put_depth(1, image(1));
+  pairs.end("unplugged");
+  pairs.restart();
+  EXPECT_EQ(pairs.why_ended(), "");
+  EXPECT_EQ(pairs.unpaired(), 1u);
+  pairs.put_color(1, image(1));  // its partner is of the time before
+  EXPECT_FALSE(pairs.take(0ms));
+  pairs.put_depth(1.005, image(2));
+  EXPECT_EQ(value_of(pairs.take(0ms)->depth), 2);
 }
 
 }  // namespace

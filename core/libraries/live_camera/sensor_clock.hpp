@@ -26,6 +26,9 @@ class SensorClock {
   /// compared anew.
   double seconds(std::uint64_t ticks, double arrival);
 
+  /// The device begins anew: the next image is compared with the computer's clock. This is no jump.
+  void restart() { last_.reset(); }
+
   /// How often the counter did not go on as expected.
   int jumps() const { return jumps_; }
 

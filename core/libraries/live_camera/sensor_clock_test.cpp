@@ -42,6 +42,14 @@ TEST(SensorClock, ComparesAnewAfterAReset) {
   EXPECT_EQ(clock.jumps(), 1);
 }
 
+TEST(SensorClock, ARestartIsNoJump) {
+  SensorClock clock(kMegahertz, 64);
+  clock.seconds(90'000'000, 200.0);
+  clock.restart();
+  EXPECT_DOUBLE_EQ(clock.seconds(33'000, 203.5), 203.5);
+  EXPECT_EQ(clock.jumps(), 0);
+}
+
 TEST(SensorClock, FollowsAClockThatRunsFasterOrSlower) {
   for (const double rate : {1 - 1e-4, 1 + 1e-4}) {
     SensorClock clock(kMegahertz, 64);

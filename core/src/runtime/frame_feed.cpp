@@ -54,6 +54,7 @@ FrameFeed::FrameFeed(Stage<Source> source, const RuntimeOptions& options, PaceCl
       times_(times),
       source_(std::move(source), "source", times),
       queue_(kFramesAhead) {
+  source_.call_unmeasured({}, &Source::begin, stop_.token());
   if (options.mode == Mode::kThreaded || pace_ == RuntimeOptions::Pace::kSensor)
     thread_ = std::jthread([this] { work(); });
 }
@@ -97,6 +98,7 @@ FramePtr FrameFeed::read() {
   ScopedTime time(times_, "source", frames_read_);
   std::optional<Frame> frame =
       source_.call_unmeasured(frames_read_, next_of, frames_read_, previous_.get(), thorough_);
+  left_out_ = source_.call_unmeasured(frames_read_, &Source::left_out);
   if (!frame) {
     time.discard();  // the end is no frame
     return nullptr;

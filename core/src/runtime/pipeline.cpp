@@ -201,7 +201,7 @@ FrameReportPtr Pipeline::process(const FramePtr& frame) {
   map_check_.tracked(tracked, *mapping_.snapshot());
   const auto report = std::make_shared<const FrameReport>(
       FrameReport{frame, *labels, *moving, *evidence, weights, std::move(result), times_.take(),
-                  mapping_.snapshot(), mapping_.loops()});
+                  mapping_.snapshot(), mapping_.loops(), feed_ ? feed_->left_out() : 0});
   record(report);
   return report;
 }

@@ -97,6 +97,7 @@ const RECORDS = {
   16: ['voxels', (r) => r.all(() => ({
     position: r.floats(3), rgb: [r.u8(), r.u8(), r.u8()], label: r.u8(), occupancy: r.u8() / 15}))],
   17: ['voxelsRemoved', (r) => r.all(() => r.floats(3))],
+  18: ['leftOut', (r) => r.u32()],
 };
 
 /** Calls `take(name, content)` for each record; unknown ones are left out. */

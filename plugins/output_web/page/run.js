@@ -33,6 +33,7 @@ export class Run {
     this.voxels = new Map();  // by position
     this.loops = [];
     this.fit = null;
+    this.leftOutSoFar = 0;
     this.end = null;
     this.picture = null;  // image, features, moving, mask of one frame
     this.tracking = [];   // ms of `track_thread` by frame: {frame, ms}
@@ -82,6 +83,7 @@ export class Run {
   take_voxelsRemoved(positions) { for (const position of positions) this.voxels.delete(position.join()); }
   take_loop(loop) { this.loops.push(loop); }
   take_fit(fit) { this.fit = fit; }
+  take_leftOut(images) { this.leftOutSoFar = images; }
   take_end(end) { this.end = end; }
 
   /** Of the camera, in the map as it is now; as it was tracked while its key frame is not known. */
@@ -103,6 +105,6 @@ export class Run {
 
   get seen() { return this.frames.length ? this.frames.at(-1).index + 1 : 0; }  // of the recording
   get loopsClosed() { return this.end ? this.end.loops_closed : this.loops.reduce((sum, loop) => sum + loop.count, 0); }
-  get leftOut() { return this.end?.source_skipped ?? 0; }  // by the source, which tells at the end only
+  get leftOut() { return this.end?.source_skipped ?? this.leftOutSoFar; }  // by the source, as far as it tells
   get dropped() { return this.end ? this.end.dropped_frames : this.seen - this.frames.length; }
 }

@@ -1,6 +1,7 @@
 // Contract: writes or shows the results of a run (paper IV). A thread of its own, behind a queue.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -42,7 +43,8 @@ struct FrameReport {
   std::vector<StageTime> times;
   /// A snapshot of when the frame had been tracked. Never null in a run.
   std::shared_ptr<const SparseMap> map;
-  int loops_closed = 0;  ///< since the run began
+  int loops_closed = 0;      ///< since the run began
+  std::size_t left_out = 0;  ///< images that the source had left out by then, as far as it knows
 };
 using FrameReportPtr = std::shared_ptr<const FrameReport>;
 
@@ -87,7 +89,7 @@ struct RunSummary {
 class STILLPOINT_EXPORT Output {
  public:
   static constexpr const char* kKind = "output";
-  static constexpr std::uint32_t kApi = 7;  ///< see kPluginApi
+  static constexpr std::uint32_t kApi = 8;  ///< see kPluginApi
   virtual ~Output();
 
   /// Before the first frame of a run that its source drives; a program that gives the frames itself

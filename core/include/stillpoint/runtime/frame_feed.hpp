@@ -1,6 +1,7 @@
 // Brings frames from the source to tracking.
 #pragma once
 
+#include <atomic>
 #include <cstddef>
 #include <exception>
 #include <optional>
@@ -32,6 +33,9 @@ class FrameFeed {
   /// Ends the thread. Only after a stop or when next() gave null.
   void end();
 
+  /// By the source so far. On any thread.
+  std::size_t left_out() const { return left_out_; }
+
   /// Only after end().
   SourceReport report();
   std::size_t dropped() const { return dropped_; }
@@ -50,6 +54,7 @@ class FrameFeed {
   StageCaller<Source> source_;
   std::uint32_t frames_read_ = 0;
   FramePtr previous_;  // the last one read
+  std::atomic<std::size_t> left_out_ = 0;
   std::size_t dropped_ = 0;
   std::optional<double> clock_ahead_;  // seconds from the recording's time to that of the clock
   std::optional<double> last_time_;    // seconds, of the recording, delivered
