@@ -4,6 +4,7 @@
 #include <libdeflate.h>
 #include <sys/stat.h>
 
+#include <nlohmann/json.hpp>
 #include <numeric>
 
 #include "report/frame_log.hpp"
@@ -233,6 +234,20 @@ TEST(PictureChoice, AWorstFrameThatWasNotDrawnIsShownAsRecorded) {
   EXPECT_EQ(worst->why, "largest error: 42.1 mm");
   EXPECT_TRUE(worst->recorded);
   EXPECT_FALSE(run.pictures.front().recorded);
+}
+
+TEST(PageJson, StagesOfThePipelineHaveTitles) {
+  ReportData data;
+  data.runs.resize(1);
+  for (const char* name : {"prepare", "mine"}) {
+    data.runs[0].stages.emplace_back();
+    data.runs[0].stages.back().stage = name;
+  }
+  const nlohmann::json stages = run_json(data.runs[0], 10)["stages"]["list"];
+  EXPECT_EQ(stages.at(0)["title"], "Feature extraction");
+  EXPECT_EQ(stages.at(1)["title"], "");
+  EXPECT_EQ(report_json(data, "")["stage_titles"],
+            (nlohmann::json{{"prepare", "Feature extraction"}, {"mine", ""}}));
 }
 
 }  // namespace

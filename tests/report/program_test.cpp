@@ -242,5 +242,29 @@ TEST(ReportProgram, AnIncompleteStudySaysSo) {
   EXPECT_THAT(csv, HasSubstr("walking,plain,0.1,0.1000,0,"));
 }
 
+TEST(StudyReader, WhatRunsHaveInCommonIsSaidOnceAndWhereTheErrorsAreWithoutTheRecording) {
+  const TemporaryFolder folder;
+  study::Study study;
+  study.repeats = 3;
+  study.sequences.resize(1);
+  study.sequences[0].name = "walking";
+  study.sequences[0].dataset = "/none/walking";
+  study.variants.resize(1);
+  study.variants[0].name = "plain";
+  for (int repeat = 0; repeat < study.repeats; ++repeat) {
+    const std::string run = "runs/walking/plain/" + std::to_string(repeat);
+    folder.write(run + "/trajectory.txt", "1 0 0 0 0 0 0 1\n2 0 0 0 0 0 0 1\n");
+    study::CellResult result;
+    result.values[study::kAte] = 0.1;
+    study::write_result(folder.path() / run, result);
+  }
+  const report::ReportData data = report::read_study(folder.path(), study);
+  EXPECT_THAT(data.notes, ::testing::ElementsAre(
+                              HasSubstr("walking/plain/0 and 2 more: summary.json is missing")));
+  EXPECT_THAT(data.runs[2].notes,
+              ::testing::IsSupersetOf({HasSubstr("The recording is not at /none/walking"),
+                                       HasSubstr("The tables of the study have the errors")}));
+}
+
 }  // namespace
 }  // namespace stillpoint::testing

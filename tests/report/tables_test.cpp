@@ -111,8 +111,10 @@ TEST(StudyTables, HaveTheBestOfEachRowAndSayWhatIsMissing) {
   EXPECT_EQ(tables[1].title, "Compared with plain, recording by recording");
   EXPECT_EQ(tables[2].rows[0][2].text, "80.0 (80.0–80.0)");
   EXPECT_THAT(tables[0].note, HasSubstr("Median (smallest–largest) of 3 runs. Bold: the best"));
-  // Two recordings can show nothing: no dagger.
+  // One recording can show nothing: no dagger, and p says so.
   EXPECT_THAT(tables[0].header[2], Not(HasSubstr("†")));
+  EXPECT_EQ(tables[1].rows[0].back().text, "1.0000 (at least 1.0000)");
+  EXPECT_THAT(tables[1].note, Not(HasSubstr("†")));
   for (const Table& table : tables) EXPECT_THAT(table.title, Not(HasSubstr("lost")));
 }
 
@@ -146,6 +148,7 @@ TEST(StudyTables, WhatIsNoChanceHasADagger) {
   EXPECT_EQ(tables[0].header[2], "better †");
   EXPECT_THAT(tables[0].note, HasSubstr("differs from plain"));
   EXPECT_TRUE(tables[1].rows[0].back().significant);
+  EXPECT_THAT(tables[1].note, HasSubstr("†: corrected p below 0.05."));
 }
 
 }  // namespace

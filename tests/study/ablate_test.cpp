@@ -193,6 +193,51 @@ TEST_F(Ablate, FilesOfTheUserAreNoResults) {
   EXPECT_TRUE(fs::is_empty(out()));
 }
 
+TEST_F(Ablate, WhatTheUserPutsIntoTheFolderOfARunStays) {
+  ASSERT_EQ(ablate(kShort).exit_code, 0);
+  const fs::path run = out() / "runs/tiny/few/0";
+  folder_.write("out/runs/tiny/few/0/notes.txt", "mine");
+  folder_.write("out/runs/tiny/few/0/map/photograph.jpg", "mine");
+  std::string changed = kShort;
+  changed.replace(changed.find("=600"), 4, "=700");
+  EXPECT_THAT(ablate(changed, {"--again"}).err, HasSubstr("[1/1] tiny/few/0: ATE"));
+  EXPECT_THAT(text_of(run / "pipeline.yaml"), HasSubstr("features: 700"));
+  EXPECT_EQ(text_of(run / "notes.txt"), "mine");
+
+  for (const char* file : {"result.json", "cell_files.txt"})
+    fs::remove(run / file);  // as if killed
+  EXPECT_THAT(ablate(changed).err, HasSubstr("[1/1] tiny/few/0: ATE"));
+  EXPECT_EQ(text_of(run / "notes.txt"), "mine");
+  EXPECT_EQ(text_of(run / "map/photograph.jpg"), "mine");
+}
+
+TEST_F(Ablate, ARecordingIntoWhichTheUserHasPutFilesIsNotReplaced) {
+  ASSERT_EQ(ablate(kShort).exit_code, 0);
+  folder_.write("out/recordings/tiny/masks/0.png", "mine");
+  std::string longer = kShort;
+  longer.replace(longer.find("frames: 5"), 9, "frames: 8");
+  const Outcome refused = ablate(longer, {"--again"});
+  EXPECT_EQ(refused.exit_code, 2);
+  EXPECT_THAT(refused.err, HasSubstr("recordings/tiny/masks: is no file of the simulated "
+                                     "recording that would be replaced; move it"));
+  EXPECT_EQ(text_of(out() / "recordings/tiny/masks/0.png"), "mine");
+  fs::remove_all(out() / "recordings/tiny/masks");
+  EXPECT_EQ(ablate(longer, {"--again"}).exit_code, 0);
+}
+
+TEST_F(Ablate, WhileJobsMayBeInTheQueueNothingRunsHere) {
+  ASSERT_EQ(ablate(kShort).exit_code, 0);
+  fs::remove_all(out() / "runs/tiny/many");
+  folder_.write("out/slurm/1/sbatch.txt", "4711\n");
+  const Outcome refused =
+      call({"ablate", (folder_.path() / "study.yaml").string(), "-o", out().string()},
+           {.environment = {{"PATH", "/nowhere"}}});
+  EXPECT_EQ(refused.exit_code, 2);
+  EXPECT_THAT(refused.err, HasSubstr("were given to Slurm, which does not say whether they go on"));
+  EXPECT_FALSE(fs::exists(out() / "runs/tiny/many"));
+  EXPECT_TRUE(fs::exists(out() / "runs/tiny/few/0/result.json"));
+}
+
 TEST_F(Ablate, TheCommandIsThatWhichRepeatsTheStudy) {
   ASSERT_EQ(ablate(kShort, {"-j", "2"}).exit_code, 0);
   const std::string command = "stillpoint ablate " + (folder_.path() / "study.yaml").string() +
@@ -203,10 +248,15 @@ TEST_F(Ablate, TheCommandIsThatWhichRepeatsTheStudy) {
 
 TEST_F(Ablate, AFolderIsOfOneProcessAtATime) {
   ASSERT_EQ(ablate(kShort).exit_code, 0);
+  fs::remove_all(out() / "runs/tiny/many");
   const FolderLock lock(out());
-  const Outcome refused = ablate(kShort);
-  EXPECT_EQ(refused.exit_code, 2);
-  EXPECT_THAT(refused.err, HasSubstr("another run or study is writing into this folder"));
+  for (const char* executor : {"local", "slurm"}) {
+    const Outcome refused = ablate(kShort, {"--again", "--executor", executor});
+    EXPECT_EQ(refused.exit_code, 2);
+    EXPECT_THAT(refused.err, HasSubstr("another run or study is writing into this folder"));
+  }
+  EXPECT_FALSE(fs::exists(out() / "runs/tiny/many"));
+  EXPECT_TRUE(fs::exists(out() / "runs/tiny/few/0/trajectory.txt"));
 }
 
 TEST_F(Ablate, TheFirstRepeatKeepsPicturesOfItsWorstFrames) {

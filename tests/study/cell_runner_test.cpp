@@ -13,6 +13,7 @@
 #include <thread>
 
 #include "fixtures.hpp"
+#include "study/cell_folder.hpp"
 #include "study/child_process.hpp"
 #include "study/text_file.hpp"
 #include "support/recording_writer.hpp"
@@ -169,20 +170,68 @@ TEST_F(CellRunner, RunsOnlyWhatIsMissing) {
   EXPECT_THAT(run(cells), ElementsAre(1));
 }
 
-TEST_F(CellRunner, AFolderOfTheUserStays) {
-  const std::vector<PlannedCell> cells = {cell(0, "")};
-  folder_.write("runs/0/notes.txt", "mine");
+TEST_F(CellRunner, AFolderOfTheUserStaysAndNothingRuns) {
+  const std::vector<PlannedCell> cells = {cell(0, ""), cell(1, "")};
+  folder_.write("runs/1/notes.txt", "mine");
   EXPECT_THROW(run(cells), Error);
-  EXPECT_TRUE(fs::exists(cells[0].run / "notes.txt"));
+  EXPECT_TRUE(fs::exists(cells[1].run / "notes.txt"));
+  EXPECT_FALSE(fs::exists(cells[0].run));
+}
+
+TEST_F(CellRunner, ARunThatIsMadeAgainReplacesItsOwnFilesOnly) {
+  const fs::path folder = path("runs/0");
+  run({cell(0, good_run(folder) + " && mkdir '" + (folder / "images").string() + "' '" +
+                   (folder / "map").string() + "' && echo x > '" +
+                   (folder / "images/000000.jpg").string() + "' && echo x > '" +
+                   (folder / "map/map.ot").string() + "'")});
+  ASSERT_FALSE(results_[0]->failed()) << results_[0]->message;
+  folder_.write("runs/0/notes.txt", "mine");
+  folder_.write("runs/0/images/mine.jpg", "mine");
+  folder_.write("runs/0/trajectory.txt", "edited");
+  run({cell(0, "echo 'error: no network' >&2; exit 2", "changed")});
+  EXPECT_EQ(results_[0]->message, "no network");
+  EXPECT_EQ(read_text(folder / "notes.txt"), "mine");
+  EXPECT_EQ(read_text(folder / "images/mine.jpg"), "mine");
+  EXPECT_EQ(read_text(folder / "trajectory.txt"), "edited");
+  for (const char* own : {"summary.json", "images/000000.jpg", "map"})
+    EXPECT_FALSE(fs::exists(folder / own)) << own;
+  run({cell(0, "", "again")});
+  EXPECT_FALSE(results_[0]->failed()) << results_[0]->message;
+  EXPECT_EQ(read_text(folder / "notes.txt"), "mine");
+}
+
+TEST_F(CellRunner, WhatTheUserPutsThereStaysAlsoWhereARunIsStopped) {
+  run({cell(0, "")});
+  folder_.write("runs/0/notes.txt", "mine");
+  const fs::path started = path("started");
+  ASSERT_EQ(mkfifo(started.c_str(), 0600), 0);
+  std::stop_source stop;
+  std::jthread user([&] {
+    std::ifstream(started).get();  // waits for the cell
+    stop.request_stop();
+  });
+  run({cell(0, "echo x > '" + started.string() + "'; exec tail -f /dev/null", "changed")}, 1,
+      stop.get_token());
+  EXPECT_FALSE(results_[0]);
+  EXPECT_THAT(run({cell(0, "", "changed")}), ElementsAre(0));
+  EXPECT_EQ(read_text(path("runs/0/notes.txt")), "mine");
+}
+
+TEST_F(CellRunner, TheResultOfAJobThatNeverRanIsReplaced) {
+  write_result(path("runs/0"), {.exit_code = 1, .message = "left no result"});
+  folder_.write("runs/0/slurm.txt", "slurmstepd: error: no memory");
+  CellFolder(path("runs/0")).forget_result();
+  EXPECT_FALSE(fs::exists(path("runs/0/slurm.txt")));
+  EXPECT_THAT(run({cell(0, "")}), ElementsAre(0));
 }
 
 TEST_F(CellRunner, AKilledRunLeavesNoResult) {
   const std::vector<PlannedCell> cells = {cell(0, "")};
   run(cells);
   fs::remove(cells[0].run / "result.json");
-  folder_.write("runs/0/result.json.part", "{\"fingerprint\": ");
+  folder_.write("runs/0/result.json.4242-0.part", "{\"fingerprint\": ");
   EXPECT_THAT(run(cells), ElementsAre(0));
-  EXPECT_FALSE(fs::exists(cells[0].run / "result.json.part"));
+  EXPECT_FALSE(fs::exists(cells[0].run / "result.json.4242-0.part"));
   folder_.write("runs/0/result.json", "{\"fingerprint\": ");
   EXPECT_THAT(run(cells), ElementsAre(0));
 }

@@ -58,6 +58,24 @@ TEST_F(PublishedReport, AsLatexWhatHasFailedIsSaid) {
                                            "walking\\_empty & $-$100.0 {\\scriptsize [1 of 2]}"));
 }
 
+TEST_F(Report, AsLatexOnlyWhatIsThereIsExplained) {
+  Study study = two_by_two(1);
+  study.baseline = "plain";
+  study.sequences.resize(1);
+  StudyResults results{.study = study, .cells = cells_of(study), .results = {}, .command = ""};
+  for (int run = 0; run < 2; ++run) results.results.emplace_back(result_with(0.1));
+  EXPECT_THAT(
+      latex_report(results, "demo"),
+      ::testing::AllOf(::testing::HasSubstr("\\caption{Absolute trajectory error, RMSE (m). "
+                                            "One run of each.}"),
+                       ::testing::Not(::testing::HasSubstr("In brackets:")),
+                       ::testing::Not(::testing::HasSubstr("Bold"))));
+  results.results[1] = result_with(0.05, 40.0);
+  EXPECT_THAT(latex_report(results, "demo"),
+              ::testing::HasSubstr("One run of each. In brackets: coverage, where it is below "
+                                   "100\\,\\%.}"));
+}
+
 TEST_F(Report, NegativeImprovementsKeepTheirSigns) {
   Study study = two_by_two(2);
   study.baseline = "plain";

@@ -138,10 +138,37 @@ TEST_F(Comparison, TooFewRecordingsForADifferenceAreNamed) {
   const auto better = [](std::size_t, int) { return result_with(0.05); };
   EXPECT_EQ(recordings_note({compared(6, better)}), "");
   EXPECT_EQ(recordings_note({compared(5, better)}),
-            "With 1 comparison, a difference on fewer than 6 recordings cannot be significant, "
-            "however large it is.");
-  const std::vector<PairedComparison> seven(7, compared(8, better));
-  EXPECT_THAT(recordings_note(seven), ::testing::HasSubstr("fewer than 9 recordings"));
+            "At least: the smallest p that so few recordings can give, however large the "
+            "difference; with 1 comparison, it takes 6 recordings to come below 0.05.");
+  std::vector<PairedComparison> seven(7, compared(8, better));
+  for (PairedComparison& one : seven) one.least_p = 7.0 / 128;
+  EXPECT_THAT(recordings_note(seven),
+              ::testing::HasSubstr("with 7 comparisons, it takes 9 recordings"));
+}
+
+TEST_F(Comparison, TheSmallestPDependsOnTheRecordingsOfAllVariants) {
+  Study study = two_by_two(1);
+  study.baseline = "plain";
+  Variant partly = study.variants[1];
+  partly.name = "partly";
+  partly.only = {"0", "1", "2"};
+  study.variants.push_back(partly);
+  study.sequences.clear();
+  for (int i = 0; i < 8; ++i) {
+    Sequence sequence;
+    sequence.name = std::to_string(i);
+    sequence.dataset = "room " + sequence.name;
+    study.sequences.push_back(sequence);
+  }
+  StudyResults results{.study = study, .cells = cells_of(study), .results = {}, .command = ""};
+  for (const Cell& cell : results.cells)
+    results.results.emplace_back(result_with(cell.variant == 0 ? 0.1 : 0.05));
+  const std::vector<PairedComparison> all = compare_with_baseline(results);
+  ASSERT_EQ(all.size(), 2u);
+  EXPECT_DOUBLE_EQ(all[0].least_p, 2.0 * 2.0 / 256);
+  EXPECT_TRUE(all[0].can_be_significant());
+  EXPECT_DOUBLE_EQ(all[1].least_p, 2.0 / 8);
+  EXPECT_FALSE(all[1].can_be_significant());
 }
 
 TEST_F(Comparison, NeedsABaseline) {

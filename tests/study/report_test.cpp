@@ -58,19 +58,19 @@ TEST_F(Report, AsMarkdown) {
       "## Compared with plain, recording by recording\n"
       "\n"
       "| variant | recordings | better | worse | by coverage | ATE ratio | CPU ratio | effect | "
-      "p      | corrected p |\n"
+      "p      | corrected p              |\n"
       "|---------|------------|--------|-------|-------------|-----------|-----------|--------|"
-      "--------|-------------|\n"
+      "--------|--------------------------|\n"
       "| better  | 1          | 0      | 1     | 1           | –         | –         | -1.00  | "
-      "1.0000 | 1.0000      |\n"
+      "1.0000 | 1.0000 (at least 1.0000) |\n"
       "\n"
       "Ratios: median (quartiles); below 1 the variant has the smaller error, or takes less "
       "time. By coverage: recordings on which one of the two failed, covered less or lost its "
       "way, and so is the worse one. Effect: 1, the variant is always better; -1, always worse. "
       "p: Wilcoxon's signed-rank test of the ATE, two-sided; corrected for the number of "
       "variants after Holm. Sequences without motion, which the dynamic penalty is measured with, "
-      "take no part. With 1 comparison, a difference on fewer than 6 recordings cannot be "
-      "significant, however large it is.\n"
+      "take no part. At least: the smallest p that so few recordings can give, however large the "
+      "difference; with 1 comparison, it takes 6 recordings to come below 0.05.\n"
       "\n"
       "## Improvement of the ATE over plain (%)\n"
       "\n"
@@ -79,7 +79,9 @@ TEST_F(Report, AsMarkdown) {
       "| walking       | –     | 88.0, coverage 90.0 % [1 of 2] |\n"
       "| walking_empty | –     | -100.0 [1 of 2]                |\n"
       "\n"
-      "## Dynamic penalty: ATE ÷ ATE on the _empty twin\n"
+      "1 − ATE ÷ ATE of plain, run by run with the same seed: median (smallest–largest).\n"
+      "\n"
+      "## Dynamic penalty: ATE ÷ ATE on the twin without motion\n"
       "\n"
       "| sequence | plain | better                |\n"
       "|----------|-------|-----------------------|\n"
@@ -175,6 +177,15 @@ TEST_F(PublishedReport, AsMarkdown) {
                                                "0.1500 +\\| 0.0750 +\\| – "));
   EXPECT_THAT(report, ::testing::ContainsRegex("walking +\\| Other_SLAM \\(published\\) +\\| "
                                                "0.2500 +\\| 0.2000 +\\| 0.1500 +\\| 0.0500 "));
+}
+
+TEST_F(PublishedReport, FiguresOfARecordingOnWhichNothingRanAreNotShown) {
+  study_.published[0].times = {};
+  for (std::size_t run = 0; run < 4; ++run) results_.results[run].reset();
+  const std::string report = markdown_report(results_, "demo");
+  EXPECT_THAT(report, ::testing::HasSubstr("\n| walking_empty | plain   | 0.0150"));
+  EXPECT_THAT(report, ::testing::Not(::testing::HasSubstr("Other_SLAM")));
+  EXPECT_THAT(report, ::testing::Not(::testing::HasSubstr("Published")));
 }
 
 // A median of the coverage would hide the run that was lost half of the time.

@@ -67,6 +67,21 @@ TEST(ShippedStudies, AreListedWithQuestionAndNumberOfRuns) {
   EXPECT_THAT(outcome.out, ::testing::ContainsRegex("\nquick +12  What do people cost"));
 }
 
+/// What is in the file and in the one that it extends.
+std::string extended_text_of(const fs::path& study) {
+  const std::string text = text_of(study);
+  static const std::regex kExtends("\nextends: (\\w+)\n");
+  std::smatch base;
+  if (!std::regex_search(text, base, kExtends)) return text;
+  return text + extended_text_of(study.parent_path() / (base[1].str() + ".yaml"));
+}
+
+TEST(ShippedStudies, EndRunsThatHang) {
+  for (const fs::path& study : shipped_studies())
+    EXPECT_THAT(extended_text_of(study), ::testing::ContainsRegex("\ntime_limit: [1-9][0-9]+ "))
+        << study;
+}
+
 TEST(ShippedStudies, AreListedBesideOnesThatCannotBeRead) {
   const TemporaryFolder configs;
   configs.write("studies/mine.yaml", "version: 1\nsequencs: []\n");

@@ -76,5 +76,14 @@ TEST(CorrectedForNumber, IsHolms) {
   EXPECT_TRUE(corrected_for_number({}).empty());
 }
 
+TEST(SignedRank, NoPIsSmallerThanThatOfDifferencesOfOneSign) {
+  std::vector<double> differences;
+  EXPECT_DOUBLE_EQ(smallest_p(0), 1.0);
+  for (std::size_t pairs = 1; pairs <= 12; ++pairs) {
+    differences.push_back(static_cast<double>(pairs));
+    EXPECT_DOUBLE_EQ(smallest_p(pairs), signed_rank(differences).p) << pairs;
+  }
+}
+
 }  // namespace
 }  // namespace stillpoint::study

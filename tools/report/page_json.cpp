@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "report/thinning.hpp"
+#include "study/metrics.hpp"
 
 namespace stillpoint::report {
 namespace {
@@ -46,6 +47,22 @@ Json table_json(const Table& table) {
           {"header", table.header},
           {"names", table.names},
           {"rows", rows}};
+}
+
+/// "Feature extraction" of "prepare"; empty: a stage that is none of the pipeline's own.
+std::string title_of_stage(const std::string& stage) {
+  for (const study::Metric& metric : study::metrics())
+    if (metric.group == study::Metric::Group::kStageTimes && metric.brief == stage)
+      return metric.title;
+  return {};
+}
+
+/// Of all stages of the runs, by their names.
+Json stage_titles(const std::vector<RunData>& runs) {
+  Json titles = Json::object();
+  for (const RunData& run : runs)
+    for (const StageTimes& stage : run.stages) titles[stage.stage] = title_of_stage(stage.stage);
+  return titles;
 }
 
 /// Mean CPU time per frame of each stage, for bars that compare runs; ms.
@@ -155,6 +172,7 @@ Json stages_json(const RunData& run, std::size_t points) {
       cpu[part] += static_cast<double>(stage.cpu_ms[i]) / frames;
     }
     Json json = {{"name", stage.stage},
+                 {"title", title_of_stage(stage.stage)},
                  {"calls", stage.calls},
                  {"wall", distribution_json(stage.wall)},
                  {"cpu", distribution_json(stage.cpu)}};
@@ -214,6 +232,7 @@ Json report_json(const ReportData& data, const std::string& written_by) {
           {"notes", data.notes},
           {"tables", tables},
           {"runs", runs},
+          {"stage_titles", stage_titles(data.runs)},
           {"written_by", written_by}};
 }
 

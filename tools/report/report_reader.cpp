@@ -70,6 +70,9 @@ RunData run_of_cell(const fs::path& folder, const StudyResults& results, std::si
   if (!results.results[i]) return run;
   const CellResult& result = *results.results[i];
   run.made_by = origin_text(result.origin);
+  if (run.truth.empty() && result.values[study::kAte])
+    run.notes.emplace_back(
+        "The tables of the study have the errors that were measured when the run ended.");
   if (result.failed()) {
     run.complete = false;
     run.notes.insert(
@@ -93,15 +96,38 @@ void compare_with_variant(std::vector<RunData>& runs, const Study& study) {
   }
 }
 
+/// The first note of each run. What several have in common is said once.
+std::vector<std::string> notes_of_runs(const std::vector<RunData>& runs) {
+  struct CommonNote {
+    std::string text;
+    const RunData* first;
+    std::size_t runs;
+  };
+  std::vector<CommonNote> common;
+  for (const RunData& run : runs) {
+    if (run.notes.empty()) continue;
+    const auto known = std::ranges::find(common, run.notes.front(), &CommonNote::text);
+    if (known == common.end())
+      common.push_back({run.notes.front(), &run, 1});
+    else
+      ++known->runs;
+  }
+  std::vector<std::string> notes;
+  for (const CommonNote& note : common)
+    notes.push_back(note.first->name +
+                    (note.runs > 1 ? " and " + std::to_string(note.runs - 1) + " more" : "") +
+                    ": " + note.text);
+  return notes;
+}
+
 std::vector<std::string> notes_of(const StudyResults& results, const std::vector<RunData>& runs) {
   std::vector<std::string> notes;
   const std::size_t missing = results.missing();
   if (missing > 0)
     notes.push_back("Not finished: " + std::to_string(missing) + " of " +
-                    std::to_string(results.cells.size()) +
-                    " runs have no result; the command below makes them.");
-  for (const RunData& run : runs)
-    if (!run.notes.empty()) notes.push_back(run.name + ": " + run.notes.front());
+                    std::to_string(results.cells.size()) + " runs have no result; '" +
+                    results.command + "' makes them.");
+  for (std::string& note : notes_of_runs(runs)) notes.push_back(std::move(note));
   return notes;
 }
 

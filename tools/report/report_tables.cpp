@@ -11,9 +11,9 @@ namespace {
 using study::Table;
 using study::TableCell;
 
-bool marks_the_best(const Table& table) {
-  return std::ranges::any_of(table.rows, [](const std::vector<TableCell>& row) {
-    return std::ranges::any_of(row, &TableCell::best);
+bool has_marked(const Table& table, bool TableCell::*mark) {
+  return std::ranges::any_of(table.rows, [&](const std::vector<TableCell>& row) {
+    return std::ranges::any_of(row, mark);
   });
 }
 
@@ -30,9 +30,11 @@ std::string note_of_figures(const study::Study& study) {
 std::vector<Table> report_tables(const study::StudyResults& results) {
   std::vector<Table> tables = study::study_tables(results);
   std::erase_if(tables, [](const Table& table) { return table.rows.empty(); });
-  for (Table& table : tables)
-    if (marks_the_best(table))
+  for (Table& table : tables) {
+    if (has_marked(table, &TableCell::best))
       table.note = note_of_figures(results.study) + (table.note.empty() ? "" : " " + table.note);
+    if (has_marked(table, &TableCell::significant)) table.note += " †: corrected p below 0.05.";
+  }
   return tables;
 }
 

@@ -178,7 +178,16 @@ void take_events(RunData& run) {
   }
 }
 
-void read_trajectory(RunData& run) {
+/// Why there is nothing to compare with.
+std::string without_truth(const fs::path& recording) {
+  std::error_code unreadable;
+  if (recording.empty()) return "The recording has no true trajectory: no errors.";
+  if (!fs::exists(recording, unreadable))
+    return "The recording is not at " + recording.string() + ": no errors.";
+  return "There is no groundtruth.txt in " + recording.string() + ": no errors.";
+}
+
+void read_trajectory(RunData& run, const fs::path& recording) {
   const fs::path file = run.folder / "trajectory.txt";
   if (!fs::exists(file)) {
     run.notes.emplace_back("trajectory.txt is missing.");
@@ -187,7 +196,7 @@ void read_trajectory(RunData& run) {
   Trajectory trajectory = evaluation::read_trajectory(file);
   run.path = trajectory.poses;
   if (run.truth.empty()) {
-    run.notes.emplace_back("There is no groundtruth.txt beside the recording: no errors.");
+    run.notes.push_back(without_truth(recording));
     return;
   }
   run.evaluation =
@@ -209,7 +218,7 @@ RunData read_run(const fs::path& folder, const std::string& name, fs::path recor
   try_to(run, [&] { read_summary(run); });
   read_log(run);
   read_pipeline(run, recording);
-  try_to(run, [&] { read_trajectory(run); });
+  try_to(run, [&] { read_trajectory(run, recording); });
   try_to(run, [&] { run.frame_rows = read_frames(folder / "frames.csv"); });
   try_to(run, [&] { run.stages = read_stage_times(folder / "timings.csv"); });
   take_events(run);

@@ -7,9 +7,9 @@
 #include <sstream>
 
 #include "stillpoint/error.hpp"
+#include "study/cell_folder.hpp"
 #include "study/child_process.hpp"
 #include "study/console_text.hpp"
-#include "study/text_file.hpp"
 
 namespace stillpoint::study {
 namespace {
@@ -28,32 +28,20 @@ double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-constexpr const char* kConsole = "console.txt";
-
-/// Throws Error(kUsage) for a folder that no study has made: it stays.
-void require_own_run(const std::filesystem::path& run) {
-  std::error_code none;
-  if (!std::filesystem::exists(run, none) || std::filesystem::is_empty(run, none)) return;
-  if (std::filesystem::exists(run / kConsole, none) || read_result(run)) return;
-  throw Error(Fault::kUsage, "is no run of a study, and would be replaced", run.string(),
-              "move it, or choose another folder with -o");
-}
-
 }  // namespace
 
 std::optional<CellResult> run_cell(const PlannedCell& cell, const Program& program,
                                    const std::stop_token& stop) {
-  require_own_run(cell.run);
-  remove_folder(cell.run);
-  make_folder(cell.run);
+  CellFolder folder(cell.run);
+  folder.clear();
   const Clock::time_point start = Clock::now();
-  const std::filesystem::path console = cell.run / kConsole;
-  const ProcessEnd end = run_process(cell.command, console, stop, cell.time_limit);
+  const ProcessEnd end = run_process(cell.command, folder.console(), stop, cell.time_limit);
   CellResult result{.fingerprint = cell.fingerprint,
                     .program = program.fingerprint,
                     .origin = origin_of(program),
                     .exit_code = end.in_time ? end.exit_code : kOutOfTime,
                     .seconds = seconds_since(start)};
+  folder.note_written();
   if (end.exit_code != 0 && stop.stop_requested()) return std::nullopt;
   try {
     if (!end.in_time)
@@ -61,7 +49,7 @@ std::optional<CellResult> run_cell(const PlannedCell& cell, const Program& progr
     else if (end.exit_code == 0)
       result.values = measure_run(cell.run, cell.recording, result.message);
     else
-      result.message = failure_text(console, end);
+      result.message = failure_text(folder.console(), end);
   } catch (const Error& error) {
     result.exit_code = error.exit_code();
     result.message = error.what();
@@ -131,6 +119,7 @@ void run_missing(const std::vector<PlannedCell>& cells, const Program& program, 
                  const std::stop_token& stop, const CellFinished& finished,
                  std::vector<std::optional<CellResult>>& results) {
   std::vector<std::size_t> missing = missing_cells(cells, results);
+  for (const std::size_t i : missing) require_own_folder(cells[i].run);
   const int workers = std::min(jobs, static_cast<int>(missing.size()));
   Queue queue(std::move(missing), jobs);
   const auto work = [&] {

@@ -45,13 +45,15 @@ bool is_of_something_else(const PlannedCell& cell);
 std::vector<std::size_t> missing_cells(const std::vector<PlannedCell>& cells,
                                        const std::vector<std::optional<CellResult>>& results);
 
-/// Runs it, and keeps the result beside the run. Nothing when it was stopped.
+/// Runs it, and keeps the result beside the run. Nothing when it was stopped. Files that others
+/// have put into its folder stay; throws Error(kUsage) where no study has run in it.
 std::optional<CellResult> run_cell(const PlannedCell& cell, const Program& program,
                                    const std::stop_token& stop);
 
 /// Fills the empty `results` (parallel to `cells`), first repeats first, `jobs` processes at most
 /// at a time, and keeps each result beside its run. After a stop they stay empty. A run that fails
-/// is a result. `program` is the one that the commands run.
+/// is a result. `program` is the one that the commands run. Throws as run_cell does, before any
+/// runs.
 void run_missing(const std::vector<PlannedCell>& cells, const Program& program, int jobs,
                  const std::stop_token& stop, const CellFinished& finished,
                  std::vector<std::optional<CellResult>>& results);

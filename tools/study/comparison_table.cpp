@@ -1,5 +1,6 @@
 #include "study/comparison_table.hpp"
 
+#include "evaluation/format.hpp"
 #include "study/table_cells.hpp"
 
 namespace stillpoint::study {
@@ -16,6 +17,14 @@ TableCell count_cell(std::size_t count) { return number_cell(static_cast<double>
 TableCell p_cell(double p) {
   TableCell cell = number_cell(p, 4);
   if (p < 0.0001) cell.text = "< 0.0001";
+  return cell;
+}
+
+TableCell corrected_cell(const PairedComparison& one) {
+  TableCell cell = p_cell(one.corrected_p);
+  if (!one.can_be_significant())
+    cell.text += " (at least " + evaluation::fixed(one.least_p, 4) + ")";
+  cell.significant = one.is_significant();
   return cell;
 }
 
@@ -40,8 +49,7 @@ Table comparison_table(const Study& study, const std::vector<PairedComparison>& 
                           ratio_cell(one.time_ratio),
                           number_cell(one.effect, 2),
                           p_cell(one.p),
-                          p_cell(one.corrected_p)});
-    table.rows.back().back().significant = one.is_significant();
+                          corrected_cell(one)});
   }
   return table;
 }

@@ -25,6 +25,17 @@ void add_row(std::vector<TableCell> row, Table& table) {
     table.rows.push_back(std::move(row));
 }
 
+/// The systems that have a row.
+std::vector<const Published*> published_in(const Study& study, const Table& table) {
+  std::vector<const Published*> systems;
+  for (const Published& system : study.published)
+    if (std::ranges::any_of(table.rows, [&](const std::vector<TableCell>& row) {
+          return row[1].text == published_name(system);
+        }))
+      systems.push_back(&system);
+  return systems;
+}
+
 void add_error_rows(const StudyResults& results, std::size_t sequence, Table& table) {
   const Study& study = results.study;
   const std::string& name = study.sequences[sequence].name;
@@ -48,6 +59,7 @@ void add_error_rows(const StudyResults& results, std::size_t sequence, Table& ta
       rmse.text = "failed";
     if (spread || failed) table.rows.push_back(std::move(row));
   }
+  if (table.rows.empty() || table.rows.back().front().text != name) return;  // nothing is measured
   for (const Published& system : study.published) {
     std::vector<TableCell> row = {{.text = name}, {.text = published_name(system)}};
     for (const MetricId metric : columns)
@@ -60,9 +72,9 @@ void add_error_rows(const StudyResults& results, std::size_t sequence, Table& ta
 
 Table stage_table(const StudyResults& results) {
   const Study& study = results.study;
-  const auto systems = published_with(study, kFirstStage, kMetricCount);
+  const auto systems = published_with_stages_of(results);
   Table table{.title = "Time of each stage, mean of its calls (ms)",
-              .note = "Wall clock; all sequences together.",
+              .note = "Wall clock; median (smallest–largest) of all runs, all sequences together.",
               .header = {"stage"}};
   for (const Variant& variant : study.variants) table.header.push_back(variant.name);
   for (const Published* system : systems) table.header.push_back(published_name(*system));
@@ -84,7 +96,6 @@ Table stage_table(const StudyResults& results) {
 Table error_statistics_table(const StudyResults& results) {
   if (!results.spread(kAteMean)) return {};
   Table table{.title = "RMSE, mean, median and standard deviation of the errors",
-              .note = published_note(published_with(results.study, 0, kFirstStage)),
               .header = {"sequence", "variant"}};
   table.names = 2;
   for (const ErrorFigures& figures : error_figures()) {
@@ -95,6 +106,7 @@ Table error_statistics_table(const StudyResults& results) {
   }
   for (std::size_t sequence = 0; sequence < results.study.sequences.size(); ++sequence)
     add_error_rows(results, sequence, table);
+  table.note = published_note(published_in(results.study, table));
   return table;
 }
 

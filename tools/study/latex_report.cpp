@@ -1,10 +1,12 @@
 #include "study/latex_report.hpp"
 
 #include <algorithm>
+#include <string_view>
 #include <utility>
 #include <vector>
 
 #include "evaluation/format.hpp"
+#include "stillpoint/support/did_you_mean.hpp"
 #include "study/latex_table.hpp"
 #include "study/paired_comparison.hpp"
 #include "study/provenance.hpp"
@@ -16,12 +18,13 @@ namespace {
 using evaluation::fixed;
 
 constexpr const char* kEmpty = "--";
-constexpr const char* kBracketsNote =
-    " In brackets: coverage, where it is below 100\\,\\%, and how many runs a figure is of, where "
-    "not all have one; failed: no run has come to its end.";
+constexpr const char* kBracket = "{\\scriptsize [";
 
-std::string bold(const std::string& text) { return "\\textbf{" + text + "}"; }
-std::string italic(const std::string& text) { return "\\textit{" + text + "}"; }
+constexpr const char* kBold = "\\textbf{";
+constexpr const char* kItalic = "\\textit{";
+
+std::string bold(const std::string& text) { return kBold + text + "}"; }
+std::string italic(const std::string& text) { return kItalic + text + "}"; }
 
 std::string number(double value, int digits) {
   const std::string text = fixed(value, digits);
@@ -43,6 +46,42 @@ std::string latex_published(const Published& system, const std::string& recordin
                             MetricId metric) {
   const auto value = system.find(recording, metric);
   return value ? italic(fixed(*value, metrics()[metric].digits)) : kEmpty;
+}
+
+bool has(const LatexTable& table, std::string_view mark) {
+  return std::ranges::any_of(table.rows, [&](const std::vector<std::string>& row) {
+    return std::ranges::any_of(
+        row, [&](const std::string& cell) { return cell.find(mark) != std::string::npos; });
+  });
+}
+
+/// What stands in brackets, of all cells.
+std::string in_brackets(const LatexTable& table) {
+  std::string text;
+  for (const std::vector<std::string>& row : table.rows)
+    for (const std::string& cell : row)
+      for (std::size_t at = cell.find(kBracket); at != std::string::npos;
+           at = cell.find(kBracket, at + 1))
+        text += cell.substr(at, cell.find(']', at) - at) + "\n";
+  return text;
+}
+
+/// Of those that there are.
+std::string brackets_note(const LatexTable& table) {
+  const std::string text = in_brackets(table);
+  std::vector<std::string> meanings;
+  const auto add = [&](const char* mark, const char* meaning) {
+    if (text.find(mark) != std::string::npos) meanings.emplace_back(meaning);
+  };
+  add("%", "coverage, where it is below 100\\,\\%");
+  add(" of ", "how many runs a figure is of, where not all have one");
+  add("failed", "failed: no run has come to its end");
+  return meanings.empty() ? "" : " In brackets: " + join(meanings, "; ") + ".";
+}
+
+/// `note`, where something is bold.
+std::string bold_note(const LatexTable& table, const char* note) {
+  return has(table, kBold) ? note : "";
 }
 
 class LatexReport {
@@ -115,14 +154,12 @@ class LatexReport {
 
   LatexTable ate_table() const {
     const auto systems = published_with(study_, kAte, kAte + 1);
-    LatexTable table{.label = label("ate"),
-                     .caption = "Absolute trajectory error, RMSE (m)." +
-                                runs_note("Median (smallest--largest)") + kBracketsNote +
-                                " Bold: the smallest of its row, among those that cover the same." +
-                                published_note(systems) + missing_note(),
-                     .columns = "l",
-                     .header = {"Sequence"},
-                     .rows = {}};
+    LatexTable table{
+        .label = label("ate"),
+        .caption = "Absolute trajectory error, RMSE (m)." + runs_note("Median (smallest--largest)"),
+        .columns = "l",
+        .header = {"Sequence"},
+        .rows = {}};
     add_systems(systems, table);
     for (std::size_t sequence = 0; sequence < study_.sequences.size(); ++sequence) {
       const auto best = best_variants(results_, sequence, kAte);
@@ -136,6 +173,10 @@ class LatexReport {
         row.push_back(latex_published(*system, original_of(study_.sequences[sequence]), kAte));
       table.rows.push_back(std::move(row));
     }
+    table.caption +=
+        brackets_note(table) +
+        bold_note(table, " Bold: the smallest of its row, among those that cover the same.") +
+        published_note(systems) + missing_note();
     return table;
   }
 
@@ -144,8 +185,7 @@ class LatexReport {
     LatexTable table{.label = label("improvement"),
                      .caption = "Improvement of the absolute trajectory error over " +
                                 latex_text(study_.baseline) + " (\\%)." +
-                                runs_note("Median (smallest--largest)") + kBracketsNote +
-                                missing_note(),
+                                runs_note("Median (smallest--largest)"),
                      .columns = "l",
                      .header = {"Sequence"},
                      .rows = {}};
@@ -169,6 +209,7 @@ class LatexReport {
       }
       if (any) table.rows.push_back(std::move(row));
     }
+    table.caption += brackets_note(table) + missing_note();
     return table;
   }
 
@@ -176,17 +217,18 @@ class LatexReport {
   LatexTable error_table(const ErrorFigures& figures) const {
     const auto systems = published_with(study_, figures.rmse, figures.rmse + 1);
     const Metric& m = metrics()[figures.rmse];
-    LatexTable table{.label = label(m.key),
-                     .caption = latex_text(figures.brief) + " (" + m.unit + ")." +
-                                runs_note("Median") + kBracketsNote +
-                                " Bold: the smallest of a sequence, among those that cover the "
-                                "same." +
-                                published_note(systems) + missing_note(),
-                     .columns = "llrrrr",
-                     .header = {"Sequence", "System", "RMSE", "Mean", "Median", "S.D."},
-                     .rows = {}};
+    LatexTable table{
+        .label = label(m.key),
+        .caption = latex_text(figures.brief) + " (" + m.unit + ")." + runs_note("Median"),
+        .columns = "llrrrr",
+        .header = {"Sequence", "System", "RMSE", "Mean", "Median", "S.D."},
+        .rows = {}};
     for (std::size_t sequence = 0; sequence < study_.sequences.size(); ++sequence)
       add_error_rows(figures, sequence, systems, table.rows);
+    table.caption +=
+        brackets_note(table) +
+        bold_note(table, " Bold: the smallest of a sequence, among those that cover the same.") +
+        (has(table, kItalic) ? published_note(systems) : "") + missing_note();
     return table;
   }
 
@@ -233,20 +275,22 @@ class LatexReport {
                    "failure or the coverage). Ratios: median (quartiles); effect: matched-pairs "
                    "rank-biserial correlation, 1 where the variant is always better; $p$: "
                    "Wilcoxon's signed-rank test of the absolute trajectory error, two-sided, "
-                   "corrected after Holm." +
-                   notes + missing_note(),
+                   "corrected after Holm.",
         .columns = "lrrrrrrrr",
         .header = {"Variant", "$n$", "Better", "Worse", "By coverage", "ATE ratio", "CPU ratio",
                    "Effect", "$p$"},
         .rows = {}};
     for (const PairedComparison& one : comparisons) {
-      const std::string p = one.corrected_p < 0.0001 ? "$<$0.0001" : fixed(one.corrected_p, 4);
+      std::string p = one.corrected_p < 0.0001 ? "$<$0.0001" : fixed(one.corrected_p, 4);
+      if (!one.can_be_significant())
+        p += " {\\scriptsize (at least " + fixed(one.least_p, 4) + ")}";
       table.rows.push_back({latex_text(study_.variants[one.variant].name),
                             std::to_string(one.recordings), std::to_string(one.better),
                             std::to_string(one.worse), std::to_string(one.incomplete),
                             ratio(one.ate_ratio), ratio(one.time_ratio), fixed(one.effect, 2),
                             one.is_significant() ? bold(p) : p});
     }
+    table.caption += bold_note(table, " Bold: below 0.05.") + notes + missing_note();
     return table;
   }
 
@@ -262,7 +306,7 @@ class LatexReport {
 
   /// The form of Table IV.
   LatexTable time_table() const {
-    const auto systems = published_with(study_, kFirstStage, kMetricCount);
+    const auto systems = published_with_stages_of(results_);
     LatexTable table{.label = label("times"),
                      .caption =
                          "Time of each stage, mean of its calls (ms, wall clock), over all "
@@ -275,12 +319,12 @@ class LatexReport {
     for (std::size_t i = kFirstStage; i < kMetricCount; ++i) {
       const auto metric = static_cast<MetricId>(i);
       const Metric& m = metrics()[metric];
+      if (!results_.spread(metric)) continue;
       std::vector<std::string> row = {latex_text(m.title)};
       for (std::size_t variant = 0; variant < study_.variants.size(); ++variant)
         row.push_back(latex_spread(results_.spread(variant, metric), m.digits));
       for (const Published* system : systems) row.push_back(latex_published(*system, "", metric));
-      if (std::any_of(row.begin() + 1, row.end(), [](const auto& t) { return t != kEmpty; }))
-        table.rows.push_back(std::move(row));
+      table.rows.push_back(std::move(row));
     }
     return table;
   }

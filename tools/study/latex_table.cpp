@@ -19,6 +19,7 @@ constexpr std::pair<std::string_view, std::string_view> kSpecial[] = {{"\\", "\\
                                                                       {">", "$>$"},
                                                                       {"†", "$^\\dagger$"},
                                                                       {"–", "--"},
+                                                                      {"−", "$-$"},
                                                                       {"×", "$\\times$"},
                                                                       {"÷", "$\\div$"}};
 

@@ -127,6 +127,21 @@ PairedComparison comparison_of(std::size_t variant, const std::vector<Pair>& pai
   return result;
 }
 
+/// Each corrected p grows with every p: the smallest are those of the smallest.
+void correct_for_number(std::vector<PairedComparison>& comparisons) {
+  std::vector<double> p_values, smallest;
+  for (const PairedComparison& one : comparisons) {
+    p_values.push_back(one.p);
+    smallest.push_back(smallest_p(one.recordings));
+  }
+  const std::vector<double> corrected = corrected_for_number(p_values);
+  const std::vector<double> least = corrected_for_number(smallest);
+  for (std::size_t i = 0; i < comparisons.size(); ++i) {
+    comparisons[i].corrected_p = corrected[i];
+    comparisons[i].least_p = least[i];
+  }
+}
+
 }  // namespace
 
 std::vector<PairedComparison> compare_with_baseline(const StudyResults& results) {
@@ -139,10 +154,7 @@ std::vector<PairedComparison> compare_with_baseline(const StudyResults& results)
     const std::vector<Pair> pairs = Pairs(results, variant, *baseline).all();
     if (!pairs.empty()) comparisons.push_back(comparison_of(variant, pairs));
   }
-  std::vector<double> p_values;
-  for (const PairedComparison& one : comparisons) p_values.push_back(one.p);
-  const std::vector<double> corrected = corrected_for_number(p_values);
-  for (std::size_t i = 0; i < comparisons.size(); ++i) comparisons[i].corrected_p = corrected[i];
+  correct_for_number(comparisons);
   return comparisons;
 }
 
@@ -154,16 +166,14 @@ std::string left_out_note(const Study& study) {
 }
 
 std::string recordings_note(const std::vector<PairedComparison>& comparisons) {
-  // The smallest p of n recordings is 2^(1-n), and that of the first of k comparisons k 2^(1-n).
-  const auto count = static_cast<double>(comparisons.size());
+  if (std::ranges::all_of(comparisons, &PairedComparison::can_be_significant)) return "";
+  const std::size_t count = comparisons.size();
   std::size_t needed = 1;
-  while (count * std::pow(0.5, static_cast<double>(needed) - 1.0) >= kSignificance) ++needed;
-  if (std::ranges::all_of(comparisons, [&](const auto& one) { return one.recordings >= needed; }))
-    return "";
-  return "With " + std::to_string(comparisons.size()) +
-         (comparisons.size() == 1 ? " comparison, a difference" : " comparisons, a difference") +
-         " on fewer than " + std::to_string(needed) +
-         " recordings cannot be significant, however large it is.";
+  while (static_cast<double>(count) * smallest_p(needed) >= kSignificance) ++needed;
+  return "At least: the smallest p that so few recordings can give, however large the difference; "
+         "with " +
+         std::to_string(count) + (count == 1 ? " comparison" : " comparisons") + ", it takes " +
+         std::to_string(needed) + " recordings to come below 0.05.";
 }
 
 std::string dependence_note(const Study& study) {

@@ -31,7 +31,9 @@ struct PairedComparison {
   double effect = 0.0;               ///< see SignedRank; positive: better than the baseline
   double p = 1.0;                    ///< of Wilcoxon's test on logarithms of the ratios
   double corrected_p = 1.0;          ///< for the number of variants
+  double least_p = 1.0;              ///< the smallest corrected p that so many recordings can give
 
+  bool can_be_significant() const { return least_p < kSignificance; }
   bool is_significant() const { return corrected_p < kSignificance; }
 };
 
@@ -41,7 +43,7 @@ std::vector<PairedComparison> compare_with_baseline(const StudyResults& results)
 /// That twins without motion take no part, where there are any; else empty.
 std::string left_out_note(const Study& study);
 
-/// How many recordings a significant difference needs, where a comparison has fewer; else empty.
+/// What least_p says and how many recordings it takes, where one cannot be significant; else empty.
 std::string recordings_note(const std::vector<PairedComparison>& comparisons);
 
 /// That recordings are not independent, where they are not; else empty.

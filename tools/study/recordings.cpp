@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cctype>
+#include <initializer_list>
+#include <string>
 #include <system_error>
 #include <utility>
 #include <vector>
@@ -20,13 +22,38 @@ namespace fs = std::filesystem;
 
 constexpr const char* kDescription = "simulated_from.yaml";
 
-/// Throws Error(kUsage) for a folder that no study has made: it stays.
+bool is_one_of(const fs::path& name, std::initializer_list<const char*> names) {
+  return std::ranges::any_of(names, [&](const char* known) { return name == known; });
+}
+
+/// "1000.033333.png"
+bool is_stamped_image(const fs::path& name) {
+  return name.extension() == ".png" &&
+         name.stem().string().find_first_not_of(".0123456789") == std::string::npos;
+}
+
+/// Of a path from the recording's folder: whether the simulator or the study writes it.
+bool is_of_recording(const fs::path& path) {
+  const auto is_folder = [](const fs::path& name) {
+    return is_one_of(name, {"rgb", "depth", "labels", "instances"});
+  };
+  const fs::path folder = path.parent_path();
+  if (!folder.empty()) return is_folder(folder) && is_stamped_image(path.filename());
+  return is_folder(path) || is_one_of(path, {"rgb.txt", "depth.txt", "associations.txt",
+                                             "groundtruth.txt", "camera.yaml", kDescription});
+}
+
+/// Throws Error(kUsage) for a folder that no study has made, or that has files of others: it stays.
 void require_own_recording(const fs::path& folder) {
   std::error_code none;
   if (!fs::exists(folder, none) || fs::is_empty(folder, none)) return;
   if (!fs::exists(folder / kDescription, none))
     throw Error(Fault::kUsage, "is no recording of a study, and would be replaced", folder.string(),
                 "move it, or choose another folder with -o");
+  for (const auto& entry : fs::recursive_directory_iterator(folder))
+    if (!is_of_recording(entry.path().lexically_relative(folder)))
+      throw Error(Fault::kUsage, "is no file of the simulated recording that would be replaced",
+                  entry.path().string(), "move it, or choose another folder with -o");
 }
 
 /// "x.1234.part": written beside `folder`, under a name that is no other sequence's.

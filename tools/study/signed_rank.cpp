@@ -74,6 +74,10 @@ SignedRank signed_rank(std::span<const double> differences) {
   return result;
 }
 
+double smallest_p(std::size_t pairs) {
+  return std::min(1.0, std::exp2(1.0 - static_cast<double>(pairs)));
+}
+
 std::vector<double> corrected_for_number(std::span<const double> p_values) {
   std::vector<std::size_t> order(p_values.size());
   std::iota(order.begin(), order.end(), 0);

@@ -19,6 +19,9 @@ struct SignedRank {
 /// beyond.
 SignedRank signed_rank(std::span<const double> differences);
 
+/// The p of so many pairs if all differences have one sign: none is smaller.
+double smallest_p(std::size_t pairs);
+
 /// p values of several tests, corrected for their number, in the same order (Holm, A simple
 /// sequentially rejective multiple test procedure, 1979).
 std::vector<double> corrected_for_number(std::span<const double> p_values);

@@ -15,15 +15,16 @@ namespace stillpoint::study {
 namespace {
 
 constexpr const char* kAnswer = "sbatch.txt";
+constexpr const char* kCells = "cells.jsonl";
+constexpr const char* kScriptFile = "job.sh";
+constexpr const char* kQueueAnswer = "squeue.txt";
 
 // sbatch keeps a copy of the script; its arguments need no quoting.
 constexpr const char* kScript =
     "#!/bin/sh\n"
     "exec \"$1\" run-cell \"$2\" \"$SLURM_ARRAY_TASK_ID\"\n";
 
-/// Of a folder named so; nothing for others.
-std::optional<int> number_of(const std::filesystem::path& folder) {
-  const std::string name = folder.filename().string();
+std::optional<int> number_in(const std::string& name) {
   int number = 0;
   const auto [end, error] = std::from_chars(name.data(), name.data() + name.size(), number);
   if (error != std::errc{} || end != name.data() + name.size()) return std::nullopt;
@@ -34,7 +35,8 @@ std::map<int, std::filesystem::path> numbered_folders(const std::filesystem::pat
   std::map<int, std::filesystem::path> folders;
   std::error_code ignored;  // no such folder: no batches
   for (const auto& entry : std::filesystem::directory_iterator(folder, ignored))
-    if (const auto number = number_of(entry.path())) folders.emplace(*number, entry.path());
+    if (const auto number = number_in(entry.path().filename().string()))
+      folders.emplace(*number, entry.path());
   return folders;
 }
 
@@ -45,7 +47,19 @@ std::string without_patterns(const std::string& path) {
   return text;
 }
 
+/// "17.txt", what a task has written.
+bool is_log(const std::filesystem::path& file) {
+  return file.extension() == ".txt" && number_in(file.stem().string());
+}
+
+void remove_if_empty(const std::filesystem::path& folder) {
+  std::error_code is_not_empty;
+  std::filesystem::remove(folder, is_not_empty);
+}
+
 }  // namespace
+
+std::filesystem::path SlurmBatch::cells() const { return folder / kCells; }
 
 std::filesystem::path SlurmBatch::log(std::size_t task) const {
   return folder / (std::to_string(task) + ".txt");
@@ -57,7 +71,7 @@ SlurmBatch submit_batch(const std::filesystem::path& folder, const std::string& 
   const auto earlier = numbered_folders(folder);
   const int number = earlier.empty() ? 1 : earlier.rbegin()->first + 1;
   SlurmBatch batch{.folder = folder / std::to_string(number), .job = {}};
-  const std::filesystem::path script = batch.folder / "job.sh";
+  const std::filesystem::path script = batch.folder / kScriptFile;
   write_cells(batch.cells(), cells);
   write_text(script, kScript);
   std::vector<std::string> arguments = sbatch_options(options);
@@ -68,10 +82,29 @@ SlurmBatch submit_batch(const std::filesystem::path& folder, const std::string& 
   try {
     batch.job = submit_job(std::move(arguments), batch.folder / kAnswer);
   } catch (const Error&) {
-    remove_folder(batch.folder);
+    remove_batch(batch);
     throw;
   }
   return batch;
+}
+
+// The list of cells goes last: it says whose folder this is.
+void remove_batch(const SlurmBatch& batch) {
+  std::error_code none;
+  if (!std::filesystem::exists(batch.cells(), none)) return;
+  std::vector<std::filesystem::path> logs;
+  for (const auto& entry : std::filesystem::directory_iterator(batch.folder, none))
+    if (is_log(entry.path())) logs.push_back(entry.path());
+  for (const std::filesystem::path& log : logs) remove_folder(log);
+  for (const char* name : {kAnswer, kScriptFile, kCells}) remove_folder(batch.folder / name);
+  remove_if_empty(batch.folder);
+}
+
+void remove_batches(const std::filesystem::path& folder) {
+  for (const auto& [number, path] : numbered_folders(folder))
+    remove_batch({.folder = path, .job = {}});
+  for (const char* answer : {kQueueAnswer, "scontrol.txt"}) remove_folder(folder / answer);
+  remove_if_empty(folder);
 }
 
 std::vector<SlurmBatch> submitted_batches(const std::filesystem::path& folder) {
@@ -88,7 +121,7 @@ void refuse_queued_jobs(const std::filesystem::path& folder) {
   if (jobs.empty()) return;
   std::set<std::string> queued;
   try {
-    for (const auto& [task, state] : tasks_of(jobs, folder / "squeue.txt"))
+    for (const auto& [task, state] : tasks_of(jobs, folder / kQueueAnswer))
       if (!state.is_over()) queued.insert(task.job);
   } catch (const Error& error) {
     throw Error(Fault::kUsage,

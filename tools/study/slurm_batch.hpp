@@ -17,7 +17,7 @@ struct SlurmBatch {
   std::filesystem::path folder;
   std::string job;
 
-  std::filesystem::path cells() const { return folder / "cells.jsonl"; }
+  std::filesystem::path cells() const;
   std::filesystem::path log(std::size_t task) const;  ///< is there once the task has begun
 };
 
@@ -26,6 +26,12 @@ struct SlurmBatch {
 SlurmBatch submit_batch(const std::filesystem::path& folder, const std::string& name,
                         const SlurmOptions& options, const std::filesystem::path& program,
                         const std::vector<ListedCell>& cells);
+
+/// Removes what was written of it into its folder. Files of others stay.
+void remove_batch(const SlurmBatch& batch);
+
+/// Of all batches below `folder`, with Slurm's answers there; then `folder` itself, if it is empty.
+void remove_batches(const std::filesystem::path& folder);
 
 /// Those below `folder` that Slurm has taken, the oldest first.
 std::vector<SlurmBatch> submitted_batches(const std::filesystem::path& folder);

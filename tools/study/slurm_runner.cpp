@@ -11,6 +11,7 @@
 
 #include "stillpoint/error.hpp"
 #include "stillpoint/support/did_you_mean.hpp"
+#include "study/cell_folder.hpp"
 #include "study/console_text.hpp"
 #include "study/slurm_batch.hpp"
 #include "study/slurm_queue.hpp"
@@ -47,6 +48,7 @@ class SlurmRunner {
 
   std::vector<std::string> run() {
     const std::vector<std::size_t> missing = missing_cells(cells_, results_);
+    for (const std::size_t i : missing) require_own_folder(cells_[i].run);
     total_ = missing.size();
     waiting_.assign(missing.begin(), missing.end());
     follow_earlier_jobs();
@@ -57,7 +59,7 @@ class SlurmRunner {
       look();
     }
     events_.status("");
-    if (queued_.empty()) remove_folder(study_.folder);
+    if (queued_.empty()) remove_batches(study_.folder);
     return jobs();
   }
 
@@ -88,7 +90,7 @@ class SlurmRunner {
     const auto states = tasks_of(ids, scratch());
     std::set<std::string> of_another_study;
     for (const SlurmBatch& batch : batches)
-      if (!follow(batch, states, of_another_study)) remove_folder(batch.folder);
+      if (!follow(batch, states, of_another_study)) remove_batch(batch);
     refuse(of_another_study);
     std::set<std::size_t> followed;
     for (const auto& [task, queued] : queued_) followed.insert(queued.cell);
@@ -156,7 +158,7 @@ class SlurmRunner {
     std::vector<ListedCell> listed;
     for (std::size_t k = 0; k < count; ++k) {
       const PlannedCell& cell = cells_[waiting_[k]];
-      remove_folder(cell.run / "result.json");  // what is there from now on is the job's
+      CellFolder(cell.run).forget_result();  // what is there from now on is the job's
       listed.push_back({.cell = cell, .program = program_.fingerprint});
     }
     const SlurmBatch batch =
@@ -216,6 +218,8 @@ class SlurmRunner {
       if (has_ended_well && seconds_from(*queued.missed) < kLateFiles) return false;
       result = without_result(cell, queued.log, state);
       write_result(cell.run, *result);
+    } else if (add_reason(*result, state)) {
+      write_result(cell.run, *result);
     }
     ++done_;
     const double left = static_cast<double>(total_ - done_);
@@ -225,6 +229,14 @@ class SlurmRunner {
          .of = total_,
          .remaining_seconds = left * seconds_from(start_) / static_cast<double>(done_)});
     results_[queued.cell] = std::move(result);
+    return true;
+  }
+
+  /// Where Slurm has ended the run and not its job: what exceeds the memory is the largest process.
+  static bool add_reason(CellResult& result, const SlurmState& state) {
+    const bool is_known = state.name.empty() || state.name == "COMPLETED" || state.name == "FAILED";
+    if (!result.failed() || is_known) return false;
+    result.message += "; Slurm says " + state.name;
     return true;
   }
 
@@ -241,7 +253,7 @@ class SlurmRunner {
     std::error_code error;
     if (!std::filesystem::exists(log, error)) return result;  // it never began
     make_folder(cell.run);
-    const std::filesystem::path kept = cell.run / "slurm.txt";
+    const std::filesystem::path kept = job_log_of(cell.run);
     std::filesystem::rename(log, kept, error);
     if (!error && !std::filesystem::is_empty(kept, error))
       result.message += ": " + failure_text(kept, {});

@@ -32,10 +32,9 @@ Table matrix(const Study& study, std::string title, const CellOf& cell_of) {
 }
 
 /// Leaves out sequences of which there is nothing.
-Table without_empty_rows(const Study& study, Table table) {
-  const auto behind_variants = static_cast<std::ptrdiff_t>(study.variants.size()) + 1;
-  std::erase_if(table.rows, [&](const std::vector<TableCell>& row) {
-    return std::all_of(row.begin() + 1, row.begin() + behind_variants,
+Table without_empty_rows(Table table) {
+  std::erase_if(table.rows, [](const std::vector<TableCell>& row) {
+    return std::all_of(row.begin() + 1, row.end(),
                        [](const TableCell& cell) { return cell.text == kNothing; });
   });
   return table;
@@ -49,13 +48,25 @@ void mark_best(const StudyResults& results, MetricId metric, Table& table) {
   }
 }
 
+/// The recording that the sequence of a row is, or is the twin of.
+std::string original_of_row(const Study& study, const std::vector<TableCell>& row) {
+  return original_of(*std::ranges::find(study.sequences, row.front().text, &Sequence::name));
+}
+
+/// Of those with a figure in one of the rows.
 void add_published(const Study& study, MetricId metric, Table& table) {
-  const auto systems = published_with(study, metric, metric + 1);
+  std::vector<const Published*> systems = published_with(study, metric, metric + 1);
+  std::erase_if(systems, [&](const Published* system) {
+    return std::ranges::none_of(table.rows, [&](const std::vector<TableCell>& row) {
+      return system->find(original_of_row(study, row), metric).has_value();
+    });
+  });
   for (const Published* system : systems) table.header.push_back(published_name(*system));
-  for (std::size_t sequence = 0; sequence < table.rows.size(); ++sequence)
+  for (std::vector<TableCell>& row : table.rows) {
+    const std::string original = original_of_row(study, row);
     for (const Published* system : systems)
-      table.rows[sequence].push_back(
-          published_cell(*system, original_of(study.sequences[sequence]), metric));
+      row.push_back(published_cell(*system, original, metric));
+  }
   table.note = published_note(systems);
 }
 
@@ -68,8 +79,9 @@ Table metric_table(const StudyResults& results, MetricId metric) {
     return metric_cell(results, sequence, variant, metric);
   });
   mark_best(results, metric, table);
+  table = without_empty_rows(std::move(table));
   add_published(results.study, metric, table);
-  return without_empty_rows(results.study, std::move(table));
+  return table;
 }
 
 void mark_significant(const Study& study, const std::vector<PairedComparison>& comparisons,
@@ -98,7 +110,10 @@ Table improvement_table(const StudyResults& results) {
     return cell;
   };
   const std::string title = "Improvement of the ATE over " + results.study.baseline + " (%)";
-  return without_empty_rows(results.study, matrix(results.study, title, improvement));
+  Table table = without_empty_rows(matrix(results.study, title, improvement));
+  table.note = "1 − ATE ÷ ATE of " + results.study.baseline + ", run by run with the same seed" +
+               (results.study.repeats > 1 ? ": median (smallest–largest)." : ".");
+  return table.rows.empty() ? Table() : table;
 }
 
 Table penalty_table(const StudyResults& results) {
@@ -110,8 +125,7 @@ Table penalty_table(const StudyResults& results) {
     return cell;
   };
   return without_empty_rows(
-      results.study,
-      matrix(results.study, "Dynamic penalty: ATE ÷ ATE on the _empty twin", penalty));
+      matrix(results.study, "Dynamic penalty: ATE ÷ ATE on the twin without motion", penalty));
 }
 
 /// Of a study with one sequence: all figures of a variant in a row.

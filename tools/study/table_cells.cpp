@@ -64,6 +64,18 @@ TableCell published_cell(const Published& system, const std::string& recording, 
   return value ? number_cell(*value, metrics()[metric].digits) : TableCell{.text = kNothing};
 }
 
+std::vector<const Published*> published_with_stages_of(const StudyResults& results) {
+  std::vector<const Published*> systems;
+  for (const Published& system : results.study.published)
+    for (std::size_t stage = kFirstStage; stage < kMetricCount; ++stage) {
+      const auto metric = static_cast<MetricId>(stage);
+      if (!results.spread(metric) || !system.find("", metric)) continue;
+      systems.push_back(&system);
+      break;
+    }
+  return systems;
+}
+
 std::string published_name(const Published& system) { return system.name + " (published)"; }
 
 std::string published_note(const std::vector<const Published*>& systems) {

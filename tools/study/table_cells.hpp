@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "study/study_results.hpp"
 #include "study/table.hpp"
@@ -41,6 +42,9 @@ TableCell metric_cell(const StudyResults& results, std::size_t sequence, std::si
 
 /// What others have published of a recording (see original_of), or of a stage.
 TableCell published_cell(const Published& system, const std::string& recording, MetricId metric);
+
+/// The systems of which a time has been published of a stage that runs have timed, too.
+std::vector<const Published*> published_with_stages_of(const StudyResults& results);
 
 /// "DS-SLAM (published)"
 std::string published_name(const Published& system);

@@ -1,4 +1,7 @@
-"""A cluster of Slurm with one node, this machine, as long as a with-statement lasts."""
+"""A cluster of Slurm with one node, this machine, as long as a with-statement lasts.
+
+Its limit of memory works without cgroups, which containers may not have: once a second, slurmd adds up what the
+processes of a job have, and kills those of one that has more than it asked for."""
 import os
 import shutil
 import socket
@@ -22,20 +25,22 @@ StateSaveLocation={folder}/state
 SlurmdSpoolDir={folder}/spool
 SlurmctldPidFile={folder}/slurmctld.pid
 SlurmdPidFile={folder}/slurmd.pid
-ProctrackType=proctrack/pgid
+ProctrackType=proctrack/linuxproc
 TaskPlugin=task/none
-JobAcctGatherType=jobacct_gather/none
+JobAcctGatherType=jobacct_gather/linux
+JobAcctGatherFrequency=task=1
+JobAcctGatherParams=OverMemoryKill
 SwitchType=switch/none
 MpiDefault=none
 SelectType=select/cons_tres
-SelectTypeParameters=CR_CPU
+SelectTypeParameters=CR_CPU_Memory
 SchedulerParameters=sched_min_interval=0,batch_sched_delay=0
 SlurmdParameters=config_overrides
 ReturnToService=2
 KillWait=1
 MaxArraySize={largest_array}
-NodeName=localhost NodeAddr=127.0.0.1 CPUs=2 State=UNKNOWN
-PartitionName=main Nodes=ALL Default=YES State=UP
+NodeName=localhost NodeAddr=127.0.0.1 CPUs=2 RealMemory=8192 State=UNKNOWN
+PartitionName=main Nodes=ALL Default=YES DefMemPerNode=2048 State=UP
 """
 
 

@@ -45,6 +45,18 @@ def make_endless(recording, folder):
         (folder / name).write_text(re.sub(r"(?m)^[\d.]+", lambda time: f"{1000 * float(time[0]):.3f}", text))
 
 
+def processes_with(argument):
+    """Numbers of those that were called with it."""
+    found = []
+    for process in Path("/proc").glob("[0-9]*"):
+        try:
+            if argument.encode() in (process / "cmdline").read_bytes().split(b"\0"):
+                found.append(int(process.name))
+        except OSError:  # it has ended
+            pass
+    return found
+
+
 class Call:
     """One of `stillpoint ablate`."""
 
@@ -98,16 +110,68 @@ class StudyInQueue(unittest.TestCase):
     def queued(self):
         return command("squeue", "--noheader").stdout
 
+    def wrapped(self, name, script):
+        """A search path on which this command of Slurm is a script of the shell; REAL is the command."""
+        wrapper = self.folder / self.id() / name
+        wrapper.parent.mkdir(exist_ok=True)
+        wrapper.write_text("#!/bin/sh\n" + script.replace("REAL", f"'{shutil.which(name)}' \"$@\"") + "\n")
+        wrapper.chmod(0o755)
+        return f"{wrapper.parent}:{os.environ['PATH']}"
 
-class SlurmTimeLimit(StudyInQueue):
-    """Slurm's shortest is a minute, and it looks every half minute."""
+
+class SlurmLimits(StudyInQueue):
+    """Of time and of memory."""
+
+    def setUp(self):
+        super().setUp()
+        self.run_folder = self.out / "runs/endless/plain/0"
+
+    def limited(self, limit, **environment):
+        return self.follow(ENDLESS.replace("options:", limit + ", options:"), **environment)
+
+    def wait_for_run(self):
+        """Its process."""
+        self.cluster.wait_for(lambda: processes_with(str(self.run_folder)))
+        return processes_with(str(self.run_folder))[0]
+
+    def expect_failure(self, call, exit_code, message):
+        code, out, err = call.finish()
+        self.assertEqual(code, 1, err)
+        self.assertRegex(out, rf"\* endless/plain/0: exit code {exit_code}: {message}")
+        row = self.rows(self.out)[0]
+        self.assertEqual((row["state"], row["exit_code"]), ("failed", str(exit_code)))
 
     def test_a_run_that_takes_too_long_has_failed(self):
-        code, out, err = self.follow(ENDLESS.replace("options:", 'time: "1", options:')).finish()
-        self.assertEqual(code, 1, err)
-        self.assertIn("* endless/plain/0: exit code 124: left no result; Slurm says TIMEOUT", out)
-        row = self.rows(self.out)[0]
-        self.assertEqual((row["state"], row["exit_code"]), ("failed", "124"))
+        """Slurm's shortest limit is a minute, so the end comes earlier; it looks every half minute."""
+        call = self.limited('time: "1"')
+        job = call.read_until("submitted as job ").split(":")[0]
+        self.wait_for_run()
+        self.assertIn("TimeLimit=00:01:00", command("scontrol", "show", "job", job).stdout)
+        self.assertEqual(command("scontrol", "update", f"JobId={job}", "EndTime=now+1").returncode, 0)
+        self.expect_failure(call, 124, "left no result; Slurm says TIMEOUT")
+
+    def test_a_run_that_needs_too_much_memory_has_failed_and_is_made_again(self):
+        """Without cgroups, Slurm kills the whole job and calls it failed; its log says why."""
+        self.expect_failure(self.limited("memory: 20M"), 1,
+                            r"left no result; Slurm says \w+: .*exceeded memory limit")
+        self.assertIn("exceeded memory limit", (self.run_folder / "slurm.txt").read_text())
+
+        again = self.limited("memory: 1G")
+        job = again.read_until("submitted as job ").split(":")[0]
+        self.wait_for_run()
+        self.assertFalse((self.run_folder / "slurm.txt").exists())
+        again.process.send_signal(signal.SIGINT)
+        again.finish()
+        command("scancel", job)
+        self.cluster.wait_for(lambda: not self.queued())
+
+    def test_a_run_that_the_kernel_kills_for_its_memory_says_so(self):
+        """With cgroups, the largest process of the job is killed, and squeue says why."""
+        path = self.wrapped("squeue", "REAL | sed 's/|COMPLETED|.*/|OUT_OF_MEMORY|OutOfMemory/'")
+        call = self.limited("memory: 1G", PATH=path)
+        call.read_until("submitted as job ")
+        os.kill(self.wait_for_run(), signal.SIGKILL)
+        self.expect_failure(call, 137, "ended by a signal: Killed; Slurm says OUT_OF_MEMORY")
 
 
 class Slurm(StudyInQueue):
@@ -193,14 +257,6 @@ class Slurm(StudyInQueue):
         self.assertEqual(code, 0, err)
         self.assertNotRegex(err, r"submitted as job \d+: [3-9]")
         self.assertEqual(len(self.rows(self.out)), 6)
-
-    def wrapped(self, name, script):
-        """A search path on which this command of Slurm is a script of the shell; REAL is the command."""
-        wrapper = self.folder / self.id() / name
-        wrapper.parent.mkdir(exist_ok=True)
-        wrapper.write_text("#!/bin/sh\n" + script.replace("REAL", f"'{shutil.which(name)}' \"$@\"") + "\n")
-        wrapper.chmod(0o755)
-        return f"{wrapper.parent}:{os.environ['PATH']}"
 
     def test_waits_for_a_queue_that_is_full(self):
         """sbatch refuses while there are jobs, as a limit of the number of jobs of a user does."""

@@ -30,3 +30,6 @@ export function run(index) {
 
 /** Series are integers, counts of a step. */
 export const scaled = (numbers, step) => numbers.map(n => n === null ? null : n * step);
+
+/** Of metres, as short as it can be read. */
+export const lengthText = metres => metres < 1 ? `${(1000 * metres).toFixed(1)} mm` : `${metres.toFixed(2)} m`;

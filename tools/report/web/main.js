@@ -54,7 +54,7 @@ function overview(report, open) {
   const others = rest.filter(t => !compared.includes(t));
   if (report.runs.length > 1 && timeOfVariants(report).length)
     parts.push(el('div', {class: 'titled'}, el('h3', {}, 'CPU time per frame by stage, mean'),
-                  stageBars(timeOfVariants(report))));
+                  stageBars(timeOfVariants(report), report.stage_titles)));
   if (others.length)
     parts.push(...others.map(t => el('details', {class: 'more', open: t.title === 'Runs' && t.rows.length <= 30},
       el('summary', {}, t.title), titledTable(t, opener))));

@@ -66,9 +66,10 @@ function cameraFor(map, data, element) {
 }
 
 function legendOf(map, data, way) {
+  const unit = map.shown < map.occupied ? 'cubes' : 'voxels';
   if (way === 'Occupancy') {
     const stops = [0, 0.25, 0.5, 0.75, 1].map(heat).join(',');
-    return el('div', {class: 'bar-legend'}, el('span', {}, '50 %'),
+    return el('div', {class: 'bar-legend'}, el('span', {}, 'probability that it is occupied: 50 %'),
               el('span', {class: 'ramp', style: `background:linear-gradient(90deg,${stops})`}),
               el('span', {}, '100 %'));
   }
@@ -78,7 +79,7 @@ function legendOf(map, data, way) {
   const shown = map.classes.map((c, i) => ({...c, count: count[i]})).filter(c => c.count);
   return el('div', {class: 'legend'}, ...shown.map(c => el('span', {},
     el('i', {style: `background:rgb(${c.name === 'background' ? '150,155,165' : c.color.join(',')})`}),
-    `${c.name}: ${c.count.toLocaleString('en')}`)));
+    `${c.name}: ${c.count.toLocaleString('en')} ${unit}`)));
 }
 
 function trajectory(path) {

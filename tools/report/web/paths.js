@@ -84,11 +84,15 @@ export function pathPlot(paths, hasTruth, xName, yName, largest) {
   return el('svg', {viewBox: `0 0 ${width} ${height}`, class: 'path', role: 'img'}, ...parts);
 }
 
+/** Part of a legend: where the first path begins. */
+export const startKey = () => el('span', {}, el('i', {class: 'start-key'}), 'start');
+
 /** Colours of errors from 0 to `largest`, metres. */
 export function colourBar(largest) {
   const stops = [0, 0.25, 0.5, 0.75, 1].map(heat).join(',');
-  return el('div', {class: 'bar-legend'}, el('span', {}, '0'),
+  return el('div', {class: 'bar-legend'}, el('span', {}, 'absolute error: 0'),
             el('span', {class: 'ramp', style: `background:linear-gradient(90deg,${stops})`}),
             el('span', {}, `${(1000 * largest).toPrecision(3)} mm`),
-            el('span', {class: 'key truth-key'}), el('span', {}, 'truth'));
+            el('span', {class: 'key truth-key'}), el('span', {}, 'truth'),
+            el('span', {class: 'key start-key'}), el('span', {}, 'start'));
 }

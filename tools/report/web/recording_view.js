@@ -1,7 +1,7 @@
 // The runs on one recording beside each other.
-import {run as loadRun, scaled} from './data.js';
+import {lengthText, run as loadRun, scaled} from './data.js';
 import {el, figure} from './dom.js';
-import {pathPlot} from './paths.js';
+import {pathPlot, startKey} from './paths.js';
 import {planar} from './run_view.js';
 import {seriesChart} from './series.js';
 import {kind} from './theme.js';
@@ -37,13 +37,15 @@ export async function recordingView(report, recording) {
   const lines = (a, b) => [planar(truth, 'truth', a, b), ...runs.map((r, i) => (
     {...planar(r.run.trace, 'estimate', a, b), error: undefined, colour: kind(i)}))];
   const legend = el('div', {class: 'legend'}, ...runs.map((r, i) => el('span', {},
-    el('i', {style: `background:${kind(i)}`}), `${r.variant}: ATE ${(1000 * r.run.errors.ate_m[0]).toFixed(1)} mm`)),
-    el('span', {}, el('i', {class: 'truth-key'}), 'truth'));
-  const rest = all.length > most
-    ? el('p', {class: 'quiet'}, `The first ${most} of ${all.length} are drawn.`) : null;
-  return el('div', {}, legend, rest, el('div', {class: 'pair'},
+    el('i', {style: `background:${kind(i)}`}), `${r.variant}: ATE ${lengthText(r.run.errors.ate_m[0])}`)),
+    el('span', {}, el('i', {class: 'truth-key'}), 'truth'), startKey());
+  const several = report.runs.filter(run => run.recording === recording).length > all.length;
+  const what = [several ? 'The first run of each variant.' : '',
+                all.length > most ? `The first ${most} of ${all.length} variants are drawn.` : ''].filter(Boolean);
+  const note = what.length ? el('p', {class: 'quiet'}, what.join(' ')) : null;
+  return el('div', {}, legend, note, el('div', {class: 'pair'},
     figure('From above', pathPlot(lines(0, 1), true, 'x [m]', 'y [m]')),
     figure('From the side', pathPlot(lines(0, 2), true, 'x [m]', 'z [m]'))),
     figure('Absolute trajectory error', seriesChart(errorsOf(runs), runs.map((r, i) => (
-      {label: r.variant, colour: kind(i)})), {height: 220, xName: 'time [s]', yName: '[mm]'})));
+      {label: r.variant, colour: kind(i)})), {height: 220, xName: 'time [s]', yName: 'ATE [mm]'})));
 }

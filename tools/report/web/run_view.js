@@ -1,14 +1,14 @@
 // Everything about one run.
-import {scaled} from './data.js';
+import {lengthText, scaled} from './data.js';
 import {el, figure, section} from './dom.js';
 import {frameGrid} from './frames.js';
 import {mapView} from './map.js';
 import {optionFigures} from './options.js';
-import {colourBar, pathPlot} from './paths.js';
+import {colourBar, pathPlot, startKey} from './paths.js';
 import {replayView} from './replay.js';
 import {seriesChart} from './series.js';
 import {stageFigures} from './stages.js';
-import {table} from './tables.js';
+import {figureCell, table} from './tables.js';
 import {kind} from './theme.js';
 
 const mm = 0.001;
@@ -25,7 +25,8 @@ function trajectoryFigures(run) {
   if (!run.trace.t.length) return [el('p', {class: 'quiet'}, 'No frame was tracked.')];
   if (!run.trace.truth)
     return [el('div', {class: 'pair'}, ...views.map(([title, a, b, x, y]) => figure(title,
-      pathPlot([{...planar(run.trace, 'estimate', a, b), colour: kind(0)}], false, x, y))))];
+      pathPlot([{...planar(run.trace, 'estimate', a, b), colour: kind(0)}], false, x, y)))),
+      el('div', {class: 'legend'}, startKey())];
   const largest = Math.max(1e-4, ...scaled(run.trace.e, 1e-4));
   return [el('div', {class: 'pair'}, ...views.map(([title, a, b, x, y]) => figure(title, pathPlot(
     [planar(run.trace, 'truth', a, b), planar(run.trace, 'estimate', a, b)], true, x, y, largest)))),
@@ -49,21 +50,21 @@ function timeFigures(run) {
   if (run.trace.e)
     parts.push(figure('Absolute trajectory error', seriesChart(
       withGaps(scaled(run.trace.t, 1e-3), run.trace.gap, scaled(run.trace.e, 0.1)),
-      [{label: 'ATE [mm]', colour: kind(0)}], {...common, yName: '[mm]'})));
+      [{label: 'ATE [mm]', colour: kind(0)}], {...common, yName: 'ATE [mm]'})));
   const drifted = scaled(run.drift.t, 1e-3);
   if (drifted.length)
     parts.push(figure('Relative pose error over the next second', seriesChart(
       withGaps(drifted, behindLost(drifted, run.lost), scaled(run.drift.m, 0.1), scaled(run.drift.deg, 1e-3)),
       [{label: 'position [mm]', colour: kind(0)},
        {label: 'rotation [deg]', colour: kind(1), scale: 'y2', digits: 3}],
-      {...common, yName: '[mm]', y2Name: '[deg]'})));
+      {...common, yName: 'position [mm]', y2Name: 'rotation [deg]'})));
   if (run.frames.t.length) {
     const t = scaled(run.frames.t, 1e-3);
     parts.push(figure('Pixels that tracking does not use, and moving points', seriesChart(
       [t, scaled(run.frames.excluded, 0.1), run.frames.moving],
       [{label: 'excluded [%]', colour: kind(1), fill: kind(1) + '40'},
        {label: 'moving points', colour: kind(3), scale: 'y2', digits: 0}],
-      {...common, yName: '[%]', y2Name: 'points'})));
+      {...common, yName: 'excluded [%]', y2Name: 'moving points'})));
     parts.push(figure('Features', seriesChart(
       [t, run.frames.features, run.frames.matches, run.frames.inliers],
       [{label: 'extracted', colour: kind(9), digits: 0}, {label: 'matched', colour: kind(5), digits: 0},
@@ -90,8 +91,8 @@ function headline(run) {
   const tiles = [];
   const tile = (value, label) => tiles.push(el('div', {class: 'tile'}, el('b', {}, String(value)), label));
   if (run.errors) {
-    tile(`${(1000 * run.errors.ate_m[0]).toFixed(1)} mm`, 'ATE');
-    if (run.errors.rpe_m) tile(`${(1000 * run.errors.rpe_m[0]).toFixed(1)} mm`, 'RPE over 1 s');
+    tile(lengthText(run.errors.ate_m[0]), 'ATE');
+    if (run.errors.rpe_m) tile(lengthText(run.errors.rpe_m[0]), 'RPE over 1 s');
   }
   for (const [key, text, label] of facts)
     if (run.facts[key] !== null) tile(text(run.facts[key]), label);
@@ -103,7 +104,7 @@ function errorTable(errors) {
                 ['RPE 1 s, position (mm)', errors.rpe_m, 1000], ['RPE 1 s, rotation (deg)', errors.rpe_deg, 1]];
   return table({header: ['error', 'RMSE', 'mean', 'median', 'S.D.', 'min', 'max'],
     rows: rows.filter(([, values]) => values).map(([name, values, factor]) => [{t: name},
-      ...values.map(v => ({t: (factor * v).toFixed(factor > 1 ? 2 : 3), v: factor * v}))])});
+      ...values.map(v => figureCell(factor * v, factor > 1 ? 2 : 3))])});
 }
 
 function notesOf(run) {

@@ -3,7 +3,7 @@ import {el, figure} from './dom.js';
 import {seriesChart} from './series.js';
 import {scaled} from './data.js';
 import {kind} from './theme.js';
-import {table} from './tables.js';
+import {figureCell, table} from './tables.js';
 
 /** Waiting, and what contains other stages, would count twice. */
 const counts = name => !name.endsWith('_wait') && name !== 'track_thread';
@@ -33,21 +33,26 @@ function stackedChart(stages) {
      bands: stacked.slice(1).map((_, i) => ({series: [i + 1, i + 2]}))});
 }
 
+/** "Feature extraction (prepare)" */
+const titled = (name, title) => title ? `${title} (${name})` : name;
+
 function percentiles(stages) {
-  const number = (v, digits = 2) => ({t: v.toFixed(digits), v});
-  return table({header: ['stage', 'calls', 'mean', 'p50', 'p95', 'p99', 'max', 'mean CPU'],
-    rows: stages.list.map(s => [{t: s.name}, number(s.calls, 0), ...s.wall.map(v => number(v)),
-                                number(s.cpu[0])])});
+  return table({header: ['stage', 'calls', 'mean', 'median', 'p95', 'p99', 'max', 'CPU, mean'],
+    rows: stages.list.map(s => [{t: titled(s.name, s.title)}, {t: String(s.calls), v: s.calls},
+                                ...s.wall.map(v => figureCell(v, 2)), figureCell(s.cpu[0], 2)])});
 }
 
 export function stageFigures(run) {
   if (!run.stages.list.length) return [el('p', {class: 'quiet'}, 'The run has no timings.csv.')];
   return [figure('CPU time per frame by stage, of all threads', stackedChart(run.stages)),
-          figure('Wall time of single calls, ms', percentiles(run.stages))];
+          figure('Time of single calls (ms): wall clock, and mean CPU time', percentiles(run.stages))];
 }
 
-/** rows: [{name, stages: [[stage, ms]]}], mean CPU per frame, as bars beside each other. */
-export function stageBars(rows) {
+/**
+ * rows: [{name, stages: [[stage, ms]]}], mean CPU per frame, as bars beside each other; titles: of the stages by their
+ * names.
+ */
+export function stageBars(rows, titles) {
   const kept = rows.map(r => ({name: r.name, stages: r.stages.filter(([name]) => counts(name))}))
                    .filter(r => r.stages.length);
   const total = r => r.stages.reduce((sum, [, ms]) => sum + ms, 0);
@@ -59,6 +64,6 @@ export function stageBars(rows) {
       style: `width:${100 * ms / largest}%;background:${colourOf(name)}`}))),
     el('span', {class: 'bar-total'}, `${total(r).toFixed(1)} ms`)));
   const legend = el('div', {class: 'legend'}, ...names.map(name => el('span', {},
-    el('i', {style: `background:${colourOf(name)}`}), name)));
+    el('i', {style: `background:${colourOf(name)}`}), titled(name, titles[name]))));
   return el('div', {class: 'bars'}, ...bars, legend);
 }

@@ -29,6 +29,9 @@ function figureOf(cell, isText) {
   return el('td', {class: marks || undefined}, ...text);
 }
 
+/** So many digits that figures of 100 and more have no more than four. */
+export const figureCell = (v, digits) => ({t: v.toFixed(v >= 100 ? Math.min(1, digits) : digits), v});
+
 const manyColumns = 9;
 
 /** `opener(name)`: what a click on the name of a row does, or nothing. */
