@@ -10,7 +10,7 @@ set(ENV{PATH} ${prefix}/bin:$ENV{PATH})  # beside which CMake looks for Stillpoi
 set(ENV{CMAKE_GENERATOR} ${GENERATOR})
 set(ENV{CXX} ${CXX_COMPILER})
 set(ENV{CXXFLAGS} "-Wall -Wextra -Wshadow -Wno-missing-field-initializers -Wno-restrict")
-set(ENV{CMAKE_CXX_COMPILER_LAUNCHER} ${CXX_LAUNCHER})
+set(ENV{CMAKE_CXX_COMPILER_LAUNCHER} ${compile_quickly})
 
 # readme_commands(VARIABLE): the first block of shell commands of the README. Recordings are those that the
 # tests share, and pipelines check all that stages give.

@@ -12,7 +12,8 @@ run(${program} plugins list)
 expect_in_output("tum_rgbd")
 
 run(${CMAKE_COMMAND} -S ${SOURCE_DIR}/tests/install/external_plugin -B ${work}/plugin
-  -G ${GENERATOR} -D CMAKE_CXX_COMPILER=${CXX_COMPILER} -D CMAKE_BUILD_TYPE=Release
+  -G ${GENERATOR} -D CMAKE_CXX_COMPILER=${CXX_COMPILER} -D CMAKE_CXX_COMPILER_LAUNCHER=${compile_quickly}
+  -D CMAKE_BUILD_TYPE=Release
   -D CMAKE_PREFIX_PATH=${prefix} -D CMAKE_INSTALL_PREFIX=${prefix})
 run(${CMAKE_COMMAND} --build ${work}/plugin)
 run(${CMAKE_COMMAND} -E env STILLPOINT_PLUGIN_PATH=${work}/plugin ${program} plugins list)

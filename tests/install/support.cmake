@@ -6,6 +6,7 @@ set(program ${prefix}/bin/stillpoint)
 set(recording ${work}/recording)  # 60 frames of 320 x 240, nobody in them
 set(recording_with_people ${work}/recording_with_people)  # 40 frames of 640 x 480
 set(elsewhere ${work}/elsewhere)  # has nothing to do with the project
+set(compile_quickly ${work}/compile_quickly)  # for CMAKE_CXX_COMPILER_LAUNCHER
 
 # run(COMMAND…): in `elsewhere`; fails the test unless the command succeeds. Its output is left in
 # `output`.

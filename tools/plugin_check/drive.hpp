@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "plugin_check/observer.hpp"
@@ -22,6 +23,8 @@ class Drive {
   virtual void finish() {}
   /// What to tell of a drive that went well; may be empty.
   virtual std::string remark() const { return {}; }
+  /// Why a drive that went well says nothing of the stage, if so.
+  virtual std::optional<Finding> unchecked() const { return std::nullopt; }
 };
 
 struct DriveSetup {

@@ -1,38 +1,18 @@
-// Stages that make or use maps: tracker, local mapper, loop closer, dense map; and outputs.
+// Stages that make maps: tracker, local mapper, dense map.
 #include <algorithm>
 #include <cmath>
 #include <memory>
 #include <stop_token>
 
 #include "plugin_check/frame_drive.hpp"
+#include "plugin_check/map_making.hpp"
 #include "stillpoint/runtime/mapping_results.hpp"
-#include "stillpoint/runtime/null_stages.hpp"
 #include "stillpoint/runtime/thorough_checks.hpp"
 
 namespace stillpoint::plugin_check {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr std::size_t kFramesPerKeyFrame = 3;
-
-/// As a pipeline without a local mapper does it.
-SparseMap inserted(SparseMap map, KeyFrame keyframe) {
-  return make_null_stage<LocalMapper>()->insert(std::move(map), std::move(keyframe));
-}
-
-std::stop_token requested_stop() {
-  std::stop_source source;
-  source.request_stop();
-  return source.get_token();
-}
-
-void saw(Observer& observer, const SparseMap& map) {
-  for (KeyFrameId id = 0; id < map.keyframe_id_end(); ++id)
-    observer.saw(map.world_from_keyframe(id));
-  for (LandmarkId id = 0; id < map.landmark_id_end(); ++id)
-    if (const Landmark* landmark = map.landmark(id)) observer.saw(landmark->position_in_world);
-}
 
 class TrackerDrive final : public FrameDrive<Tracker> {
  public:
@@ -61,7 +41,15 @@ class TrackerDrive final : public FrameDrive<Tracker> {
     observer_.saw(result.state);
     observer_.saw(result.world_from_camera);
     if (result.state == TrackState::kTracking) note_error(result, now);
-    if (result.keyframe) map_ = inserted(std::move(map_), std::move(*result.keyframe));
+    if (result.keyframe) insert(std::move(*result.keyframe));
+  }
+
+  // With large ids, most of those after the first have been removed.
+  void insert(KeyFrame keyframe) {
+    const bool is_first = map_.empty();
+    map_ = inserted(std::move(map_), std::move(keyframe));
+    if (is_first && scenario_.first_keyframe > 0)
+      map_ = with_large_ids(std::move(map_), scenario_.first_keyframe - 1);
   }
 
   // The first tracked camera is at the origin.
@@ -113,38 +101,7 @@ class LocalMapperDrive final : public FrameDrive<LocalMapper> {
                      "change maps with MapEdit, which keeps both sides of every link"});
   }
 
-  SparseMap map_;
-};
-
-class LoopCloserDrive final : public FrameDrive<LoopCloser> {
- public:
-  using FrameDrive::FrameDrive;
-
-  std::string remark() const override { return std::to_string(closed_) + " loops closed"; }
-
- private:
-  void at(std::size_t i) override {
-    if (i % kFramesPerKeyFrame != 0) return;
-    const auto id = static_cast<KeyFrameId>(map_.keyframe_id_end());
-    map_ = inserted(std::move(map_), scenario_.keyframe(i, id));
-    const std::stop_token stop = i % 2 == 0 ? std::stop_token() : requested_stop();
-    const auto correction = call("close", i, [&] { return stage_.close(map_, id, stop); });
-    if (!correction) return;
-    ++closed_;
-    correct("close", i, *correction);
-    if (const auto adjusted = call("adjust", i, [&] { return stage_.adjust(map_, stop); }))
-      correct("adjust", i, *adjusted);
-  }
-
-  void correct(const char* function, std::size_t i, const MapCorrection& correction) {
-    check(function, i, [&] { check_correction(correction, map_); });
-    map_ = apply(correction, std::move(map_));
-    check(function, i, [&] { check_thoroughly(map_); });
-    saw(observer_, map_);
-  }
-
-  SparseMap map_;
-  int closed_ = 0;
+  SparseMap map_ = saved_map(scenario_);
 };
 
 class MapBackendDrive final : public FrameDrive<MapBackend> {
@@ -209,76 +166,6 @@ class MapBackendDrive final : public FrameDrive<MapBackend> {
   std::size_t points_ = 0;
 };
 
-class OutputDrive final : public FrameDrive<Output> {
- public:
-  using FrameDrive::FrameDrive;
-
-  void finish() override {
-    const std::vector<StageTime> times = {{"track", 5, 4, 0}};
-    const RunSummary summary{.map = map_,
-                             .poses = poses_,
-                             .source = source_,
-                             .times = times,
-                             .seed = 1,
-                             .mode = "inline",
-                             .complete = false,
-                             .failure = "tracking (orb) failed on frame 3: out of memory",
-                             .dense_map = [] { return std::vector<LabelledPoint>(3); }};
-    observer_.call("finish", {}, [&] { stage_.finish(summary); });
-    require_no_unfinished_file();
-  }
-
- private:
-  void require_no_unfinished_file() const {
-    for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder_))
-      if (entry.path().extension() == ".part")
-        throw Failure(
-            {"finish() leaves a file whose name ends in .part, " + entry.path().filename().string(),
-             "an AtomicFile without commit() is deleted when the run ends",
-             "call commit() in finish()"});
-  }
-
-  // Waiting, tracking, lost and found again, as in a run that has known bad times.
-  void at(std::size_t i) override {
-    const Input& now = input(i);
-    auto report = std::make_shared<FrameReport>();
-    report->frame = now.frame;
-    report->segmentation = now.segmentation;
-    report->moving = now.moving;
-    report->evidence = now.evidence;
-    report->weights = now.weights;
-    report->times = {{"track", 5, 4, now.frame->index}};
-    TrackResult& result = report->result;
-    result.state = i == 0       ? TrackState::kWaiting
-                   : i % 5 == 3 ? TrackState::kLost
-                                : TrackState::kTracking;
-    if (result.state == TrackState::kTracking) {
-      if (map_.empty()) {
-        result.keyframe = scenario_.keyframe(i, 0);
-        map_ = inserted({}, *result.keyframe);
-      }
-      result.reference = 0;
-      result.reference_from_camera = map_.world_from_keyframe(0).inverse() * now.world_from_camera;
-      result.world_from_camera = now.world_from_camera;
-      result.uncertainty.emplace();
-      result.tracked = {{{10, 10}, TrackedFeature::Use::kInlier},
-                        {{20, 20}, TrackedFeature::Use::kMoving}};
-    }
-    report->map = std::make_shared<const SparseMap>(map_);
-    poses_.push_back({.frame = now.frame->index,
-                      .time = now.frame->time,
-                      .state = result.state,
-                      .reference = result.reference,
-                      .reference_from_camera = result.reference_from_camera,
-                      .world_from_camera = result.world_from_camera});
-    call("frame", i, [&] { stage_.frame(*report); });
-  }
-
-  SparseMap map_;
-  std::vector<TrackedPose> poses_;
-  SourceReport source_;
-};
-
 }  // namespace
 
 template <>
@@ -290,16 +177,8 @@ std::unique_ptr<Drive> make_drive(LocalMapper& stage, const DriveSetup& setup) {
   return std::make_unique<LocalMapperDrive>(stage, setup);
 }
 template <>
-std::unique_ptr<Drive> make_drive(LoopCloser& stage, const DriveSetup& setup) {
-  return std::make_unique<LoopCloserDrive>(stage, setup);
-}
-template <>
 std::unique_ptr<Drive> make_drive(MapBackend& stage, const DriveSetup& setup) {
   return std::make_unique<MapBackendDrive>(stage, setup);
-}
-template <>
-std::unique_ptr<Drive> make_drive(Output& stage, const DriveSetup& setup) {
-  return std::make_unique<OutputDrive>(stage, setup);
 }
 
 }  // namespace stillpoint::plugin_check

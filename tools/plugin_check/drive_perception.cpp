@@ -1,8 +1,10 @@
 // Stages that look at images: source, segmenter, propagator, checks and decision.
 #include <memory>
 #include <opencv2/core.hpp>
+#include <stop_token>
 
 #include "plugin_check/frame_drive.hpp"
+#include "plugin_check/map_making.hpp"
 #include "stillpoint/runtime/perception_results.hpp"
 #include "stillpoint/runtime/thorough_checks.hpp"
 
@@ -17,6 +19,11 @@ class SourceDrive final : public Drive {
   SourceDrive(Source& stage, Observer& observer) : stage_(stage), observer_(observer) {}
 
   bool step() override {
+    if (!begun_) {
+      begun_ = true;
+      observer_.call("begin", {}, [&] { stage_.begin(stop_.get_token()); });
+      return true;
+    }
     if (next_ == kMaxSourceFrames) return false;
     auto frame = observer_.call("next", next_, [&] { return stage_.next(); });
     if (!frame) return false;
@@ -26,6 +33,7 @@ class SourceDrive final : public Drive {
     });
     observer_.saw(frame->time);
     for (const cv::Mat& image : {frame->bgr, frame->gray, frame->depth}) observer_.saw(image);
+    observer_.call("left_out", next_, [&] { return stage_.left_out(); });
     previous_ = std::move(frame);
     ++next_;
     return true;
@@ -55,6 +63,8 @@ class SourceDrive final : public Drive {
  private:
   Source& stage_;
   Observer& observer_;
+  std::stop_source stop_;  // never requested
+  bool begun_ = false;
   std::uint32_t next_ = 0;
   std::optional<Frame> previous_;
 };
@@ -186,17 +196,12 @@ class MapCheckerDrive final : public FrameDrive<MapChecker> {
     if (i % 5 == 1) return;
     TrackedFrame tracked{.frame = now.frame,
                          .weights = now.weights,
-                         .reference = 0,
+                         .reference = scenario_.first_keyframe,
                          .reference_from_camera = now.world_from_camera,
                          .world_from_camera = now.world_from_camera};
     call("remember", i, [&] { stage_.remember(tracked); });
-    if (map_.empty()) add_first_keyframe(i);
-  }
-
-  void add_first_keyframe(std::size_t i) {
-    MapEdit edit(SparseMap{});
-    edit.add_keyframe(scenario_.keyframe(i, 0));
-    map_ = std::move(edit).finish();
+    if (map_.empty())
+      map_ = inserted(saved_map(scenario_), scenario_.keyframe(i, scenario_.first_keyframe));
   }
 
   SparseMap map_;

@@ -17,12 +17,18 @@ class FrameDrive : public Drive {
         observer_(setup.observer) {}
 
   bool step() final {
+    if (!begun_) {
+      begun_ = true;
+      if (begin()) return true;
+    }
     if (next_ == scenario_.inputs.size()) return false;
     at(next_++);
     return true;
   }
 
  protected:
+  /// What is asked before the first frame; false: nothing.
+  virtual bool begin() { return false; }
   virtual void at(std::size_t i) = 0;
 
   const Input& input(std::size_t i) const { return scenario_.inputs[i]; }
@@ -43,6 +49,7 @@ class FrameDrive : public Drive {
   Observer& observer_;
 
  private:
+  bool begun_ = false;
   std::size_t next_ = 0;
 };
 

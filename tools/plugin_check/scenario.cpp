@@ -4,6 +4,9 @@
 #include <opencv2/core.hpp>
 #include <utility>
 
+#include "stillpoint/contracts/loop_closer.hpp"
+#include "stillpoint/contracts/output.hpp"
+#include "stillpoint/contracts/tracker.hpp"
 #include "stillpoint/runtime/read_only_images.hpp"
 #include "stillpoint/support/objects.hpp"
 
@@ -15,7 +18,7 @@ using testing::TestRecordingOptions;
 
 constexpr int kUsualFrames = 20, kFewFrames = 6;
 constexpr std::uint32_t kLargeIndex = 3'000'000'000;
-constexpr KeyFrameId kLargeId = 200'000;
+constexpr KeyFrameId kLargeId = 66'000;  // beyond 16 bits
 
 Scenario scenario_of(const TestRecordingOptions& options) {
   const TestRecording recording(options);
@@ -98,25 +101,8 @@ void protect_images(Scenario& scenario) {
     input.frame = std::make_shared<const Frame>(with_read_only_images(*input.frame));
 }
 
-}  // namespace
-
-KeyFrame Scenario::keyframe(std::size_t i, KeyFrameId id) const {
-  const Input& input = inputs.at(i);
-  return testing::orb_keyframe(*input.frame, *input.weights, input.world_from_camera, id);
-}
-
-DenseKeyFrame Scenario::dense_keyframe(std::size_t i, KeyFrameId id) const {
-  const Input& input = inputs.at(i);
-  return {id, input.frame, input.segmentation, input.weights, input.world_from_camera};
-}
-
-std::vector<Scenario> make_scenarios() {
-  Scenario usual = scenario_of({.frames = kUsualFrames});
-  for (Input& input : usual.inputs) input.evidence = evidence_of(input);
-  Scenario few = usual;
-  few.inputs.resize(kFewFrames);
-
-  std::vector<Scenario> all;
+/// Cases of images, labels and weights, for stages of every kind.
+void add_general(std::vector<Scenario>& all, const Scenario& usual, const Scenario& few) {
   all.push_back(named(usual, "usual recording", "no run can use the stage",
                       "the contract's header says what each function must give; how to follow a "
                       "case with gdb: the page 'Debugging a plugin'"));
@@ -151,17 +137,63 @@ std::vector<Scenario> make_scenarios() {
   all.push_back(named(scenario_of({.frames = 1}), "a single frame",
                       "a recording may end at once, and a run may be stopped",
                       "do not count on a second call"));
+}
+
+/// Cases that only stages of one kind can meet.
+void add_of_kinds(std::vector<Scenario>& all, const Scenario& usual, const Scenario& few) {
   Scenario localised = usual;
+  localised.kind = Tracker::kKind;
   localised.localised_from = kUsualFrames / 2;
   all.push_back(named(std::move(localised), "a map that stays as it is",
                       "robots are localised in the map of a building (--localise-only)",
                       "track on the given map, and make no key frame with "
                       "TrackHints::localise_only"));
+  Scenario pushed = few;
+  pushed.kind = Output::kKind;
+  pushed.is_pushed = true;
+  all.push_back(named(std::move(pushed), "frames that a program gives",
+                      "Stillpoint can be a part of another program, which steers the run itself",
+                      "expect that begin() is not called"));
+  Scenario round_trip;
+  round_trip.kind = LoopCloser::kKind;
+  round_trip.is_round_trip = true;
+  all.push_back(named(std::move(round_trip), "a place seen again",
+                      "closing such a loop is what a loop closer is for",
+                      "the map grows by landmarks of things that it had already: compare the "
+                      "newest key frame with those that it shares none with"));
+}
+
+void add_large_ids(std::vector<Scenario>& all) {
   Scenario large = scenario_of({.frames = kFewFrames, .first_index = kLargeIndex});
   large.first_keyframe = kLargeId;
-  all.push_back(named(std::move(large), "large indices and ids",
-                      "saved maps are gone on with, and runs last for days",
-                      "do not use indices and ids as sizes or as int"));
+  all.push_back(
+      named(std::move(large), "large indices and ids",
+            "saved maps are gone on with, and runs last for days",
+            "keep indices and ids in 32 bits without a sign; the ids of a map have gaps"));
+}
+
+}  // namespace
+
+KeyFrame Scenario::keyframe(std::size_t i, KeyFrameId id) const {
+  const Input& input = inputs.at(i);
+  return testing::orb_keyframe(*input.frame, *input.weights, input.world_from_camera, id);
+}
+
+DenseKeyFrame Scenario::dense_keyframe(std::size_t i, KeyFrameId id) const {
+  const Input& input = inputs.at(i);
+  return {id, input.frame, input.segmentation, input.weights, input.world_from_camera};
+}
+
+std::vector<Scenario> make_scenarios() {
+  Scenario usual = scenario_of({.frames = kUsualFrames});
+  for (Input& input : usual.inputs) input.evidence = evidence_of(input);
+  Scenario few = usual;
+  few.inputs.resize(kFewFrames);
+
+  std::vector<Scenario> all;
+  add_general(all, usual, few);
+  add_of_kinds(all, usual, few);
+  add_large_ids(all);
   for (Scenario& scenario : all) protect_images(scenario);
   return all;
 }
