@@ -56,7 +56,7 @@ cv::Mat static_mask(const cv::Mat& from_map, double limit, cv::Size size) {
 void ClassPolicy::visit(OptionVisitor& v) {
   v("prior", prior, {.min = 0.001, .max = 0.999, .help = "probability that such an object moves"});
   v.choice("map", map, {{"never", Map::kNever}, {"when_static", Map::kWhenStatic}},
-           {.help = "whether it may be mapped"});
+           {.help = "whether such an object may enter the map: never, or while it is static"});
 }
 
 void SurfacePolicy::visit(OptionVisitor& v) {
@@ -66,16 +66,17 @@ void SurfacePolicy::visit(OptionVisitor& v) {
 }
 
 void Bayes::Options::visit(OptionVisitor& v) {
-  v("classes", classes, {.help = "policies by class name"});
-  v("other", other, {.help = "policy of all other classes"});
+  v("classes", classes,
+    {.help = "for each class: how likely its objects move, and whether they may be mapped"});
+  v("other", other, {.help = "the same for all other classes"});
   v("objects", objects, {.help = "log-odds that a labelled object moves"});
   v("unlabelled", unlabelled, {.help = "evidence of single points on surfaces"});
   v("contradiction", contradiction,
     {.min = 0,
      .max = 100,
      .unit = "log-odds",
-     .help = "map evidence for static from which a surface is mapped in spite of a label that is "
-             "never mapped"});
+     .help = "evidence of the map check for static from which a surface is mapped although its "
+             "class has map: never; smaller: people who rest may enter the map"});
   v("trusted_share", trusted_share,
     {.min = 0,
      .max = 1,

@@ -4,13 +4,16 @@
 #include <cmath>
 #include <limits>
 
+#include "stillpoint/support/depth_step.hpp"
+#include "stillpoint/support/pixel_scale.hpp"
+
 namespace stillpoint::decision_objects {
 namespace {
 
 constexpr float kMaxEvidence = 4.0F;         // log-odds, clamped so that new evidence can revert it
 constexpr float kNeutralWeight = 0.5F;       // weight of no evidence, against those of points
-constexpr float kReachWithoutDepth = 12.0F;  // px, where there is no depth
-constexpr int kMaxReach = 20;                // cells; limits the reach on very near surfaces
+constexpr double kReachWithoutDepth = 12.0;  // px of 640 x 480, where there is no depth
+constexpr double kMaxReach = 80.0;  // px of 640 x 480; limits the reach on very near surfaces
 
 /// Depth in the middle of each cell.
 void sample_depth(const cv::Mat& depth, cv::Mat& cells) {
@@ -27,9 +30,15 @@ void sample_depth(const cv::Mat& depth, cv::Mat& cells) {
 
 void MotionFieldOptions::visit(OptionVisitor& v) {
   v("moving_evidence", moving_evidence,
-    {.min = 0, .max = 10, .unit = "log-odds", .help = "added around a moving point"});
+    {.min = 0,
+     .max = 10,
+     .unit = "log-odds",
+     .help = "evidence of moving added on the surface around a moving point"});
   v("static_evidence", static_evidence,
-    {.min = 0, .max = 10, .unit = "log-odds", .help = "subtracted around a static point"});
+    {.min = 0,
+     .max = 10,
+     .unit = "log-odds",
+     .help = "evidence of moving subtracted on the surface around a static point"});
   v("kept_evidence", kept_evidence,
     {.min = 0, .max = 1, .help = "share of evidence kept to the next frame"});
   v("reach", reach,
@@ -37,7 +46,7 @@ void MotionFieldOptions::visit(OptionVisitor& v) {
   v("depth_gate", depth_gate,
     {.min = 0.001,
      .max = 1,
-     .help = "difference in depth, as a share of it, from which a surface is another one"});
+     .help = "relative difference in depth from which pixels lie on another surface"});
 }
 
 void MotionField::update(const Frame& frame, const MovingPoints& moving) {
@@ -50,7 +59,7 @@ void MotionField::update(const Frame& frame, const MovingPoints& moving) {
                                : static_cast<float>(point.moving ? options_.moving_evidence
                                                                  : -options_.static_evidence);
     const float evidence =
-        static_cast<float>(options_.kept_evidence) * before(point.previous) + measured;
+        static_cast<float>(options_.kept_evidence) * previous_log_odds(point.previous) + measured;
     spread(frame, point.current, std::clamp(evidence, -kMaxEvidence, kMaxEvidence));
   }
   log_odds_.create(depth_.size(), CV_32F);
@@ -62,7 +71,7 @@ void MotionField::update(const Frame& frame, const MovingPoints& moving) {
   }
 }
 
-float MotionField::before(const cv::Point2f& pixel) const {
+float MotionField::previous_log_odds(const cv::Point2f& pixel) const {
   const cv::Point cell(cvFloor(pixel.x) / kCell, cvFloor(pixel.y) / kCell);
   if (!cv::Rect({0, 0}, log_odds_.size()).contains(cell)) return 0;
   return log_odds_.at<float>(cell);
@@ -73,12 +82,15 @@ void MotionField::spread(const Frame& frame, const cv::Point2f& pixel, float evi
   if (!cv::Rect({0, 0}, depth_.size()).contains(centre)) return;
   const float z = depth_.at<float>(centre);
   const float focal = static_cast<float>(frame.camera->fx);
-  const float reach =
-      (z > 0 ? static_cast<float>(options_.reach) * focal / z : kReachWithoutDepth) / kCell;
-  const int cells = std::min(static_cast<int>(reach), kMaxReach);
+  const double scale = pixel_scale(frame.depth.size());
+  const float reach = (z > 0 ? static_cast<float>(options_.reach) * focal / z
+                             : static_cast<float>(kReachWithoutDepth * scale)) /
+                      kCell;
+  const int cells =
+      static_cast<int>(std::min(reach, static_cast<float>(kMaxReach * scale) / kCell));
   // Without depth, the gate is open for every surface.
-  const float gate =
-      z > 0 ? static_cast<float>(options_.depth_gate) * z : std::numeric_limits<float>::infinity();
+  const float gate = z > 0 ? DepthStep{static_cast<float>(options_.depth_gate)}.limit(z)
+                           : std::numeric_limits<float>::infinity();
   const float falloff = 1 / (reach * reach);
   for (int y = std::max(0, centre.y - cells); y <= std::min(depth_.rows - 1, centre.y + cells);
        ++y) {

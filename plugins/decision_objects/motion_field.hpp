@@ -36,7 +36,7 @@ class MotionField {
   const cv::Mat& log_odds() const { return log_odds_; }
 
  private:
-  float before(const cv::Point2f& pixel) const;
+  float previous_log_odds(const cv::Point2f& pixel) const;
   void spread(const Frame& frame, const cv::Point2f& pixel, float evidence);
 
   MotionFieldOptions options_;

@@ -14,7 +14,10 @@ void ObjectMotionOptions::visit(OptionVisitor& v) {
      .unit = "log-odds",
      .help = "evidence of an object in a frame: gain * (its share of moving points - share)"});
   v("share", share,
-    {.min = 0, .max = 1, .help = "share of moving points that is evidence for neither"});
+    {.min = 0,
+     .max = 1,
+     .help = "share of moving points that says neither moving nor static: more is evidence for "
+             "moving"});
   v("max_increase", max_increase,
     {.min = 0, .max = 100, .unit = "log-odds", .help = "largest increase per frame"});
   v("max_decrease", max_decrease,
@@ -40,21 +43,21 @@ void ObjectMotionOptions::visit(OptionVisitor& v) {
 const std::vector<ObjectBelief>& ObjectBeliefs::update(const std::vector<SegmentedObject>& objects,
                                                        const std::vector<double>& priors,
                                                        const std::vector<PointCount>& counts) {
-  constexpr int kForget = 300;  // updates; ids are not used again
+  constexpr int kMaxAge = 300;  // updates; ids are not used again
   ++updates_;
   std::erase_if(by_id_,
-                [&](const auto& entry) { return updates_ - entry.second.updated > kForget; });
+                [&](const auto& entry) { return updates_ - entry.second.updated > kMaxAge; });
   std::vector<ObjectBelief> beliefs;
   for (std::size_t i = 0; i < objects.size(); ++i) {
-    const ObjectBelief* before = known(objects[i]);
+    const ObjectBelief* before = previous_belief(objects[i]);
     ObjectBelief belief =
         before ? *before : ObjectBelief{.log_odds = priors[i], .moves = priors[i] > 0};
     belief.label = objects[i].label;
     belief.box = objects[i].box;
     belief.prior = priors[i];
-    forget(belief, before ? updates_ - before->updated : 1);
+    decay_to_prior(belief, before ? updates_ - before->updated : 1);
     belief.updated = updates_;
-    learn(belief, counts.empty() ? PointCount{} : counts[i]);
+    add_evidence(belief, counts.empty() ? PointCount{} : counts[i]);
     if (objects[i].id >= 0) by_id_[objects[i].id] = belief;
     beliefs.push_back(belief);
   }
@@ -62,7 +65,7 @@ const std::vector<ObjectBelief>& ObjectBeliefs::update(const std::vector<Segment
   return latest_;
 }
 
-const ObjectBelief* ObjectBeliefs::known(const SegmentedObject& object) const {
+const ObjectBelief* ObjectBeliefs::previous_belief(const SegmentedObject& object) const {
   constexpr double kMinOverlap = 0.3;
   if (object.id >= 0) {
     const auto found = by_id_.find(object.id);
@@ -81,12 +84,12 @@ const ObjectBelief* ObjectBeliefs::known(const SegmentedObject& object) const {
   return best;
 }
 
-void ObjectBeliefs::forget(ObjectBelief& belief, int updates) const {
+void ObjectBeliefs::decay_to_prior(ObjectBelief& belief, int updates) const {
   const double kept = std::pow(1 - options_.prior_decay, updates);
   belief.log_odds = belief.prior + kept * (belief.log_odds - belief.prior);
 }
 
-void ObjectBeliefs::learn(ObjectBelief& belief, const PointCount& count) const {
+void ObjectBeliefs::add_evidence(ObjectBelief& belief, const PointCount& count) const {
   if (count.points >= options_.min_points) {
     const double share = static_cast<double>(count.moving) / count.points;
     belief.log_odds += std::clamp(options_.gain * (share - options_.share), -options_.max_decrease,

@@ -52,9 +52,9 @@ class ObjectBeliefs {
                                           const std::vector<PointCount>& counts);
 
  private:
-  const ObjectBelief* known(const SegmentedObject& object) const;
-  void forget(ObjectBelief& belief, int updates) const;
-  void learn(ObjectBelief& belief, const PointCount& count) const;
+  const ObjectBelief* previous_belief(const SegmentedObject& object) const;
+  void decay_to_prior(ObjectBelief& belief, int updates) const;
+  void add_evidence(ObjectBelief& belief, const PointCount& count) const;
 
   ObjectMotionOptions options_;
   std::vector<ObjectBelief> latest_;

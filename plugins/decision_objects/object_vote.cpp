@@ -12,14 +12,16 @@ void ObjectVote::Options::visit(OptionVisitor& v) {
   v("min_moving_share", min_moving_share,
     {.min = 0, .max = 1, .help = "least share of moving points on an object that moves"});
   v("reach", reach,
-    {.min = 0, .max = 100, .unit = "px", .help = "points this near count as on the object"});
+    {.min = 0, .max = 100, .unit = "px", .help = "points this near to an object count as on it"});
   v("margin", margin,
     {.min = 0,
      .max = 50,
      .unit = "px",
      .help = "border around moving objects that is excluded as well"});
-  v.choice("unsure", unsure, {{"static", Unsure::kStatic}, {"moves", Unsure::kMoves}},
-           {.help = "assumed for the classes while the moving check is not reliable"});
+  v.choice(
+      "unsure", unsure, {{"static", Unsure::kStatic}, {"moves", Unsure::kMoves}},
+      {.help =
+           "what objects of these classes are taken for while the moving check is not reliable"});
 }
 
 ObjectVote::ObjectVote(const Options& options, const StageContext& context)

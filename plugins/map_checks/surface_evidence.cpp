@@ -251,12 +251,13 @@ void SurfaceEvidenceOptions::visit(OptionVisitor& v) {
     {.min = 0,
      .max = 600,
      .unit = "s",
-     .help = "least age of an earlier view from the same viewpoint, as evidence for static"});
+     .help = "age from which an earlier view counts as evidence for static; from the same "
+             "viewpoint, younger ones saw what pauses"});
   v("min_parallax", min_parallax,
     {.min = 0,
      .max = 100,
      .unit = "m",
-     .help = "distance of the viewpoints from which younger views count, too"});
+     .help = "distance between the viewpoints from which views younger than min_age count, too"});
   v("free_space_violation", free_space_violation,
     {.min = 0,
      .max = 100,
@@ -288,7 +289,8 @@ void SurfaceEvidenceOptions::visit(OptionVisitor& v) {
     {.min = 0,
      .max = 10,
      .unit = "m",
-     .help = "how far a violation grows along a surface over which no view decides"});
+     .help =
+         "how far a free-space violation spreads along its surface into parts without evidence"});
 }
 
 cv::Mat surface_evidence(const cv::Mat& depth, const CellCamera& camera,

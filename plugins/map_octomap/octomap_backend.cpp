@@ -62,12 +62,18 @@ void unite(std::vector<BrickKey>& all, const std::vector<BrickKey>& more) {
 
 void OctomapBackend::Options::visit(OptionVisitor& v) {
   v("resolution", resolution, {.min = 0.005, .max = 1, .unit = "m", .help = "edge of a voxel"});
-  v("range", range, {.min = 0.5, .max = 13, .unit = "m", .help = "surfaces beyond are left out"});
+  v("range", range,
+    {.min = 0.5, .max = 13, .unit = "m", .help = "surfaces farther from the camera are left out"});
   v.choice("model", model, {{"rays", Model::kRays}, {"hits", Model::kHits}},
            {.help = "whether rays carve free space, or only hits count (the paper, eq. 6)"});
   v("prob_hit", prob_hit,
-    {.min = 0.51, .max = 0.99, .help = "probability of a voxel hit by a ray"});
-  v("prob_miss", prob_miss, {.min = 0.01, .max = 0.49, .help = "probability of one a ray passes"});
+    {.min = 0.51,
+     .max = 0.99,
+     .help = "occupancy probability of a voxel in which one ray ends (OctoMap's sensor model)"});
+  v("prob_miss", prob_miss,
+    {.min = 0.01,
+     .max = 0.49,
+     .help = "occupancy probability of a voxel through which one ray passes"});
   v("clamping_min", clamping_min,
     {.min = 0.001, .max = 0.49, .help = "lower clamping bound of the probability"});
   v("clamping_max", clamping_max,
@@ -78,12 +84,13 @@ void OctomapBackend::Options::visit(OptionVisitor& v) {
     {.min = 0,
      .max = 10,
      .unit = "voxels",
-     .help = "how far key frames may move before they are fused again"});
+     .help = "a key frame is fused anew when it has moved by more than this; smaller: more exact, "
+             "slower after loops"});
   v("stride", stride,
     {.min = 0,
      .max = 32,
      .unit = "px",
-     .help = "step between pixels that are used; 0: by the resolution"});
+     .help = "every n-th pixel in each direction is used; 0: chosen by the resolution"});
   v("min_weight", min_weight,
     {.min = 0, .max = 255, .help = "least map weight of pixels that are mapped; 0: all are"});
   v("margin", margin,

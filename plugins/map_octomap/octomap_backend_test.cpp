@@ -46,7 +46,7 @@ Pose drifted_pose_of(KeyFrameId id) {
 
 DenseKeyFrame keyframe_at(KeyFrameId id, const Pose& believed) {
   static const TestRoom room;
-  DenseKeyFrame keyframe = room.see(pose_of(id), id);
+  DenseKeyFrame keyframe = room.render(pose_of(id), id);
   keyframe.world_from_camera = believed;
   return keyframe;
 }
@@ -148,7 +148,7 @@ TEST_F(OctomapBackendTest, KeyFramesThatItNeverSawMoveNothing) {
 
 TEST_F(OctomapBackendTest, WhatMustNotBeMappedIsNotThere) {
   OctomapBackend with({}, context()), without({}, context());
-  DenseKeyFrame keyframe = TestRoom().see(looking({0.5, -1.0, 1.3}, 0.0));
+  DenseKeyFrame keyframe = TestRoom().render(looking({0.5, -1.0, 1.3}, 0.0));
   with.integrate(keyframe);
   auto weights = std::make_shared<StaticWeights>();
   weights->map = (keyframe.segmentation->labels == 0);
@@ -167,7 +167,7 @@ TEST_F(OctomapBackendTest, WhatMustNotBeMappedIsNotThere) {
 
 TEST_F(OctomapBackendTest, BesideWhatMovesOneLookIsNotEnough) {
   OctomapBackend map({}, context()), without_margin({.margin = 0}, context());
-  DenseKeyFrame keyframe = TestRoom().see(looking({0.5, -1.0, 1.3}, 0.0));
+  DenseKeyFrame keyframe = TestRoom().render(looking({0.5, -1.0, 1.3}, 0.0));
   auto weights = std::make_shared<StaticWeights>();  // of the pillar only the left half is found
   weights->map = cv::Mat(keyframe.frame->depth.size(), CV_8UC1, cv::Scalar(255));
   weights->map.colRange(0, 160).setTo(0, keyframe.segmentation->labels.colRange(0, 160) != 0);
@@ -269,7 +269,7 @@ TEST_F(OctomapBackendTest, AFolderThatIsNoneIsAnError) {
 TEST_F(OctomapBackendTest, KeyFramesWithoutLabelsHaveNoSayInTheClass) {
   OctomapBackend labelled({}, {}), mixed({}, {});
   for (KeyFrameId id = 0; id < 4; ++id) {
-    DenseKeyFrame keyframe = TestRoom().see(pose_of(0), id);
+    DenseKeyFrame keyframe = TestRoom().render(pose_of(0), id);
     if (id == 0) labelled.integrate(keyframe);
     if (id > 0) keyframe.segmentation = nullptr;
     mixed.integrate(keyframe);
@@ -304,8 +304,8 @@ TEST_F(OctomapBackendTest, ATooWideCostMapIsLeftOut) {
   OctomapBackend map(options, context);
   Pose far_away = pose_of(0);
   far_away.translation() += Eigen::Vector3d(900, 900, 0);
-  map.integrate(TestRoom().see(pose_of(0), 0));
-  DenseKeyFrame lost = TestRoom().see(pose_of(0), 1);
+  map.integrate(TestRoom().render(pose_of(0), 0));
+  DenseKeyFrame lost = TestRoom().render(pose_of(0), 1);
   lost.world_from_camera = far_away;
   map.integrate(lost);
   const testing::TemporaryFolder folder;

@@ -13,7 +13,7 @@ using semantic_octree::looking;
 using semantic_octree::TestRoom;
 
 TEST(StoredKeyFrame, ComesBackAsItWas) {
-  DenseKeyFrame keyframe = TestRoom().see(looking({0.5, -1.0, 1.3}, 0.0), 7);
+  DenseKeyFrame keyframe = TestRoom().render(looking({0.5, -1.0, 1.3}, 0.0), 7);
   const Pose pose = looking({0.2, -0.3, 1.33}, 1.1);
   auto weights = std::make_shared<StaticWeights>();
   weights->map = keyframe.segmentation->labels * 20;

@@ -5,8 +5,10 @@ namespace stillpoint::map_voxel_cloud {
 
 void VoxelCloudBackend::Options::visit(OptionVisitor& v) {
   v("resolution", resolution, {.min = 0.005, .max = 1, .unit = "m", .help = "edge of a voxel"});
-  v("range", range, {.min = 0.5, .max = 20, .unit = "m", .help = "surfaces beyond are left out"});
-  v("min_points", min_points, {.min = 1, .max = 1000, .help = "with fewer a voxel is left out"});
+  v("range", range,
+    {.min = 0.5, .max = 20, .unit = "m", .help = "surfaces farther from the camera are left out"});
+  v("min_points", min_points,
+    {.min = 1, .max = 1000, .help = "points that a voxel needs; with fewer it is left out"});
   v("min_weight", min_weight,
     {.min = 1, .max = 255, .help = "least map weight of pixels that are mapped"});
 }

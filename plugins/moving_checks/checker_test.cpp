@@ -60,8 +60,8 @@ INSTANTIATE_TEST_SUITE_P(All, AnyChecker,
 
 TEST_P(AnyChecker, TurningCameraFindsNothingMoving) {
   const TestScene scene = TestScene::room();
-  const Frame previous = scene.see(camera_at(0, 0, 0), 0);
-  const Frame current = scene.see(camera_at(0, 0, 0, 0.02, 0.01), 1);
+  const Frame previous = scene.render(camera_at(0, 0, 0), 0);
+  const Frame current = scene.render(camera_at(0, 0, 0, 0.02, 0.01), 1);
   const MovingPoints result = checker_->check(previous, current, {});
   EXPECT_GT(result.points.size(), 60u);
   EXPECT_TRUE(!result.reliable || everywhere(result).share() < 0.03);
@@ -69,9 +69,9 @@ TEST_P(AnyChecker, TurningCameraFindsNothingMoving) {
 
 TEST_P(AnyChecker, TwiceTheSameIsTwiceTheSame) {
   TestScene scene = TestScene::room();
-  const Frame previous = scene.see(camera_at(0, 0, 0), 0);
+  const Frame previous = scene.render(camera_at(0, 0, 0), 0);
   scene.boards[3].centre.x() += 0.05;
-  const Frame current = scene.see(camera_at(0.05, 0, 0.01), 1);
+  const Frame current = scene.render(camera_at(0.05, 0, 0.01), 1);
   const MovingPoints first = checker_->check(previous, current, {});
   const MovingPoints again = checker_->check(previous, current, {});
   const MovingPoints other = make(GetParam())->check(previous, current, {});
@@ -88,7 +88,7 @@ TEST_P(AnyChecker, TwiceTheSameIsTwiceTheSame) {
 
 TEST_P(AnyChecker, ImagesThatShowNothingDecideNothing) {
   const TestScene scene = TestScene::room();
-  const Frame good = scene.see(camera_at(0, 0, 0), 0);
+  const Frame good = scene.render(camera_at(0, 0, 0), 0);
   const auto frame_of = [&](const cv::Size& size, const cv::Scalar& gray) {
     return Frame{.index = 1,
                  .bgr = cv::Mat(size, CV_8UC3, gray),
@@ -111,8 +111,8 @@ TEST_P(AnyChecker, ImagesThatShowNothingDecideNothing) {
 
 TEST_P(AnyChecker, PointsStayInsideTheImage) {
   const TestScene scene = TestScene::room();
-  const Frame previous = scene.see(camera_at(0, 0, 0), 0);
-  const Frame current = scene.see(camera_at(0.2, 0.1, 0, 0.1), 3);
+  const Frame previous = scene.render(camera_at(0, 0, 0), 0);
+  const Frame current = scene.render(camera_at(0.2, 0.1, 0, 0.1), 3);
   for (const PointMotion& point : checker_->check(previous, current, {}).points)
     for (const cv::Point2f& p : {point.previous, point.current})
       EXPECT_TRUE(scene.camera().contains(p.x, p.y, 5)) << p;
@@ -126,10 +126,10 @@ INSTANTIATE_TEST_SUITE_P(All, FundamentalChecker,
 TEST_P(FundamentalChecker, FindsTheBoardThatMovesAcrossItsEpipolarLines) {
   TestScene scene = TestScene::room();
   const Pose before = camera_at(0, 0, 0);
-  const Frame previous = scene.see(before, 0);
+  const Frame previous = scene.render(before, 0);
   const cv::Rect2f area = seen(scene.boards[3], scene.camera(), before);
   scene.boards[3].centre.y() -= 0.06;
-  const Frame current = scene.see(camera_at(0.12, 0, 0), 1);
+  const Frame current = scene.render(camera_at(0.12, 0, 0), 1);
   const MovingPoints result = checker_->check(previous, current, {});
   ASSERT_TRUE(result.reliable);
   EXPECT_GT(share_of(result, area, true).points, 5);
@@ -141,20 +141,20 @@ TEST_P(FundamentalChecker, DecidesNothingWithoutParallax) {
   const TestScene room = TestScene::room();
   TestScene wall = room;
   wall.boards.resize(1);
-  const Frame start = room.see(camera_at(0, 0, 0), 0);
-  EXPECT_FALSE(checker_->check(start, room.see(camera_at(0, 0, 0), 1), {}).reliable);
-  EXPECT_FALSE(checker_->check(start, room.see(camera_at(0, 0, 0, 0.02, 0.01), 2), {}).reliable);
+  const Frame start = room.render(camera_at(0, 0, 0), 0);
+  EXPECT_FALSE(checker_->check(start, room.render(camera_at(0, 0, 0), 1), {}).reliable);
+  EXPECT_FALSE(checker_->check(start, room.render(camera_at(0, 0, 0, 0.02, 0.01), 2), {}).reliable);
   EXPECT_FALSE(
-      checker_->check(wall.see(camera_at(0, 0, 0), 3), wall.see(camera_at(0.1, 0, 0), 4), {})
+      checker_->check(wall.render(camera_at(0, 0, 0), 3), wall.render(camera_at(0.1, 0, 0), 4), {})
           .reliable);
 }
 
 TEST(LkEpipolar, JudgesByTheHomographyWhereTheOptionSaysSo) {
   TestScene scene = TestScene::room();
-  const Frame previous = scene.see(camera_at(0, 0, 0), 0);
+  const Frame previous = scene.render(camera_at(0, 0, 0), 0);
   const cv::Rect2f area = seen(scene.boards[3], scene.camera(), camera_at(0, 0, 0));
   scene.boards[3].centre.x() += 0.05;
-  const Frame current = scene.see(camera_at(0, 0, 0, 0.02), 1);
+  const Frame current = scene.render(camera_at(0, 0, 0, 0.02), 1);
   LkEpipolar checker({.when_degenerate = EpipolarChecker::Degenerate::kHomography}, {});
   const MovingPoints result = checker.check(previous, current, {});
   ASSERT_TRUE(result.reliable);
@@ -165,8 +165,9 @@ TEST(LkEpipolar, JudgesByTheHomographyWhereTheOptionSaysSo) {
 TEST(LkEpipolar, DecidesOnParallaxItIsToldToIgnore) {
   const TestScene scene = TestScene::room();
   LkEpipolar checker({.when_degenerate = EpipolarChecker::Degenerate::kIgnore}, {});
-  EXPECT_TRUE(checker.check(scene.see(camera_at(0, 0, 0), 0), scene.see(camera_at(0, 0, 0), 1), {})
-                  .reliable);
+  EXPECT_TRUE(
+      checker.check(scene.render(camera_at(0, 0, 0), 0), scene.render(camera_at(0, 0, 0), 1), {})
+          .reliable);
 }
 
 }  // namespace

@@ -1,14 +1,17 @@
 #include "moving_checks/depth_surface.hpp"
 
+#include <algorithm>
 #include <cmath>
+
+#include "stillpoint/support/pixel_scale.hpp"
 
 namespace stillpoint::moving_checks {
 namespace {
 
 constexpr double kNoiseMultiple = 3;  // greatest second difference by noise alone
 
-// For a pixel without depth the radius is so many times larger: beside a near surface the shadow of
-// the sensor's projector leaves a hole of that width.
+// px of 640 x 480 per px of the radius, for a pixel without depth: beside a near surface the shadow
+// of the sensor's projector leaves a hole of that width.
 constexpr int kHoleReach = 4;
 
 // 0 where nothing is measured.
@@ -55,7 +58,7 @@ Surface surface_at(const cv::Mat& depth, const cv::Point2f& pixel, double noise,
   int outer = options.edge_radius;
   const bool hole = middle == 0;
   if (hole) {
-    outer *= kHoleReach;
+    outer = std::max(1, cvRound(outer * kHoleReach * pixel_scale(depth.size())));
     middle = mean_around(depth, centre, outer);
   }
   if (middle == 0) return {Surface::Kind::kNone, 0};

@@ -45,11 +45,16 @@ cv::UsacParams usac_params(Consensus consensus, const ConsensusOptions& options,
 
 void ConsensusOptions::visit(OptionVisitor& v) {
   v("ransac_threshold", ransac_threshold,
-    {.min = 0.01, .max = 100, .unit = "px", .help = "inlier threshold (Algorithm 1, line 3)"});
+    {.min = 0.01,
+     .max = 100,
+     .unit = "px",
+     .help = "inlier threshold of RANSAC (Algorithm 1, line 3)"});
   v("confidence", confidence,
-    {.min = 0.5, .max = 0.999999, .help = "that the best sample has been drawn (line 3)"});
+    {.min = 0.5,
+     .max = 0.999999,
+     .help = "probability that RANSAC has drawn a sample of inliers (line 3)"});
   v("max_iterations", max_iterations,
-    {.min = 1, .max = 1000000, .help = "samples at most (line 3)"});
+    {.min = 1, .max = 1000000, .help = "samples of RANSAC at most (line 3)"});
 }
 
 std::optional<ImageModel> find_fundamental(const Points& previous, const Points& current,

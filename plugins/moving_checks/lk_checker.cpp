@@ -31,7 +31,7 @@ Pairs inliers_of(const Pairs& pairs, const ImageModel& model) {
   return inliers;
 }
 
-MovingPoints undecided(const std::vector<Match>& matches) {
+MovingPoints unclassified(const std::vector<Match>& matches) {
   MovingPoints result;
   for (const Match& match : matches)
     result.points.push_back({.previous = match.previous, .current = match.current});
@@ -39,8 +39,8 @@ MovingPoints undecided(const std::vector<Match>& matches) {
 }
 
 template <class Distance>
-MovingPoints judged(const std::vector<Match>& matches, double epsilon, Distance distance) {
-  MovingPoints result = undecided(matches);
+MovingPoints classified(const std::vector<Match>& matches, double epsilon, Distance distance) {
+  MovingPoints result = unclassified(matches);
   for (PointMotion& point : result.points) {
     const double residual = distance(point.previous, point.current);
     point.residual =
@@ -53,7 +53,7 @@ MovingPoints judged(const std::vector<Match>& matches, double epsilon, Distance 
 
 MovingPoints classified_by_homography(const std::vector<Match>& matches, double epsilon,
                                       const ImageModel& model) {
-  return judged(matches, epsilon, [&](const cv::Point2f& previous, const cv::Point2f& current) {
+  return classified(matches, epsilon, [&](const cv::Point2f& previous, const cv::Point2f& current) {
     return transfer_distance(model.matrix, previous, current);
   });
 }
@@ -81,9 +81,13 @@ void LkOptions::visit(OptionVisitor& v) {
   consensus.visit(v);
   follow.visit(v);
   v("min_matches", min_matches,
-    {.min = 8, .max = 100000, .help = "with fewer the check is not reliable; not in the paper"});
+    {.min = 8,
+     .max = 100000,
+     .help = "matches needed; with fewer the check is not reliable; not in the paper"});
   v("min_inlier_share", min_inlier_share,
-    {.min = 0, .max = 1, .help = "with fewer inliers it is not reliable; not in the paper"});
+    {.min = 0,
+     .max = 1,
+     .help = "share of inliers needed; with fewer the check is not reliable; not in the paper"});
 }
 
 void EpipolarChecker::Options::visit(OptionVisitor& v) {
@@ -95,9 +99,13 @@ void EpipolarChecker::Options::visit(OptionVisitor& v) {
   v("min_parallax", min_parallax,
     {.min = 0,
      .unit = "px",
-     .help = "transfer error under one homography; less is degenerate; not in the paper"});
+     .help = "a point has parallax when one homography misplaces it by this much; without parallax "
+             "the fundamental matrix is degenerate; not in the paper"});
   v("parallax_share", parallax_share,
-    {.min = 0.01, .max = 1, .help = "share of the inliers that must have min_parallax"});
+    {.min = 0.01,
+     .max = 1,
+     .help = "share of the inliers that must have parallax; with fewer, when_degenerate says what "
+             "happens"});
   v.choice("when_degenerate", when_degenerate,
            {{"unreliable", Degenerate::kUnreliable},
             {"homography", Degenerate::kHomography},
@@ -116,21 +124,22 @@ EpipolarChecker::EpipolarChecker(const Options& options, Consensus consensus,
 MovingPoints EpipolarChecker::check(const Frame& previous, const Frame& current,
                                     const TrackingHistory&) {
   const std::vector<Match> matches = follower_.follow(previous, current);
-  if (matches.size() < static_cast<std::size_t>(options_.lk.min_matches)) return undecided(matches);
+  if (matches.size() < static_cast<std::size_t>(options_.lk.min_matches))
+    return unclassified(matches);
   const Pairs pairs = pairs_of(matches);
   const auto model =
       find_fundamental(pairs.previous, pairs.current, consensus_, options_.lk.consensus, seed_);
   if (!model || !enough_inliers(*model, matches, options_.lk.min_inlier_share))
-    return undecided(matches);
+    return unclassified(matches);
   if (options_.when_degenerate != Degenerate::kIgnore) {
     const Pairs inliers = inliers_of(pairs, *model);
     const auto plane = find_homography(inliers.previous, inliers.current, options_.lk.consensus);
     if (plane && parallax(inliers, *plane, options_.parallax_share) < options_.min_parallax) {
-      if (options_.when_degenerate == Degenerate::kUnreliable) return undecided(matches);
+      if (options_.when_degenerate == Degenerate::kUnreliable) return unclassified(matches);
       return classified_by_homography(matches, options_.epsilon, *plane);
     }
   }
-  return judged(matches, options_.epsilon, [&](const cv::Point2f& from, const cv::Point2f& to) {
+  return classified(matches, options_.epsilon, [&](const cv::Point2f& from, const cv::Point2f& to) {
     return epipolar_distance(model->matrix, from, to);
   });
 }
@@ -144,11 +153,12 @@ void LkHomography::Options::visit(OptionVisitor& v) {
 MovingPoints LkHomography::check(const Frame& previous, const Frame& current,
                                  const TrackingHistory&) {
   const std::vector<Match> matches = follower_.follow(previous, current);
-  if (matches.size() < static_cast<std::size_t>(options_.lk.min_matches)) return undecided(matches);
+  if (matches.size() < static_cast<std::size_t>(options_.lk.min_matches))
+    return unclassified(matches);
   const Pairs pairs = pairs_of(matches);
   const auto model = find_homography(pairs.previous, pairs.current, options_.lk.consensus);
   if (!model || !enough_inliers(*model, matches, options_.lk.min_inlier_share))
-    return undecided(matches);
+    return unclassified(matches);
   return classified_by_homography(matches, options_.epsilon, *model);
 }
 

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "stillpoint/support/median.hpp"
+#include "stillpoint/support/pixel_scale.hpp"
 
 namespace stillpoint::moving_checks {
 
@@ -18,8 +19,8 @@ constexpr double kTrackedNoiseFactor = 2.0;
 constexpr double kUnknownTrust = 0.5;
 constexpr double kTrustRate = 0.3;        // of the way to 0 or 1 per frame
 constexpr double kMinTrustWeight = 0.05;  // so that a wrong static scene can be corrected
-// px, within which points of a surface share trust: an eighth of an image of 640 px. In larger ones
-// points are as dense, and trust is shared over less of the surface.
+// px of 640 x 480, within which points of a surface share trust. Images of any size have about as
+// many points, and as many of them within an eighth of their width.
 constexpr double kInheritRadius = 80.0;
 constexpr double kInheritDepth = 0.03;  // 1/m, likewise
 // The prediction is uncertain far from the inliers that determine the camera's motion.
@@ -35,14 +36,14 @@ Eigen::Vector3d point_of(const cv::Point2f& pixel, const Surface& surface, const
 bool measured(const Surface& surface) { return surface.kind == Surface::Kind::kMeasured; }
 
 // Where the camera's motion takes a pixel of a given inverse depth, which may be 0: infinitely far.
-struct Moved {
+struct Prediction {
   Eigen::Vector2d pixel = Eigen::Vector2d::Zero();
   double inverse_depth = 0;  // 1/m
   bool in_front = false;
 };
 
-Moved moved(const cv::Point2f& pixel, double inverse_depth, const Pose& motion,
-            const Camera& camera) {
+Prediction predicted(const cv::Point2f& pixel, double inverse_depth, const Pose& motion,
+                     const Camera& camera) {
   const Eigen::Vector3d p = motion.linear() * camera.unproject(pixel.x, pixel.y, 1.0) +
                             inverse_depth * motion.translation();
   if (p.z() < 1e-3) return {};
@@ -67,27 +68,29 @@ void RgbdChecker::Options::visit(OptionVisitor& v) {
   v("epsilon", epsilon,
     {.min = 0, .unit = "px", .help = "a point with a larger reprojection error moves"});
   v("noise_multiple", noise_multiple,
-    {.min = 0, .help = "lower bound of epsilon, in median residuals of the static points"});
+    {.min = 0, .help = "epsilon is at least this many median residuals of the static points"});
   v("pixel_noise", pixel_noise,
     {.min = 0.01, .unit = "px", .help = "standard deviation of a tracked point"});
   surface.visit(v);
   follow.visit(v);
   v("samples", samples, {.min = 1, .max = 100000, .help = "samples of RANSAC, three matches each"});
   v("min_matches", min_matches,
-    {.min = 6, .max = 100000, .help = "with depth; with fewer the check is not reliable"});
+    {.min = 6,
+     .max = 100000,
+     .help = "matches with depth that are needed; with fewer the check is not reliable"});
   v("min_agreement", min_agreement,
     {.min = 0, .max = 1, .help = "with a smaller inlier share the check is not reliable"});
   v("min_depth", min_depth,
-    {.min = 0.01, .unit = "m", .help = "a point without depth is at least this far"});
+    {.min = 0.01, .unit = "m", .help = "nearest place where a point without depth can be"});
   v("usual_depth", usual_depth,
     {.min = 0.1,
      .unit = "m",
-     .help = "where points without depth are likely to be; how well their motion is predicted "
-             "depends on it"});
+     .help = "likely depth of points without a measurement; their motion is predicted with it"});
   v("max_ambiguity", max_ambiguity,
     {.min = 0,
      .unit = "px",
-     .help = "longest epipolar segment on which a point without depth is classified"});
+     .help = "a point without depth is classified only when the segment of the epipolar line on "
+             "which it may lie is shorter"});
 }
 
 MovingPoints RgbdChecker::check(const Frame& previous, const Frame& current,
@@ -100,8 +103,8 @@ MovingPoints RgbdChecker::check(const Frame& previous, const Frame& current,
   const auto motion = camera_motion(observations, current);
   if (motion) {
     result.camera_motion = motion->target_from_source;
-    judge(observations, *motion, *current.camera, result);
-    recheck(observations, motion->target_from_source, current, result);
+    classify(observations, *motion, *current.camera, result);
+    search_from_prediction(observations, motion->target_from_source, current, result);
   }
   remember(observations, result, motion ? motion->target_from_source : memory_.motion,
            current.index);
@@ -129,24 +132,22 @@ std::vector<RgbdChecker::Observation> RgbdChecker::observe(const Frame& previous
     }
     result.push_back(observation);
   }
-  inherit_trust(result);
+  const double radius = kInheritRadius * pixel_scale(current.gray.size());
+  for (Observation& o : result)
+    o.trust =
+        o.match.kept_index >= 0 ? memory_.trust[o.match.kept_index] : inherited_trust(o, radius);
   return result;
 }
 
-void RgbdChecker::inherit_trust(std::vector<Observation>& observations) const {
-  for (Observation& o : observations)
-    o.trust = o.match.kept_index >= 0 ? memory_.trust[o.match.kept_index] : inherited_trust(o);
-}
-
 // New points take the mean trust of their neighbours on the same surface.
-double RgbdChecker::inherited_trust(const Observation& observation) const {
+double RgbdChecker::inherited_trust(const Observation& observation, double radius) const {
   double sum = kUnknownTrust;
   double weights = 1.0;
   for (std::size_t i = 0; i < memory_.points.size(); ++i) {
     if (std::abs(memory_.inverse_depth[i] - observation.from.inverse_depth) > kInheritDepth)
       continue;
     const cv::Point2f apart = memory_.points[i] - observation.match.previous;
-    if (apart.dot(apart) > kInheritRadius * kInheritRadius) continue;
+    if (apart.dot(apart) > radius * radius) continue;
     sum += memory_.trust[i];
     weights += 1.0;
   }
@@ -172,8 +173,8 @@ std::optional<RigidMotion> RgbdChecker::camera_motion(const std::vector<Observat
   return motion;
 }
 
-void RgbdChecker::judge(std::vector<Observation>& observations, const RigidMotion& motion,
-                        const Camera& camera, MovingPoints& result) const {
+void RgbdChecker::classify(std::vector<Observation>& observations, const RigidMotion& motion,
+                           const Camera& camera, MovingPoints& result) const {
   const Pose& pose = motion.target_from_source;
   const RigidNoise noise = noise_of(camera);
   const double pixels_per_depth = noise.pixel / (noise.inverse_depth * std::sqrt(2.0));
@@ -185,47 +186,48 @@ void RgbdChecker::judge(std::vector<Observation>& observations, const RigidMotio
     const bool known = o.from.kind != Surface::Kind::kNone;
     const double far = known ? std::max(0.0, o.from.inverse_depth - slack) : 0.0;
     const double near = known ? o.from.inverse_depth + slack : 1.0 / options_.min_depth;
-    const Moved at_far = moved(o.match.previous, far, pose, camera);
-    const Moved at_near = moved(o.match.previous, near, pose, camera);
+    const Prediction at_far = predicted(o.match.previous, far, pose, camera);
+    const Prediction at_near = predicted(o.match.previous, near, pose, camera);
     const bool placed = at_far.in_front && at_near.in_front &&
                         (known || (at_far.pixel - at_near.pixel).norm() <= options_.max_ambiguity);
     const double z = known ? 1.0 / o.from.inverse_depth : options_.usual_depth;
     uncertainty.push_back(pixel_uncertainty(
         motion, camera, camera.unproject(o.match.current.x, o.match.current.y, z)));
-    o.judged = placed && o.from.kind != Surface::Kind::kEdge && o.to.kind != Surface::Kind::kEdge &&
-               uncertainty.back() <= kMaxUncertainty * options_.epsilon;
+    o.is_predictable = placed && o.from.kind != Surface::Kind::kEdge &&
+                       o.to.kind != Surface::Kind::kEdge &&
+                       uncertainty.back() <= kMaxUncertainty * options_.epsilon;
     if (!placed) continue;
     double residual = distance_to_segment(vector_of(o.match.current), at_far.pixel, at_near.pixel);
     if (measured(o.from) && measured(o.to)) {
       const double expected =
-          moved(o.match.previous, o.from.inverse_depth, pose, camera).inverse_depth;
+          predicted(o.match.previous, o.from.inverse_depth, pose, camera).inverse_depth;
       residual = std::hypot(residual, pixels_per_depth * (expected - o.to.inverse_depth));
     }
     result.points[i].residual = static_cast<float>(residual);
-    if (o.judged && residual < options_.epsilon) static_residuals.push_back(residual);
+    if (o.is_predictable && residual < options_.epsilon) static_residuals.push_back(residual);
   }
   if (static_cast<int>(static_residuals.size()) < options_.min_matches / 2) return;
   const double limit =
       std::max(options_.epsilon, options_.noise_multiple * median(static_residuals));
   for (std::size_t i = 0; i < observations.size(); ++i)
     result.points[i].moving =
-        observations[i].judged &&
+        observations[i].is_predictable &&
         result.points[i].residual > std::hypot(limit, kSigmas * uncertainty[i]);
   result.reliable = true;
 }
 
 // Optical flow may drift off its point, far when the image moves fast. A point that is found when
 // searched for from its static prediction is static.
-void RgbdChecker::recheck(std::vector<Observation>& observations, const Pose& motion,
-                          const Frame& current, MovingPoints& result) const {
+void RgbdChecker::search_from_prediction(std::vector<Observation>& observations, const Pose& motion,
+                                         const Frame& current, MovingPoints& result) const {
   std::vector<std::size_t> suspects;
   std::vector<cv::Point2f> points;
   std::vector<cv::Point2f> expected;
   for (std::size_t i = 0; i < observations.size(); ++i) {
     if (!result.points[i].moving) continue;
     const Match& match = observations[i].match;
-    const Moved at =
-        moved(match.previous, observations[i].from.inverse_depth, motion, *current.camera);
+    const Prediction at =
+        predicted(match.previous, observations[i].from.inverse_depth, motion, *current.camera);
     if ((vector_of(match.current) - at.pixel).norm() <= options_.epsilon) continue;  // in depth
     suspects.push_back(i);
     points.push_back(match.previous);
@@ -253,8 +255,8 @@ void RgbdChecker::remember(const std::vector<Observation>& observations, const M
   for (std::size_t i = 0; i < observations.size(); ++i) {
     const Observation& o = observations[i];
     if (o.from.kind == Surface::Kind::kEdge || o.to.kind == Surface::Kind::kEdge) continue;
-    const bool classified = result.reliable && o.judged;
-    const double goal = !classified ? o.trust : result.points[i].moving ? 0.0 : 1.0;
+    const bool is_classified = result.reliable && o.is_predictable;
+    const double goal = !is_classified ? o.trust : result.points[i].moving ? 0.0 : 1.0;
     memory.points.push_back(o.match.current);
     memory.inverse_depth.push_back(o.to.inverse_depth);
     memory.trust.push_back(o.trust + kTrustRate * (goal - o.trust));

@@ -43,8 +43,8 @@ class RgbdChecker final : public MovingChecker {
   struct Observation {
     Match match;
     Surface from, to;
-    double trust = 0.5;   // 0 moving … 1 static so far
-    bool judged = false;  // its prediction is accurate enough to classify it
+    double trust = 0.5;           // 0 moving … 1 static so far
+    bool is_predictable = false;  // accurately enough to classify it
   };
   // State after the last call, of its current frame.
   struct Memory {
@@ -58,14 +58,13 @@ class RgbdChecker final : public MovingChecker {
   RigidNoise noise_of(const Camera& camera) const;
   Surface surface_in(const Frame& frame, const cv::Point2f& pixel) const;
   std::vector<Observation> observe(const Frame& previous, const Frame& current);
-  void inherit_trust(std::vector<Observation>& observations) const;
-  double inherited_trust(const Observation& observation) const;
+  double inherited_trust(const Observation& observation, double radius) const;
   std::optional<RigidMotion> camera_motion(const std::vector<Observation>& observations,
                                            const Frame& current) const;
-  void judge(std::vector<Observation>& observations, const RigidMotion& motion,
-             const Camera& camera, MovingPoints& result) const;
-  void recheck(std::vector<Observation>& observations, const Pose& motion, const Frame& current,
-               MovingPoints& result) const;
+  void classify(std::vector<Observation>& observations, const RigidMotion& motion,
+                const Camera& camera, MovingPoints& result) const;
+  void search_from_prediction(std::vector<Observation>& observations, const Pose& motion,
+                              const Frame& current, MovingPoints& result) const;
   void remember(const std::vector<Observation>& observations, const MovingPoints& result,
                 const Pose& motion, std::uint32_t frame);
 

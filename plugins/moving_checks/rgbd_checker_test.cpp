@@ -41,10 +41,10 @@ class RgbdCheckerTest : public ::testing::Test {
   // The first board of the room's foreground moves by `step` while the camera goes to `after`.
   Counts move_board(const Eigen::Vector3d& step, const Pose& after) {
     const Pose before = camera_at(0, 0, 0);
-    const Frame previous = scene_.see(before, 0);
+    const Frame previous = scene_.render(before, 0);
     const Board board = scene_.boards[3];
     scene_.boards[3].centre += step;
-    const MovingPoints result = checker_.check(previous, scene_.see(after, 1), {});
+    const MovingPoints result = checker_.check(previous, scene_.render(after, 1), {});
     EXPECT_TRUE(result.reliable);
     return count(result, board, scene_.camera(), before);
   }
@@ -80,11 +80,11 @@ TEST_F(RgbdCheckerTest, FindsWhatMovesBeforeOnePlane) {
 }
 
 TEST_F(RgbdCheckerTest, StaticWorldStaysStaticWhateverTheCameraDoes) {
-  const Frame start = scene_.see(camera_at(0, 0, 0), 0);
+  const Frame start = scene_.render(camera_at(0, 0, 0), 0);
   for (const Pose& pose : {camera_at(0, 0, 0), camera_at(0.03, -0.02, 0.05, 0.01),
                            camera_at(0, 0, 0, 0.08, 0.04), camera_at(0.06, 0.03, 0.05, -0.03)}) {
     RgbdChecker checker({}, {});
-    const MovingPoints result = checker.check(start, scene_.see(pose, 5), {});
+    const MovingPoints result = checker.check(start, scene_.render(pose, 5), {});
     EXPECT_TRUE(result.reliable);
     EXPECT_LT(std::count_if(result.points.begin(), result.points.end(),
                             [](const PointMotion& p) { return p.moving; }),
@@ -98,16 +98,16 @@ TEST_F(RgbdCheckerTest, StaticWorldOfANoisySensorIsUsefulWhenItsNoiseIsKnown) {
     auto camera = std::make_shared<Camera>(scene_.camera());
     camera->surface_noise = known_noise;
     cv::RNG random(3);
-    const auto see = [&](const Pose& pose, std::uint32_t index) {
-      Frame frame = scene_.see(pose, index);
+    const auto render = [&](const Pose& pose, std::uint32_t index) {
+      Frame frame = scene_.render(pose, index);
       frame.camera = camera;
       for (auto z = frame.depth.begin<float>(); z != frame.depth.end<float>(); ++z)
         if (*z > 0) *z = static_cast<float>(1 / (1 / *z + random.gaussian(kNoise)));
       return frame;
     };
     RgbdChecker checker({}, {});
-    const Frame before = see(camera_at(0, 0, 0), 0);
-    return checker.check(before, see(camera_at(0.03, -0.02, 0.05), 1), {});
+    const Frame before = render(camera_at(0, 0, 0), 0);
+    return checker.check(before, render(camera_at(0.03, -0.02, 0.05), 1), {});
   };
   EXPECT_FALSE(check(0.002).reliable) << "noise is taken for edges";
   const MovingPoints known = check(kNoise);
@@ -119,7 +119,7 @@ TEST_F(RgbdCheckerTest, StaticWorldOfANoisySensorIsUsefulWhenItsNoiseIsKnown) {
 // moves as one thing now.
 TEST_F(RgbdCheckerTest, BoardThatFillsMoreThanHalfOfThePictureIsWhatMoves) {
   scene_.boards.push_back({{-3.4, 0, 1.8}, 2.4, 3.0, 0.012, 9});
-  const auto frame = [&](std::uint32_t i) { return scene_.see(camera_at(0.004 * i, 0, 0), i); };
+  const auto frame = [&](std::uint32_t i) { return scene_.render(camera_at(0.004 * i, 0, 0), i); };
   Frame previous = frame(0);
   for (std::uint32_t i = 1; i < 39; ++i) {
     const Board board = scene_.boards.back();
@@ -141,12 +141,12 @@ TEST_F(RgbdCheckerTest, BoardThatFillsMoreThanHalfOfThePictureIsWhatMoves) {
 TEST_F(RgbdCheckerTest, FindsWhatMovesBesideAllThatIsStatic) {
   scene_.boards = {{{-3.7, 0, 4}, 6, 9, 0.02, 1}};  // the left third of the picture
   const auto eye = [](std::uint32_t i) { return camera_at(0.005 * i, 0, 0); };
-  Frame previous = scene_.see(eye(0), 0);
+  Frame previous = scene_.render(eye(0), 0);
   for (std::uint32_t i = 1; i < 12; ++i) {
     if (i == 5) scene_.boards.push_back({{0.8, -0.3, 2}, 1.4, 1.6, 0.012, 5});
     const Board passing = scene_.boards.back();
     if (i > 5) scene_.boards.back().centre.y() += 0.07;
-    const Frame current = scene_.see(eye(i), i);
+    const Frame current = scene_.render(eye(i), i);
     const MovingPoints result = checker_.check(previous, current, {});
     EXPECT_TRUE(result.reliable) << "frame " << i;
     if (i > 5) {
@@ -160,9 +160,9 @@ TEST_F(RgbdCheckerTest, FindsWhatMovesBesideAllThatIsStatic) {
 
 TEST_F(RgbdCheckerTest, PointsAtDepthEdgesDoNotMove) {
   const Pose before = camera_at(0, 0, 0);
-  const Frame previous = scene_.see(before, 0);
+  const Frame previous = scene_.render(before, 0);
   scene_.boards[3].centre.x() += 0.06;
-  const Frame current = scene_.see(before, 1);
+  const Frame current = scene_.render(before, 1);
   for (const PointMotion& point : checker_.check(previous, current, {}).points) {
     if (!point.moving) continue;
     const cv::Rect around(cvRound(point.previous.x) - 2, cvRound(point.previous.y) - 2, 5, 5);
@@ -176,20 +176,21 @@ TEST_F(RgbdCheckerTest, PointsAtDepthEdgesDoNotMove) {
 TEST_F(RgbdCheckerTest, PointsWithoutDepthAreJudgedWhereTheirPlaceIsCertain) {
   scene_.boards[0].measured = false;  // the wall
   const Pose before = camera_at(0, 0, 0);
-  const Frame previous = scene_.see(before, 0);
-  const MovingPoints turned = checker_.check(previous, scene_.see(camera_at(0, 0, 0, 0.02), 1), {});
+  const Frame previous = scene_.render(before, 0);
+  const MovingPoints turned =
+      checker_.check(previous, scene_.render(camera_at(0, 0, 0, 0.02), 1), {});
   ASSERT_TRUE(turned.reliable);
   for (const PointMotion& point : turned.points) EXPECT_FALSE(point.moving);
   scene_.boards[0].centre.x() += 0.1;
-  const MovingPoints slid = checker_.check(previous, scene_.see(before, 2), {});
+  const MovingPoints slid = checker_.check(previous, scene_.render(before, 2), {});
   ASSERT_TRUE(slid.reliable);
   EXPECT_TRUE(std::any_of(slid.points.begin(), slid.points.end(),
                           [](const PointMotion& point) { return point.moving; }));
 }
 
 TEST_F(RgbdCheckerTest, DecidesNothingWithoutDepth) {
-  Frame previous = scene_.see(camera_at(0, 0, 0), 0);
-  Frame current = scene_.see(camera_at(0.02, 0, 0), 1);
+  Frame previous = scene_.render(camera_at(0, 0, 0), 0);
+  Frame current = scene_.render(camera_at(0.02, 0, 0), 1);
   current.depth = cv::Mat::zeros(current.depth.size(), CV_32FC1);
   EXPECT_FALSE(checker_.check(previous, current, {}).reliable);
   current.depth = cv::Mat();
@@ -200,8 +201,8 @@ TEST_F(RgbdCheckerTest, DecidesNothingWithoutDepth) {
 }
 
 TEST_F(RgbdCheckerTest, DecidesNothingWhenNothingAgrees) {
-  Frame previous = scene_.see(camera_at(0, 0, 0), 0);
-  Frame current = scene_.see(camera_at(0, 0, 0), 1);
+  Frame previous = scene_.render(camera_at(0, 0, 0), 0);
+  Frame current = scene_.render(camera_at(0, 0, 0), 1);
   cv::RNG random(1);
   random.fill(current.depth, cv::RNG::UNIFORM, 0.5, 5.0);
   EXPECT_FALSE(checker_.check(previous, current, {}).reliable);

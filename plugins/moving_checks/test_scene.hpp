@@ -34,14 +34,14 @@ class TestScene {
     return scene;
   }
 
-  Frame see(const Pose& world_from_camera, std::uint32_t index) const {
+  Frame render(const Pose& world_from_camera, std::uint32_t index) const {
     Frame frame{.index = index,
                 .time = index / 30.0,
                 .gray = cv::Mat(camera_->height, camera_->width, CV_8UC1),
                 .depth = cv::Mat(camera_->height, camera_->width, CV_32FC1),
                 .camera = camera_};
     for (int v = 0; v < camera_->height; ++v)
-      for (int u = 0; u < camera_->width; ++u) see_pixel(world_from_camera, u, v, frame);
+      for (int u = 0; u < camera_->width; ++u) render_pixel(world_from_camera, u, v, frame);
     cv::cvtColor(frame.gray, frame.bgr, cv::COLOR_GRAY2BGR);
     return frame;
   }
@@ -49,7 +49,7 @@ class TestScene {
   const Camera& camera() const { return *camera_; }
 
  private:
-  void see_pixel(const Pose& world_from_camera, int u, int v, Frame& frame) const {
+  void render_pixel(const Pose& world_from_camera, int u, int v, Frame& frame) const {
     const Eigen::Vector3d ray = camera_->unproject(u, v, 1.0);  // one metre deep
     const Eigen::Vector3d direction = world_from_camera.linear() * ray;
     const Eigen::Vector3d eye = world_from_camera.translation();

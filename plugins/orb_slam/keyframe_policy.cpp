@@ -45,25 +45,36 @@ double motion_since(const KeyFrame& reference, const ObservedFrame& frame) {
 
 void KeyFrameOptions::visit(OptionVisitor& v) {
   v("keyframe_max_frames", max_frames_between,
-    {.min = 1, .unit = "frames", .help = "allowed after this long even if mapping is busy"});
+    {.min = 1,
+     .unit = "frames",
+     .help = "frames since the last key frame from which a new one is made even while another "
+             "waits for local mapping"});
   v("keyframe_tracked_ratio", min_tracked_ratio,
     {.min = 0,
      .max = 1,
-     .help = "new key frame when less than this share of the reference's landmarks is tracked"});
+     .help = "while the camera stands still, a new key frame is made when less than this share of "
+             "the reference key frame's landmarks is tracked; larger: more key frames"});
   v("keyframe_moved", moved,
     {.min = 0,
-     .help = "translation in median depths plus rotation in radians that counts as moved"});
+     .help = "motion since the reference key frame from which the camera counts as moved: "
+             "translation / median depth + rotation in radians"});
   v("keyframe_moved_ratio", moved_tracked_ratio,
-    {.min = 0, .max = 1, .help = "as keyframe_tracked_ratio, once the camera has moved"});
+    {.min = 0, .max = 1, .help = "the same share once the camera has moved, see keyframe_moved"});
   v("keyframe_min_inliers", min_inliers,
-    {.min = 6, .help = "no key frame from a pose with fewer landmark inliers"});
+    {.min = 6, .help = "a frame with fewer landmark inliers becomes no key frame"});
   v("close_depth", close_depth,
-    {.min = 0.1, .unit = "m", .help = "nearer points have depth that can constrain translation"});
+    {.min = 0.1,
+     .unit = "m",
+     .help = "points nearer than this are close: their depth constrains the translation (ThDepth "
+             "of ORB-SLAM2)"});
   v("keyframe_min_close", min_close,
     {.min = 0,
-     .help = "new key frame when fewer close landmarks are tracked and enough could be created"});
+     .help = "a new key frame is made when fewer close landmarks than this are tracked, if it "
+             "could add enough, see keyframe_max_close_untracked"});
   v("keyframe_max_close_untracked", max_close_untracked,
-    {.min = 0, .help = "close points without a landmark, above which enough could be created"});
+    {.min = 0,
+     .help = "a new key frame for keyframe_min_close needs more close points without a landmark "
+             "than this; larger: fewer key frames"});
 }
 
 TrackingQuality tracking_quality(const ObservedFrame& frame, const SparseMap& map, int inliers,

@@ -36,7 +36,9 @@ void OrbLocalMapper::Options::visit(OptionVisitor& v) {
      .max = 1,
      .help = "a key frame is removed when three others see more than this share of its landmarks"});
   v("bundle_keyframes", bundle_keyframes,
-    {.min = 2, .help = "key frames that the local bundle adjustment moves"});
+    {.min = 2,
+     .help = "key frames whose poses the local bundle adjustment optimises; more: more accurate, "
+             "slower"});
   v("bundle_iterations", bundle_iterations,
     {.min = 1, .help = "iterations of the local bundle adjustment"});
 }

@@ -34,7 +34,8 @@ void OrbLoopCloser::Options::visit(OptionVisitor& v) {
     {.min = 0, .help = "least number of key frames between two loop closures"});
   v("max_drift", max_drift,
     {.min = 0,
-     .help = "share of the path since the place was left, plus 0.5 m: greatest correction"});
+     .help = "a loop that moves the camera by more than this share of the path travelled since, "
+             "plus 0.5 m, is rejected as two places that look alike"});
   v("adjust_iterations", adjust_iterations,
     {.min = 0,
      .help = "iterations of the bundle adjustment of the whole map after a loop; 0: none"});

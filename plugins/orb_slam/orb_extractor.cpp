@@ -48,21 +48,25 @@ void split_off(std::vector<Corner>& corners, const cv::Mat& fallback, cv::Size l
 }  // namespace
 
 void OrbOptions::visit(OptionVisitor& v) {
-  v("features", features, {.min = 1, .max = 100000, .help = "features wanted per image"});
+  v("features", features, {.min = 1, .max = 100000, .help = "ORB features wanted per image"});
   v("levels", levels, {.min = 1, .max = 16, .help = "levels of the scale pyramid"});
   v("scale_factor", scale_factor,
-    {.min = 1.01, .max = 4, .help = "ratio of the sizes of two levels"});
+    {.min = 1.01, .max = 4, .help = "ratio of the image sizes of two neighbouring levels"});
   v("fast_threshold", fast_threshold,
-    {.min = 1, .max = 254, .unit = "grey levels", .help = "contrast of a corner"});
+    {.min = 1,
+     .max = 254,
+     .unit = "grey levels",
+     .help = "FAST threshold: contrast of a corner; smaller: more corners, weaker ones"});
   v("fast_min_threshold", fast_min_threshold,
     {.min = 1,
      .max = 254,
      .unit = "grey levels",
-     .help = "contrast of a corner where no stronger one is near"});
+     .help = "FAST threshold where fast_threshold finds no corner nearby"});
   v("oversampling", oversampling,
     {.min = 1,
      .max = 10,
-     .help = "evenly distributed corners per feature; the strongest are kept; 1: most even"});
+     .help = "so many times the wanted corners are spread evenly over the image, and the strongest "
+             "of them kept; 1: most even; larger: stronger corners, less evenly"});
   v("subpixel", subpixel, {.help = "refine corners to fractions of a pixel"});
   v.require(fast_min_threshold <= fast_threshold,
             "fast_min_threshold must not exceed fast_threshold");

@@ -12,9 +12,11 @@ void TrackerOptions::visit(OptionVisitor& v) {
              "depth registration"});
   v("min_bridge_points", min_bridge_points,
     {.min = 6,
-     .help = "inliers needed where landmarks are too few and points of the last frame are added"});
+     .help = "inliers needed for a pose where points of the last frame were added to too few "
+             "landmarks"});
   v("local_keyframes", local_keyframes,
-    {.min = 1, .help = "key frames whose landmarks are searched for in a frame"});
+    {.min = 1,
+     .help = "size of the local map: key frames whose landmarks are searched for in a frame"});
   v("motion_window", motion_window,
     {.min = 1,
      .unit = "px",
@@ -30,9 +32,11 @@ void TrackerOptions::visit(OptionVisitor& v) {
   v("max_feature_factor", max_feature_factor,
     {.min = 1,
      .max = 4,
-     .help = "times `features` at most, to make up for masked parts of the image"});
+     .help = "where dynamic objects cover a part of the image, up to this many times `features` "
+             "are extracted from the rest; 1: never more"});
   v("register_depth", register_depth,
-    {.help = "registers depth where landmarks do not constrain the pose"});
+    {.help = "align the depth image to earlier ones, as ICP does, where landmarks do not constrain "
+             "the pose"});
   keyframe.visit(v);
 }
 

@@ -27,20 +27,21 @@ class ImageOutput final : public Output {
     void visit(OptionVisitor& v) {
       v("every", every,
         {.min = 1, .max = 1e6, .unit = "frames", .help = "write one picture per so many"});
-      v("frames", frames, {.min = 0, .help = "numbers of frames that also have a picture"});
+      v("frames", frames, {.min = 0, .help = "indices of frames that also have a picture"});
       v("worst", worst,
         {.min = 0,
          .max = 100,
          .help = "so many frames each also have a picture: where most was excluded, where fewest "
                  "features fitted, where tracking was lost"});
       v.choice("format", format, {{"png", Format::kPng}, {"jpeg", Format::kJpeg}},
-               {.help = "of the files"});
+               {.help = "file format of the pictures"});
       v("features", parts.features,
         {.help = "features: inliers green, outliers yellow, moving orange, unmatched grey"});
       v("moving", parts.moving, {.help = "moving points, with a line from where they were"});
       v("mask", parts.mask, {.help = "labelled objects blue, pixels excluded from tracking red"});
       v("evidence", parts.evidence,
-        {.help = "of the map check: free-space violations purple, static surfaces light blue"});
+        {.help = "evidence of the map check: free-space violations purple, static surfaces light "
+                 "blue"});
       v("text", parts.text, {.help = "a line with the state of tracking"});
       v("panels", panels,
         {.help = "four pictures in one, whatever the parts: features, moving points, labels with "

@@ -30,15 +30,16 @@ class McapOutput final : public Output {
 
     void visit(OptionVisitor& v) {
       v("file", file, {.help = "name of the file in the run folder"});
-      v("images", images, {.help = "the colour images as well, as JPEG"});
+      v("images", images, {.help = "write the colour images, too, as JPEG"});
       v("map_period", map_period,
         {.min = 0,
          .unit = "s",
-         .help = "from one state of the map to the next; 0: the last one only"});
+         .help = "time between two states of key frames, landmarks and dense map in the file; 0: "
+                 "the last one only; smaller: a larger file"});
       v.choice(
           "compression", compression,
           {{"zstd", Compression::kZstd}, {"lz4", Compression::kLz4}, {"none", Compression::kNone}},
-          {.help = "of the file"});
+          {.help = "compression of the messages in the file"});
     }
   };
 

@@ -8,6 +8,7 @@
 #include "propagator_flow_depth/mask_warp.hpp"
 #include "propagator_flow_depth/object_matching.hpp"
 #include "stillpoint/support/objects.hpp"
+#include "stillpoint/support/pixel_scale.hpp"
 
 namespace stillpoint::propagator_flow_depth {
 namespace {
@@ -17,6 +18,7 @@ constexpr int kMaxPoints = 120;          // of all objects together
 constexpr int kMinPoints = 10;           // of each
 constexpr double kMinSupport = 0.25;     // share of measurements in the layer
 constexpr double kMinMissedShare = 0.2;  // of an object, for the missed part to become an object
+constexpr double kTrackReach = 12.0;     // px of a view, around a track, that move with it
 
 cv::Rect grown(cv::Rect box, int by, cv::Size image) {
   return cv::Rect(box.x - by, box.y - by, box.width + 2 * by, box.height + 2 * by) &
@@ -48,25 +50,38 @@ cv::Rect search_region(const FollowedObject& object, int margin, cv::Size image)
 }  // namespace
 
 void FlowDepthPropagator::Options::visit(OptionVisitor& v) {
-  v("points", points, {.min = kMinPoints, .max = 500, .help = "followed on each object"});
+  v("points", points,
+    {.min = kMinPoints,
+     .max = 500,
+     .help = "corners followed on each object by optical flow; more: steadier, slower"});
   v("max_flow_error", max_flow_error,
     {.min = 0.05,
      .max = 20,
      .unit = "px",
      .help = "forward-backward error above which a point is dropped"});
   v("min_points", min_points,
-    {.min = 0, .help = "tracked points that an object needs while the network misses it"});
+    {.min = 0,
+     .help = "points that must still be followed on an object for its mask to be kept while the "
+             "network misses it"});
   v("keep_seconds", keep_seconds,
-    {.min = 0, .max = 60, .unit = "s", .help = "how long a missed object is kept"});
+    {.min = 0,
+     .max = 60,
+     .unit = "s",
+     .help = "time for which the mask of an object is kept that the network misses"});
   v("max_misses", max_misses,
-    {.min = 0, .help = "consecutive results that may miss an object; more remove it"});
+    {.min = 0,
+     .help = "results of the network in a row that may miss an object before its mask is dropped"});
   v("margin", margin,
-    {.min = 2, .max = 40, .unit = "px", .help = "how far outlines may move to a depth edge"});
+    {.min = 2,
+     .max = 40,
+     .unit = "px",
+     .help = "distance within which the outline of a mask is moved to a depth edge"});
   v("depth_tolerance", depth_tolerance,
     {.min = 0.01,
      .max = 2,
      .unit = "m",
-     .help = "depths that differ by more at 2 m are different"});
+     .help = "depth difference from which pixels 2 m away lie on different surfaces; larger: masks "
+             "take in what is behind"});
   v("min_object_pixels", min_object_pixels,
     {.min = 1, .unit = "px", .help = "smaller objects become background"});
 }
@@ -81,14 +96,14 @@ Segmentation FlowDepthPropagator::propagate(const Segmentation& segmentation, co
   history_.push_back(std::move(view));
   if (segmentation.frame != segmented_frame_) {
     segmented_frame_ = segmentation.frame;
-    known_ |= segmentation.known();
-    if (segmentation.known()) learn(segmentation, view_of(from));
+    has_labels_ |= segmentation.known();
+    if (segmentation.known()) associate(segmentation, view_of(from));
   }
   propagate_tracks();
   View& now = history_.back();
-  for (FollowedObject& object : objects_) place(object, now);
+  for (FollowedObject& object : objects_) predict_mask(object, now);
   std::erase_if(objects_, [&](const FollowedObject& object) { return !supported(object, now); });
-  compose(now);
+  compose_instances(now);
   for (FollowedObject& object : objects_) renew_reference(object, now);
   return result(now, to);
 }
@@ -119,7 +134,7 @@ const View& FlowDepthPropagator::followed_near(const View& view) const {
   return place + 1 != history_.end() && !(place + 1)->instances.empty() ? *(place + 1) : *place;
 }
 
-void FlowDepthPropagator::learn(const Segmentation& segmentation, const View& view) {
+void FlowDepthPropagator::associate(const Segmentation& segmentation, const View& view) {
   const FoundObjects found =
       found_objects(segmentation, view, {.min_pixels = options_.min_object_pixels, .rim = rim()});
   int all_pixels = 0;
@@ -129,47 +144,47 @@ void FlowDepthPropagator::learn(const Segmentation& segmentation, const View& vi
       match_objects({found.objects, found.instances, objects_, before.instances, before.ids});
 
   std::vector<FollowedObject> next;
-  std::vector<bool> seen(objects_.size(), false);
+  std::vector<bool> detected(objects_.size(), false);
   for (std::size_t i = 0; i < found.objects.size(); ++i) {
-    const FoundObject& sighting = found.objects[i];
+    const FoundObject& detection = found.objects[i];
     const int known = matches.followed_of[i];
-    if (sighting.pixels == 0) continue;
+    if (detection.pixels == 0) continue;
     FollowedObject object;
     if (known >= 0) {
       const auto f = static_cast<std::size_t>(known);
       if (auto rest = missed_part(objects_[f], before, found.instances, view))
         next.push_back(std::move(*rest));
       object = std::move(objects_[f]);
-      seen[f] = true;
+      detected[f] = true;
     } else {
       object.id = next_id_++;
-      object.label = sighting.label;
+      object.label = detection.label;
     }
-    see(object, sighting, static_cast<double>(sighting.pixels) / all_pixels, view);
+    update_detected(object, detection, static_cast<double>(detection.pixels) / all_pixels, view);
     next.push_back(std::move(object));
   }
   for (std::size_t f = 0; f < objects_.size(); ++f) {
-    if (seen[f] || matches.covered[f]) continue;
-    miss(objects_[f], before);
+    if (detected[f] || matches.covered[f]) continue;
+    update_missed(objects_[f], before);
     next.push_back(std::move(objects_[f]));
   }
   objects_ = std::move(next);
 }
 
-void FlowDepthPropagator::see(FollowedObject& object, const FoundObject& sighting, double share,
-                              const View& view) const {
-  object.score = sighting.score;
-  object.seen_frame = view.frame;
-  object.seen_time = view.time;
-  ++object.sightings;
+void FlowDepthPropagator::update_detected(FollowedObject& object, const FoundObject& detection,
+                                          double share, const View& view) const {
+  object.score = detection.score;
+  object.detected_frame = view.frame;
+  object.detected_time = view.time;
+  ++object.detections;
   object.misses = 0;
   // Large objects get more points, because they occlude more.
   object.points = std::clamp(static_cast<int>(kMaxPoints * share), kMinPoints, options_.points);
-  set_reference(object, sighting.mask, sighting.box, view);
+  set_reference(object, detection.mask, detection.box, view);
 }
 
 /// Objects out of view do not count as missed.
-void FlowDepthPropagator::miss(FollowedObject& object, const View& view) const {
+void FlowDepthPropagator::update_missed(FollowedObject& object, const View& view) const {
   if (std::ranges::find(view.ids, object.id) != view.ids.end()) ++object.misses;
 }
 
@@ -223,14 +238,15 @@ void FlowDepthPropagator::propagate_tracks() {
   for (FollowedObject& object : objects_) std::erase_if(object.tracks, &Track::lost);
 }
 
-void FlowDepthPropagator::place(FollowedObject& object, const View& view) const {
+void FlowDepthPropagator::predict_mask(FollowedObject& object, const View& view) const {
   object.box = search_region(object, rim(), view.size());
   if (object.box.empty()) {
     object.mask.release();
     return;
   }
+  const auto reach = static_cast<float>(kTrackReach * pixel_scale(view.size() * kViewScale));
   const cv::Mat predicted =
-      warp_mask(object.reference_mask, object.reference_box, object.tracks, object.box);
+      warp_mask(object.reference_mask, object.reference_box, object.tracks, object.box, reach);
   object.layer = object.reference_layer.moved_by(median_motion(object.tracks).depth);
   const cv::Mat depth = view.depth(object.box);
   object.mask = fit_to_depth(predicted, depth, object.layer,
@@ -241,10 +257,10 @@ void FlowDepthPropagator::place(FollowedObject& object, const View& view) const 
 }
 
 bool FlowDepthPropagator::supported(const FollowedObject& object, const View& view) const {
-  const bool recent = view.time - object.seen_time <= options_.keep_seconds;
-  if (object.seen_frame == segmented_frame_) {
+  const bool recent = view.time - object.detected_time <= options_.keep_seconds;
+  if (object.detected_frame == segmented_frame_) {
     if (recent) return true;  // else the network is slow: flow and depth must confirm it
-  } else if (!recent || object.misses > std::min(object.sightings, options_.max_misses)) {
+  } else if (!recent || object.misses > std::min(object.detections, options_.max_misses)) {
     return false;
   }
   return object.tracks.size() >= static_cast<std::size_t>(options_.min_points) &&
@@ -260,7 +276,7 @@ void FlowDepthPropagator::renew_reference(FollowedObject& object, const View& vi
 }
 
 /// Where two masks overlap, the nearer object occludes the other.
-void FlowDepthPropagator::compose(View& view) {
+void FlowDepthPropagator::compose_instances(View& view) {
   std::ranges::stable_sort(objects_, {}, [](const FollowedObject& object) {
     return object.layer.known() ? object.layer.middle : 1e9f;
   });
@@ -279,7 +295,7 @@ void FlowDepthPropagator::compose(View& view) {
 
 Segmentation FlowDepthPropagator::result(const View& view, const Frame& frame) const {
   Segmentation result{.frame = frame.index};
-  if (!known_) return result;
+  if (!has_labels_) return result;
   cv::resize(view.instances, result.instances, frame.gray.size(), 0, 0, cv::INTER_NEAREST);
   cv::Mat labels(1, 256, CV_8UC1, cv::Scalar(0));
   for (std::size_t i = 0; i < view.ids.size(); ++i) {

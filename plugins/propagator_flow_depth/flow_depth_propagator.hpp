@@ -40,26 +40,26 @@ class FlowDepthPropagator final : public Propagator {
   View spare_view();
   const View& view_of(const Frame& frame);
   const View& followed_near(const View& view) const;
-  void learn(const Segmentation& segmentation, const View& view);
-  void see(FollowedObject& object, const FoundObject& sighting, double share,
-           const View& view) const;
-  void miss(FollowedObject& object, const View& view) const;
+  void associate(const Segmentation& segmentation, const View& view);
+  void update_detected(FollowedObject& object, const FoundObject& detection, double share,
+                       const View& view) const;
+  void update_missed(FollowedObject& object, const View& view) const;
   std::optional<FollowedObject> missed_part(const FollowedObject& object, const View& before,
                                             const cv::Mat& found, const View& view);
   void set_reference(FollowedObject& object, const cv::Mat& mask, cv::Rect box,
                      const View& view) const;
   void propagate_tracks();
-  void place(FollowedObject& object, const View& view) const;
+  void predict_mask(FollowedObject& object, const View& view) const;
   bool supported(const FollowedObject& object, const View& view) const;
   void renew_reference(FollowedObject& object, const View& view) const;
-  void compose(View& view);
+  void compose_instances(View& view);
   Segmentation result(const View& view, const Frame& frame) const;
 
   Options options_;
   std::vector<FollowedObject> objects_;
   std::deque<View> history_;               // in order of frames, the current one last
   std::uint32_t segmented_frame_ = kNoId;  // of the newest segmentation
-  bool known_ = false;                     // whether there have been labels
+  bool has_labels_ = false;                // whether there have been any
   int next_id_ = 0;
 };
 

@@ -16,10 +16,10 @@ struct FollowedObject {
   float score = 1.0f;
 
   // From the results of the network.
-  std::uint32_t seen_frame = 0;  ///< index of the newest frame in which it was found
-  double seen_time = 0.0;        ///< seconds, of that frame
-  int sightings = 0;             ///< results that had it
-  int misses = 0;                ///< results in a row that did not have it, while it was in view
+  std::uint32_t detected_frame = 0;  ///< index of the newest frame in which it was found
+  double detected_time = 0.0;        ///< seconds, of that frame
+  int detections = 0;                ///< results that had it
+  int misses = 0;  ///< results in a row that did not have it, while it was in view
 
   // Its reference: the view from which it is carried, mostly the one in which it was found.
   cv::Mat reference_mask;  ///< CV_8UC1, 0 or 255, of `reference_box`

@@ -12,17 +12,16 @@ constexpr int kCell = 8;    // px between the nodes where motion is computed
 constexpr int kSample = 2;  // px between the samples of the mask
 const cv::Point2f kSampleCentre =
     cv::Point2f(kSample - 1, kSample - 1) / 2;  // as cv::resize has it
-constexpr float kReach = 12.0f;                 // px around a track that move with it
 constexpr float kMedianWeight = 0.1f;           // of the median motion against a track right there
 
 /// Motion from a position in the current view back to the reference, interpolated from the tracks.
 cv::Point2f backward_motion(cv::Point2f position, std::span<const Track> tracks,
-                            cv::Point2f median_shift) {
+                            cv::Point2f median_shift, float reach) {
   cv::Point2f sum = -kMedianWeight * median_shift;
   float weights = kMedianWeight;
   for (const Track& track : tracks) {
     if (track.lost) continue;
-    const cv::Point2f offset = (track.current - position) / kReach;
+    const cv::Point2f offset = (track.current - position) / reach;
     const float falloff = 1.0f / (1.0f + offset.dot(offset));
     const float weight = falloff * falloff;
     sum += weight * (track.reference - track.current);
@@ -57,13 +56,13 @@ ObjectMotion median_motion(std::span<const Track> tracks) {
 }
 
 cv::Mat warp_mask(const cv::Mat& reference, cv::Rect box, std::span<const Track> tracks,
-                  cv::Rect region) {
+                  cv::Rect region, float reach) {
   const cv::Point2f shift = median_motion(tracks).shift;
   cv::Mat nodes(region.height / kCell + 2, region.width / kCell + 2, CV_32FC2);
   for (int row = 0; row < nodes.rows; ++row)
     for (int column = 0; column < nodes.cols; ++column) {
       const cv::Point node = region.tl() + kCell * cv::Point(column, row);
-      const cv::Point2f source = cv::Point2f(node) + backward_motion(node, tracks, shift);
+      const cv::Point2f source = cv::Point2f(node) + backward_motion(node, tracks, shift, reach);
       nodes.at<cv::Point2f>(row, column) = source - cv::Point2f(box.tl());
     }
   // A sample every kSample px is enough for an outline that depth will correct.

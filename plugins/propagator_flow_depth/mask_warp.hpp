@@ -18,10 +18,10 @@ struct ObjectMotion {
 ObjectMotion median_motion(std::span<const Track> tracks);
 
 /// The reference mask (CV_8UC1, 0 or 255, of `box`) as it lies in the part `region` of the current
-/// view. Every pixel moves with the tracks around it, so that limbs may move on their own. Outside
-/// its box, the mask is extrapolated from its border: what enters the view there is mostly more of
-/// the object.
+/// view. Every pixel moves with the tracks around it, about `reach` px, so that limbs may move on
+/// their own. Outside its box, the mask is extrapolated from its border: what enters the view there
+/// is mostly more of the object.
 cv::Mat warp_mask(const cv::Mat& reference, cv::Rect box, std::span<const Track> tracks,
-                  cv::Rect region);
+                  cv::Rect region, float reach);
 
 }  // namespace stillpoint::propagator_flow_depth

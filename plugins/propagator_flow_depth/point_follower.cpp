@@ -4,12 +4,14 @@
 #include <opencv2/imgproc.hpp>
 #include <opencv2/video/tracking.hpp>
 
+#include "stillpoint/support/depth_step.hpp"
+
 namespace stillpoint::propagator_flow_depth {
 namespace {
 
 constexpr int kLevels = 3;
-const cv::Size kWindow(13, 13);      // px of a view: 26 px of the frame
-constexpr float kDepthJump = 0.08f;  // of the depth, between two views
+const cv::Size kWindow(13, 13);             // px of a view: 26 px of the frame
+constexpr DepthStep kJump{.share = 0.08f};  // from one view to the next
 
 using Points = std::vector<cv::Point2f>;
 
@@ -27,7 +29,7 @@ bool inside(cv::Point2f point, cv::Size size) {
 }
 
 bool jumps(float before, float after) {
-  return before > 0 && after > 0 && std::abs(after - before) > kDepthJump * before;
+  return before > 0 && after > 0 && kJump.is_between(before, after);
 }
 
 }  // namespace

@@ -19,9 +19,12 @@ void AdversarialOptions::visit(OptionVisitor& v) {
             {"blobs", Kind::kBlobs}},
            {.help = "instead of the labels: the false class everywhere, nowhere, or in random "
                     "ellipses"});
-  v("mistaken", mistaken, {.help = "classes whose objects get the false class"});
+  v("mistaken", mistaken, {.help = "classes whose objects are labelled as false_class"});
   v("late", late,
-    {.min = 0, .max = 60, .unit = "s", .help = "labels are those of the image so much earlier"});
+    {.min = 0,
+     .max = 60,
+     .unit = "s",
+     .help = "imitated delay of a network: labels are those of an image this much older"});
 }
 
 AdversarialLabels::AdversarialLabels(const AdversarialOptions& options, const ClassNames& classes,

@@ -38,7 +38,8 @@ void check_size(const cv::Mat& labels, cv::Size frame, const std::filesystem::pa
 
 void LabelImageSegmenter::Options::visit(OptionVisitor& v) {
   v("path", path,
-    {.help = "folder of the label images; empty for 'labels' in the recording", .is_path = true});
+    {.help = "folder of the label images; empty: the folder labels of the recording",
+     .is_path = true});
   v("classes", classes,
     {.help = "names by class id, the background first; or one of the lists [voc21], [coco80], "
              "[person]"});

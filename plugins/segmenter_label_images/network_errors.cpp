@@ -35,13 +35,21 @@ void NetworkErrorOptions::visit(OptionVisitor& v) {
     {.min = -100,
      .max = 100,
      .unit = "px",
-     .help = "outlines lie outside the true ones; < 0 inside"});
+     .help = "imitated error: masks are dilated by this much; < 0: eroded"});
   v("outline_error", outline_error,
-    {.min = 0, .max = 100, .unit = "px", .help = "outlines lie off at random by up to so much"});
+    {.min = 0,
+     .max = 100,
+     .unit = "px",
+     .help = "imitated error: outlines are off by up to this much, at random"});
   v("missing_lower_part", missing_lower_part,
-    {.min = 0, .max = 1, .help = "share of each object's height that is missing at its lower end"});
+    {.min = 0,
+     .max = 1,
+     .help =
+         "imitated error: share of each object's height that its mask misses at the lower end"});
   v("holes", holes,
-    {.min = 0, .max = 1000, .help = "in each object, each as wide as a seventh of it"});
+    {.min = 0,
+     .max = 1000,
+     .help = "imitated error: holes in each mask, each a seventh as wide as it"});
   v("floor", floor,
     {.min = 0,
      .max = 10,
@@ -51,7 +59,7 @@ void NetworkErrorOptions::visit(OptionVisitor& v) {
     {.min = 0, .max = 1, .help = "probability that a frame has an object that is not there"});
   v("false_class", false_class, {.help = "class of the objects that are not there"});
   v("error_frames", error_frames,
-    {.min = 1, .unit = "frames", .help = "how long misses, false objects and blobs last"});
+    {.min = 1, .unit = "frames", .help = "frames that a miss, a false object or a blob lasts"});
 }
 
 cv::Mat NetworkErrors::apply(const cv::Mat& labels, std::uint32_t frame,

@@ -5,13 +5,15 @@
 #include <opencv2/imgproc.hpp>
 #include <vector>
 
+#include "stillpoint/support/pixel_scale.hpp"
+
 namespace stillpoint::segmenter_opencv_dnn {
 namespace {
 
 constexpr double kNoiseSigmas = 3.0;
 constexpr float kClusterWidth = 1.15f;  // farthest over nearest depth of one surface
 constexpr double kMinMeasured = 0.05;   // of the box's middle; with less, its depth is unknown
-constexpr int kGap = 7;                 // px, of missing depth that is closed
+constexpr double kHalfGap = 3.0;        // px of 640 x 480: missing depth twice as wide is closed
 
 std::vector<float> measured_in_middle(const cv::Mat& depth) {
   const cv::Rect middle(depth.cols / 4, depth.rows / 4, std::max(1, depth.cols / 2),
@@ -39,9 +41,9 @@ float near_surface(std::vector<float> values, double share) {
 }
 
 /// Region growing from the seeds, over neighbouring pixels of similar depth.
-class Growth {
+class RegionGrowing {
  public:
-  Growth(const cv::Mat& depth, double noise, float middle, const BoxMaskOptions& options)
+  RegionGrowing(const cv::Mat& depth, double noise, float middle, const BoxMaskOptions& options)
       : depth_(depth),
         nearest_(middle - static_cast<float>(options.depth_extent)),
         farthest_(middle + static_cast<float>(options.depth_extent)),
@@ -82,19 +84,25 @@ class Growth {
   std::vector<cv::Point> open_;
 };
 
-cv::Mat grow_surface(const cv::Mat& depth, double noise, float middle,
+/// Of depth images as large as `image`.
+cv::Mat close_gaps(const cv::Mat& mask, cv::Size image) {
+  const int side = 2 * cvRound(kHalfGap * pixel_scale(image)) + 1;
+  cv::Mat closed;
+  cv::morphologyEx(mask, closed, cv::MORPH_CLOSE,
+                   cv::getStructuringElement(cv::MORPH_ELLIPSE, {side, side}));
+  return closed;
+}
+
+cv::Mat grow_surface(const cv::Mat& depth, cv::Size image, double noise, float middle,
                      const BoxMaskOptions& options) {
-  Growth growth(depth, noise, middle, options);
+  RegionGrowing growing(depth, noise, middle, options);
   for (int v = depth.rows / 4; v < depth.rows - depth.rows / 4; ++v)
     for (int u = depth.cols / 4; u < depth.cols - depth.cols / 4; ++u) {
       const float z = depth.at<float>(v, u);
-      if (z >= middle / kClusterWidth && z <= middle * kClusterWidth) growth.seed({u, v});
+      if (z >= middle / kClusterWidth && z <= middle * kClusterWidth) growing.seed({u, v});
     }
-  const cv::Mat grown = growth.grown();
-  cv::Mat closed;
-  cv::morphologyEx(grown, closed, cv::MORPH_CLOSE,
-                   cv::getStructuringElement(cv::MORPH_ELLIPSE, {kGap, kGap}));
-  return grown | (closed & ~(depth > 0));
+  const cv::Mat grown = growing.grown();
+  return grown | (close_gaps(grown, image) & ~(depth > 0));
 }
 
 cv::Mat ellipse(cv::Size size) {
@@ -113,20 +121,22 @@ void BoxMaskOptions::visit(OptionVisitor& v) {
   v("overlap", overlap,
     {.min = 0,
      .max = 1,
-     .help =
-         "boxes of a class with more intersection over union are one object; the best one counts"});
+     .help = "non-maximum suppression: of boxes of one class whose intersection over union is "
+             "larger, only the best one counts"});
   v("depth_step", depth_step,
     {.min = 0,
      .unit = "m",
-     .help = "largest step between neighbouring pixels of one surface, besides noise"});
+     .help = "depth difference of neighbouring pixels up to which the mask grows, besides noise; "
+             "larger: the mask spreads to what is behind"});
   v("depth_extent", depth_extent,
     {.min = 0,
      .unit = "m",
-     .help = "greatest extent of an object in front of and behind its median depth"});
+     .help = "how far a mask reaches in depth, before and behind its object's median depth"});
   v("near_share", near_share,
     {.min = 0,
      .max = 1,
-     .help = "least share of the middle of a box that the nearest surface in it covers"});
+     .help = "the object in a box is the nearest surface that covers this share of the middle of "
+             "the box; larger: what stands in front of it is passed over"});
 }
 
 cv::Mat box_mask(const cv::Mat& depth, double noise, const cv::Rect& box,
@@ -134,7 +144,7 @@ cv::Mat box_mask(const cv::Mat& depth, double noise, const cv::Rect& box,
   if (!depth.empty()) {
     const cv::Mat inside = depth(box);
     const float middle = near_surface(measured_in_middle(inside), options.near_share);
-    if (middle > 0) return grow_surface(inside, noise, middle, options);
+    if (middle > 0) return grow_surface(inside, depth.size(), noise, middle, options);
   }
   return ellipse(box.size());
 }

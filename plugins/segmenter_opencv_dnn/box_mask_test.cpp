@@ -4,6 +4,8 @@
 
 #include <opencv2/imgproc.hpp>
 
+#include "stillpoint/support/pixel_scale.hpp"
+
 namespace stillpoint::segmenter_opencv_dnn {
 namespace {
 
@@ -40,6 +42,36 @@ TEST(BoxMask, NoiseAndSmallGapsDoNotMatter) {
   depth += noise;
   depth(cv::Rect(100, 100, 40, 4)).setTo(0);  // a gap across the body
   EXPECT_GT(intersection_over_union(box_mask(depth, kNoise, kBox, {}), person(kBox)), 0.97);
+}
+
+// Holes as wide as a share of the image: 6 px of 640 x 480.
+TEST(BoxMask, GapsAreClosedInImagesOfAnySize) {
+  for (const cv::Size size : {cv::Size(320, 240), cv::Size(640, 480), cv::Size(1280, 720)}) {
+    SCOPED_TRACE(size.width);
+    const double scale = pixel_scale(size);
+    cv::Mat depth(size, CV_32FC1, cv::Scalar(kWall));
+    const cv::Rect person(size.width / 4, size.height / 4, size.width / 8, size.height / 2);
+    depth(person).setTo(kPerson);
+    const auto mask_with_gap = [&](double width) {
+      cv::Mat holed = depth.clone();
+      const int middle = person.y + person.height / 2;
+      holed.rowRange(middle, middle + cvRound(width * scale)).setTo(0);
+      return cv::countNonZero(box_mask(holed, kNoise, person, {}));
+    };
+    EXPECT_EQ(mask_with_gap(4), person.area());
+    EXPECT_LT(mask_with_gap(12), person.area());
+  }
+}
+
+TEST(BoxMask, IsWholeWhereTheNoiseOfTheSensorIsKnown) {
+  constexpr double kSensorNoise = 0.02;  // metres at 1 m: ten times a Kinect's
+  cv::Mat depth(240, 320, CV_32FC1, cv::Scalar(kWall));
+  const cv::Mat person = draw_person(depth, {120, 190});
+  cv::Mat noise(depth.size(), CV_32FC1);
+  cv::RNG(3).fill(noise, cv::RNG::NORMAL, 0.0, kSensorNoise * kPerson * kPerson);
+  depth += noise;
+  EXPECT_GT(intersection_over_union(box_mask(depth, kSensorNoise, kBox, {}), person(kBox)), 0.97);
+  EXPECT_LT(intersection_over_union(box_mask(depth, kNoise, kBox, {}), person(kBox)), 0.97);
 }
 
 // The middle of the box is wall for the most part: bow legs, or an arm to the side.

@@ -10,7 +10,8 @@ void RefinementOptions::visit(OptionVisitor& v) {
   v("epsilon", epsilon,
     {.min = 1e-6,
      .max = 1,
-     .help = "variance of gray, black to white being 1, that counts as flat"});
+     .help = "variance of grey levels (black 0, white 1) below which the image counts as flat; "
+             "larger: smoother masks, which follow edges less"});
 }
 
 GuidedFilter::GuidedFilter(const cv::Mat& gray, cv::Size cells, const RefinementOptions& options)

@@ -63,8 +63,9 @@ void NetworkOptions::visit(OptionVisitor& v) {
   v("model", model,
     {.help = "file of the network: .onnx, .caffemodel, .pb or .weights", .is_path = true});
   v("config", config, {.help = "its .prototxt, .pbtxt or .cfg file", .is_path = true});
-  v("width", width, {.min = 1, .max = 8192, .unit = "px", .help = "width of the input"});
-  v("height", height, {.min = 1, .max = 8192, .unit = "px", .help = "height of the input"});
+  v("width", width, {.min = 1, .max = 8192, .unit = "px", .help = "width of the network's input"});
+  v("height", height,
+    {.min = 1, .max = 8192, .unit = "px", .help = "height of the network's input"});
   v("scale", scale,
     {.help = "the input is scale * (pixel - mean); one number, or one per channel"});
   v("mean", mean, {.help = "one number, or one per channel, in the network's order"});

@@ -69,16 +69,18 @@ void OpenCvDnnSegmenter::Options::visit(OptionVisitor& v) {
             {"logit", ResultKind::kLogit},
             {"boxes", ResultKind::kBoxes}},
            {.help = "what the output is: one plane per class, one plane for one class, or boxes"});
-  v.choice("cells", cells,
-           {{"centres", CellAlignment::kCentres}, {"corners", CellAlignment::kCorners}},
-           {.help = "cells tile the input, or the outer ones lie on its corners (align_corners, "
-                    "networks of stride 16 with inputs of 16 k + 1)"});
+  v.choice(
+      "cells", cells, {{"centres", CellAlignment::kCentres}, {"corners", CellAlignment::kCorners}},
+      {.help = "where the cells of the output lie in the input: side by side, or the outer ones on "
+               "its corners (align_corners: networks of stride 16 with inputs of 16 k + 1 px)"});
   v("classes", classes,
     {.help = "names by class id, the background first; or one of the lists [voc21], [coco80], "
              "[person]"});
   v("threshold", rule.threshold,
     {.min = 0, .max = 1, .help = "a probability or a box's score below it is background"});
-  v("margin", rule.margin, {.help = "lead that a class's logit needs over the background's"});
+  v("margin", rule.margin,
+    {.help = "by how much a class's logit must exceed the background's; larger: fewer false "
+             "labels, more misses"});
   v("refine", refinement, {.help = "guided filter that brings scores to the edges of the image"});
   v("boxes", boxes, {.help = "how boxes become masks"});
   v("min_object_pixels", smallest.pixels,
@@ -86,8 +88,8 @@ void OpenCvDnnSegmenter::Options::visit(OptionVisitor& v) {
   v("min_object_area", smallest.area,
     {.min = 0,
      .unit = "m^2",
-     .help = "parts of a class with less visible area, by depth and times the mean probability, "
-             "are background"});
+     .help = "parts of a class whose visible area (by depth) times mean probability is smaller are "
+             "background"});
   v("mirror", mirror,
     {.help = "every second image is mirrored for the network, and its labels are mirrored back"});
   v("threads", threads,
@@ -164,7 +166,7 @@ Segmentation OpenCvDnnSegmenter::segment(const Frame& frame) {
 
 Segmentation OpenCvDnnSegmenter::segment_as_is(const Frame& frame) {
   const std::vector<cv::Mat> outputs = network_.run(frame.bgr);
-  tell_of_darkness(frame);
+  warn_of_darkness(frame);
   Segmentation result =
       options_.rule.result == ResultKind::kBoxes
           ? from_boxes(detections(outputs, classes_.size(), options_.rule.threshold,
@@ -175,9 +177,9 @@ Segmentation OpenCvDnnSegmenter::segment_as_is(const Frame& frame) {
   return result;
 }
 
-void OpenCvDnnSegmenter::tell_of_darkness(const Frame& frame) {
-  if (told_ || !network_.brightened()) return;
-  told_ = true;
+void OpenCvDnnSegmenter::warn_of_darkness(const Frame& frame) {
+  if (has_warned_ || !network_.brightened()) return;
+  has_warned_ = true;
   log_(LogLevel::kWarning, "dark images, such as frame " + std::to_string(frame.index) +
                                ", are brightened for the network; more light or a longer exposure "
                                "helps");

@@ -47,7 +47,7 @@ class OpenCvDnnSegmenter final : public Segmenter {
   [[noreturn]] void refuse(const cv::Mat& output, const std::string& expected) const;
   Segmentation from_scores(const cv::Mat& output, const Frame& frame);
   Segmentation from_boxes(std::vector<Detection> found, const Frame& frame) const;
-  void tell_of_darkness(const Frame& frame);
+  void warn_of_darkness(const Frame& frame);
 
   Options options_;
   ClassNames classes_;
@@ -55,7 +55,7 @@ class OpenCvDnnSegmenter final : public Segmenter {
   CellGrid grid_;        // for the image size seen last
   unsigned images_ = 0;  // seen so far
   std::function<void(LogLevel, std::string_view)> log_;
-  bool told_ = false;  // that images are dark
+  bool has_warned_ = false;  // that images are dark
 };
 
 }  // namespace stillpoint::segmenter_opencv_dnn

@@ -13,14 +13,14 @@ bool is_small(const Segmentation& segmentation, std::size_t object, const Frame&
               const SmallestObject& smallest) {
   if (segmentation.objects[object].pixels < std::max(1, smallest.pixels)) return true;
   if (smallest.area <= 0) return false;
-  const std::optional<double> area = seen_area(segmentation, object, frame);
+  const std::optional<double> area = visible_area(segmentation, object, frame);
   return area && segmentation.objects[object].score * *area < smallest.area;
 }
 
 }  // namespace
 
-std::optional<double> seen_area(const Segmentation& segmentation, std::size_t object,
-                                const Frame& frame) {
+std::optional<double> visible_area(const Segmentation& segmentation, std::size_t object,
+                                   const Frame& frame) {
   const cv::Rect box = segmentation.objects[object].box;
   const int pixels = segmentation.objects[object].pixels;
   if (frame.depth.empty() || !frame.camera) return std::nullopt;

@@ -16,8 +16,8 @@ struct SmallestObject {
 /// In square metres, of the part of the object that is seen, as if it faced the camera. Pixels
 /// without a measurement are taken to be as far as the others. Nothing where less than a quarter of
 /// the object has depth.
-std::optional<double> seen_area(const Segmentation& segmentation, std::size_t object,
-                                const Frame& frame);
+std::optional<double> visible_area(const Segmentation& segmentation, std::size_t object,
+                                   const Frame& frame);
 
 /// Makes background of objects that are smaller. Those of unknown area stay.
 void remove_small_objects(Segmentation& segmentation, const Frame& frame,

@@ -33,8 +33,8 @@ struct TwoParts : ::testing::Test {
 
 TEST_F(TwoParts, AreaIsThatOfTheSurface) {
   const std::size_t near = segmentation.objects[0].box == left ? 0 : 1;
-  EXPECT_NEAR(*seen_area(segmentation, near, frame), 0.06, 1e-9);
-  EXPECT_NEAR(*seen_area(segmentation, 1 - near, frame), 0.54, 1e-9);
+  EXPECT_NEAR(*visible_area(segmentation, near, frame), 0.06, 1e-9);
+  EXPECT_NEAR(*visible_area(segmentation, 1 - near, frame), 0.54, 1e-9);
 }
 
 TEST_F(TwoParts, WhatIsSmallBecomesBackground) {

@@ -10,6 +10,7 @@
 #include "ros2_messages/cost_map_file.hpp"
 #include "stillpoint/support/image_codec.hpp"
 #include "support/recording_writer.hpp"
+#include "tum_recording/recording.hpp"
 
 namespace stillpoint::testing {
 namespace {
@@ -81,6 +82,13 @@ FuzzTarget icl_nuim(const std::string& name, const std::string& seed) {
 FuzzTarget icl_nuim_view() { return icl_nuim("scene_000.txt", kView); }
 FuzzTarget icl_nuim_depth() { return icl_nuim("scene_000.depth", kDistances); }
 
+FuzzTarget associations() {
+  return one_file("associations.txt",
+                  "1305031102.175304 rgb/a.png 1305031102.160407 depth/a.png\n"
+                  "1305031102.211214 depth/b.png 1305031102.226738 rgb/b.png\n",
+                  {}, [](const fs::path& folder) { tum_recording::open_recording(folder); });
+}
+
 FuzzTarget cost_map() {
   return one_file("map.yaml",
                   "image: \"map.pgm\"\nresolution: 0.05\norigin: [-1.5, -2, 0]\n"
@@ -94,7 +102,8 @@ FuzzTarget cost_map() {
 std::vector<NamedFuzzTarget> folder_targets() {
   return {{"EurocList", euroc_list},        {"EurocSensor", euroc_sensor},
           {"EurocTruth", euroc_truth},      {"IclNuimView", icl_nuim_view},
-          {"IclNuimDepth", icl_nuim_depth}, {"CostMap", cost_map}};
+          {"IclNuimDepth", icl_nuim_depth}, {"CostMap", cost_map},
+          {"Associations", associations}};
 }
 
 }  // namespace stillpoint::testing

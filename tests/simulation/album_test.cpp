@@ -1,10 +1,12 @@
 #include "simulation/album.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "simulation/simulator.hpp"
 #include "small_camera.hpp"
 #include "stillpoint/error.hpp"
+#include "support/error_text.hpp"
 #include "support/image_io.hpp"
 #include "support/recording_writer.hpp"
 
@@ -41,6 +43,15 @@ TEST_F(AlbumTest, AFolderWithoutPhotographsIsRefused) {
   EXPECT_THROW(Album{folder_.path()}, Error);
   folder_.write("c.png", "damaged");
   EXPECT_THROW(Album{folder_.path()}, Error);
+}
+
+TEST_F(AlbumTest, MorePhotographsThanMemoryAreRefusedBeforeTheyAreDecoded) {
+  // The header of a PNG file of 10,000 x 10,000 pixels, without pixels.
+  const std::string header(
+      "\x89PNG\r\n\x1a\n\0\0\0\rIHDR\0\0\x27\x10\0\0\x27\x10\x08\2\0\0\0\0\0\0\0", 33);
+  for (int i = 0; i < 8; ++i) folder_.write("large" + std::to_string(i) + ".png", header);
+  EXPECT_THAT(testing::error_text(Fault::kUsage, [&] { Album{folder_.path()}; }),
+              ::testing::HasSubstr("its photographs take 2288 MiB of memory"));
 }
 
 TEST_F(AlbumTest, TheyCoverTheRoom) {

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <opencv2/core.hpp>
 
+#include "simulation/simulator.hpp"
+
 namespace stillpoint::simulation {
 namespace {
 
@@ -33,6 +35,17 @@ TEST(Sensor, DepthNoiseGrowsWithTheSquareOfTheDistance) {
   const double near = depth_sigma(0.6F);
   EXPECT_NEAR(near, 0.055 / 43.5 * 0.36, 0.25 * near);
   EXPECT_NEAR(depth_sigma(1.2F) / near, 4, 0.4);
+}
+
+// What stages assume of the simulated camera is what it does, with quantisation.
+TEST(Sensor, ItsNoiseIsThatOfItsCamera) {
+  const double stated = default_camera().surface_noise;
+  for (const float depth : {0.9F, 1.7F, 3.1F}) {
+    const cv::Mat image = Sensor({}, 1, 10000, 1).depth_image(wall(depth), 0);
+    cv::Scalar mean, deviation;
+    cv::meanStdDev(image, mean, deviation, image > 0);
+    EXPECT_NEAR(deviation[0] / 10000 / (depth * depth), stated, 0.25 * stated) << depth;
+  }
 }
 
 TEST(Sensor, DisparityComesInSteps) {

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/LU>
 #include <random>
 
 namespace stillpoint {
@@ -15,16 +16,16 @@ class RigidMotionTest : public ::testing::Test {
       const double z = plane > 0 ? plane : uniform(1, 5);
       const Eigen::Vector3d p = camera_.unproject(uniform(20, 620), uniform(20, 460), z);
       const Eigen::Vector3d q = motion * p;
-      const Eigen::Vector2d pixel = camera_.project(q) + 0.2 * Eigen::Vector2d(normal(), normal());
+      const Eigen::Vector2d pixel =
+          camera_.project(q) + noise_.pixel * Eigen::Vector2d(normal(), normal());
       if (!camera_.contains(pixel.x(), pixel.y())) continue;
-      const double inverse = 1 / q.z() + 0.001 * normal();
+      const double inverse = 1 / q.z() + noise_.inverse_depth * normal();
       matches_.push_back({p, camera_.unproject(pixel.x(), pixel.y(), 1 / inverse), pixel, weight});
       --count;
     }
   }
   std::optional<RigidMotion> find(std::span<const Pose> guesses = {}, std::uint64_t seed = 1) {
-    return find_rigid_motion(matches_, camera_, {.pixel = 0.4, .inverse_depth = 0.004}, guesses, 60,
-                             seed);
+    return find_rigid_motion(matches_, camera_, kAssumed, guesses, 60, seed);
   }
   static void expect_near(const Pose& a, const Pose& b) {
     EXPECT_LT((a.inverse() * b).translation().norm(), 0.003);
@@ -36,8 +37,10 @@ class RigidMotionTest : public ::testing::Test {
   }
   double normal() { return std::normal_distribution<>()(random_); }
 
+  static constexpr RigidNoise kAssumed{.pixel = 0.4, .inverse_depth = 0.004};
   std::mt19937_64 random_{7};
   Camera camera_;
+  RigidNoise noise_{.pixel = 0.2, .inverse_depth = 0.001};  // of the measurements
   std::vector<RigidMatch> matches_;
   Pose motion_ = exp_se3((Vector6d() << 0.05, -0.02, 0.04, 0.01, 0.03, -0.02).finished());
   Pose other_ = exp_se3((Vector6d() << -0.2, 0.03, 0.02, 0, 0.02, 0.05).finished());
@@ -98,6 +101,23 @@ TEST_F(RigidMotionTest, UncertaintyGrowsWithFewerMatches) {
   const double many = pixel_uncertainty(*find(), camera_, {0, 0, 2});
   EXPECT_LT(many, few / 3);
   EXPECT_GT(many, 0);
+}
+
+// The squared error in standard deviations has a mean of 5.4: six for least squares; the biweight
+// counts residuals for less and takes the motion for less certain than it is.
+TEST_F(RigidMotionTest, UncertaintyIsThatOfItsErrors) {
+  constexpr int kTrials = 300;
+  noise_ = kAssumed;
+  double sum = 0;
+  for (int i = 0; i < kTrials; ++i) {
+    matches_.clear();
+    add(120, motion_);
+    const auto found = find({&motion_, 1});
+    ASSERT_TRUE(found);
+    const Vector6d error = log_se3(found->target_from_source * motion_.inverse());
+    sum += error.dot(found->covariance.inverse() * error);
+  }
+  EXPECT_NEAR(sum / kTrials, 5.4, 1.2);
 }
 
 }  // namespace

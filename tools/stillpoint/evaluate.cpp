@@ -87,7 +87,8 @@ void add_evaluate(CLI::App& app) {
   file("--estimate", arguments->estimate, "Estimated trajectory, in any of these formats")
       ->required();
   file("--frames", arguments->frames,
-       "List of the recording's frames (rgb.txt, associations.txt) for the coverage");
+       "List of all frames of the recording (rgb.txt, associations.txt), to tell how many of them "
+       "have a pose");
   evaluation::EvaluationOptions& options = arguments->options;
   number("--max-difference", options.max_difference,
          "Largest time difference of poses that are compared, s", 1e-6, 1.0);

@@ -51,15 +51,22 @@ void print_inspection(InspectArguments arguments) {
 }
 
 void add_topic_options(CLI::App& command, bag::TopicNames& topics) {
-  command.add_option("--color-topic", topics.color, "Colour images of a bag; default: found")
+  command
+      .add_option("--color-topic", topics.color,
+                  "Topic of the colour images in a bag; default: chosen by type and name")
       ->type_name("TOPIC");
-  command.add_option("--depth-topic", topics.depth, "Depth images of a bag; default: found")
+  command
+      .add_option("--depth-topic", topics.depth,
+                  "Topic of the depth images in a bag; default: chosen by type and name")
       ->type_name("TOPIC");
-  command.add_option("--info-topic", topics.info, "CameraInfo of a bag; default: found")
+  command
+      .add_option("--info-topic", topics.info,
+                  "Topic of the CameraInfo in a bag; default: that beside the colour images")
       ->type_name("TOPIC");
   command
       .add_option("--depth-info-topic", topics.depth_info,
-                  "CameraInfo of depth that is not registered; default: found")
+                  "Topic of the CameraInfo of depth that is not registered to colour; default: "
+                  "that beside the depth images")
       ->type_name("TOPIC");
 }
 
@@ -89,7 +96,9 @@ void add_inspect(CLI::App& app) {
   command->add_option("--time-offset", pairing.time_offset, "Added to the depth stamps, s")
       ->capture_default_str()
       ->check(CLI::Range(-10.0, 10.0));
-  command->add_option("--samples", arguments->options.samples, "Pairs whose images are read")
+  command
+      ->add_option("--samples", arguments->options.samples,
+                   "Number of pairs whose images are read and checked")
       ->capture_default_str()
       ->check(CLI::PositiveNumber);
   add_topic_options(*command, arguments->topics);

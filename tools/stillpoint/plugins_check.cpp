@@ -147,16 +147,23 @@ void add_plugins_check(CLI::App& plugins) {
   command->add_option("library", options->request.library, "build/libstillpoint_NAME.so")
       ->type_name("FILE")
       ->required();
-  command->add_option("type", options->request.type, "TYPE or KIND/TYPE; otherwise all")
+  command
+      ->add_option("type", options->request.type,
+                   "Type to check, TYPE or KIND/TYPE; default: all of the library")
       ->type_name("TYPE");
-  command->add_option("--case", options->request.only, "One case alone: 'black images'")
+  command
+      ->add_option("--case", options->request.only,
+                   "Run one case only, as in --case 'black images'")
       ->type_name("NAME");
   command
       ->add_option("--set", options->request.assignments,
-                   "OPTION=VALUE of the types that are checked; may be repeated")
+                   "Set an option of the types that are checked; may be repeated")
       ->type_name("OPTION=VALUE")
       ->allow_extra_args(false);
-  command->add_option("--camera", options->camera, "Camera of a source that needs one")
+  command
+      ->add_option(
+          "--camera", options->camera,
+          "Camera file, or the name of one in configs/cameras, for a source that needs one")
       ->type_name("CAMERA");
   command->add_option("--timeout", options->request.seconds, "Seconds that a case may take")
       ->type_name("S")

@@ -139,8 +139,9 @@ void add_report(CLI::App& app) {
       ->type_name("DIR");
   command
       ->add_option("--base", arguments->base,
-                   "Pipeline with whose options those of each run are compared. Default: the file "
-                   "that was run; of several runs, the first one; of a study, the baseline")
+                   "Pipeline file or name; the page lists in which options each run differs from "
+                   "it. Default: the file that was run; for several runs, the pipeline of the "
+                   "first; for a study, its baseline")
       ->type_name("PIPELINE");
   command->callback([arguments] { write_report(*arguments); });
 }

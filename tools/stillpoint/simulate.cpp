@@ -109,7 +109,7 @@ void add_simulate(CLI::App& app) {
       ->allow_extra_args(false);
   command->add_option("--frames", arguments->frames, "Stop after this many frames")
       ->check(CLI::PositiveNumber);
-  command->add_option("--threads", arguments->threads, "Default: one per core")
+  command->add_option("--threads", arguments->threads, "Threads that render; default: one per core")
       ->check(CLI::PositiveNumber);
   command->add_flag("-q,--quiet", arguments->quiet, "Print only warnings and errors");
   command->callback([arguments] { simulate(*arguments); });

@@ -184,11 +184,17 @@ bool CostMapOptions::is_floor(const std::vector<double>& numbers) {
 
 void CostMapOptions::visit(OptionVisitor& v) {
   v("from", from,
-    {.min = 0, .max = 10, .unit = "m", .help = "above the floor; what is lower is no obstacle"});
+    {.min = 0,
+     .max = 10,
+     .unit = "m",
+     .help = "height above the floor; what is lower is no obstacle"});
   v("to", to,
-    {.min = 0, .max = 10, .unit = "m", .help = "above the floor; what is higher is no obstacle"});
+    {.min = 0,
+     .max = 10,
+     .unit = "m",
+     .help = "height above the floor; what is higher is no obstacle"});
   v("robot_radius", robot_radius,
-    {.min = 0, .max = 10, .unit = "m", .help = "obstacles grow by it"});
+    {.min = 0, .max = 10, .unit = "m", .help = "obstacles are inflated by this radius"});
   v("floor", floor,
     {.help = "upward direction x, y, z in the world, and the floor's height along it in m; without "
              "the height, or without all, it is found in the map"});

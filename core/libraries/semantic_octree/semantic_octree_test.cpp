@@ -35,7 +35,7 @@ SemanticOctree map_of(const TestRoom& room, const std::vector<Pose>& poses) {
   SemanticOctree tree(kResolution);
   ScanBricks scan({.resolution = kResolution, .range = 6.0});
   for (const Pose& pose : poses) {
-    scan.scan(room.see(pose));
+    scan.scan(room.render(pose));
     tree.add(scan, scan.bricks(), kOctomapModel);
   }
   return tree;
@@ -44,7 +44,7 @@ SemanticOctree map_of(const TestRoom& room, const std::vector<Pose>& poses) {
 octomap::OcTree map_by_octomap(const TestRoom& room, const std::vector<Pose>& poses) {
   octomap::OcTree tree(kResolution);
   for (const Pose& pose : poses) {
-    const DenseKeyFrame keyframe = room.see(pose);
+    const DenseKeyFrame keyframe = room.render(pose);
     octomap::Pointcloud cloud;
     for (int v = 0; v < keyframe.frame->depth.rows; ++v)
       for (int u = 0; u < keyframe.frame->depth.cols; ++u) {
@@ -109,7 +109,7 @@ TEST(SemanticOctree, WhatIsGoneIsForgotten) {
   SemanticOctree tree(kResolution);
   ScanBricks scan({.resolution = kResolution, .range = 6.0});
   const auto add = [&] {
-    scan.scan(room.see(pose));
+    scan.scan(room.render(pose));
     tree.add(scan, scan.bricks(), kOctomapModel);
   };
   for (int i = 0; i < 3; ++i) add();
@@ -126,7 +126,7 @@ TEST(SemanticOctree, WhatIsGoneIsForgotten) {
 TEST(SemanticOctree, WithoutCarvingNothingIsEverFree) {
   SemanticOctree tree(kResolution);
   ScanBricks scan({.resolution = kResolution, .range = 6.0, .carve = false});
-  scan.scan(TestRoom().see(looking({0.5, -1.0, 1.3}, 0.0)));
+  scan.scan(TestRoom().render(looking({0.5, -1.0, 1.3}, 0.0)));
   tree.add(scan, scan.bricks(), kOctomapModel);
   for (auto leaf = tree.begin_leafs(); leaf != tree.end_leafs(); ++leaf)
     ASSERT_GT(leaf->getLogOdds(), 0);
@@ -156,10 +156,37 @@ TEST(SemanticOctree, OctomapReadsItsFiles) {
   }
 }
 
+// A wall 3 m away. Where free space ends, nothing is known up to the wall.
+TEST(SemanticOctree, FreeSpaceEndsStandardDeviationsBeforeASurface) {
+  constexpr double kEye = 0.02;  // m; the wall is not between two voxels
+  for (const double noise : {0.002, 0.02}) {
+    SCOPED_TRACE(noise);
+    auto camera = std::make_shared<Camera>(
+        Camera{.width = 64, .height = 48, .fx = 60, .fy = 60, .cx = 31.5, .cy = 23.5});
+    camera->surface_noise = noise;
+    auto frame = std::make_shared<Frame>();
+    frame->camera = camera;
+    frame->depth = cv::Mat(48, 64, CV_32FC1, cv::Scalar(3));
+    frame->bgr = cv::Mat::zeros(48, 64, CV_8UC3);
+    ScanBricks scan({.resolution = kResolution, .range = 6.0, .sigmas_before_surface = 2.0});
+    scan.scan({.frame = frame, .world_from_camera = looking({kEye, kEye, kEye}, 0)});
+    SemanticOctree tree(kResolution);
+    tree.add(scan, scan.bricks(), kOctomapModel);
+    const auto voxel = [&](double distance) { return tree.search(kEye, kEye + distance, kEye); };
+    const double end = 3 - 2 * noise * 3 * 3;
+    ASSERT_TRUE(voxel(end - 0.06));
+    EXPECT_LT(voxel(end - 0.06)->getLogOdds(), 0);
+    for (double distance = end; distance < 2.97; distance += kResolution)
+      EXPECT_FALSE(voxel(distance)) << distance;
+    ASSERT_TRUE(voxel(3));
+    EXPECT_GT(voxel(3)->getLogOdds(), 0);
+  }
+}
+
 TEST(SemanticOctree, NothingSeenChangesNothing) {
   SemanticOctree tree(kResolution);
   ScanBricks scan({.resolution = kResolution});
-  DenseKeyFrame keyframe = TestRoom().see(looking({0, 0, 1}, 0));
+  DenseKeyFrame keyframe = TestRoom().render(looking({0, 0, 1}, 0));
   auto blind = std::make_shared<Frame>(*keyframe.frame);
   blind->depth = cv::Mat::zeros(keyframe.frame->depth.size(), CV_32FC1);
   keyframe.frame = blind;

@@ -33,7 +33,7 @@ class TestMap {
     for (KeyFrameId id = 0; id < 24; ++id) {
       Pose pose = looking({0.1, -0.4, 1.31}, 0.55 * id);
       if (id % 2 == 1) pose.rotate(Eigen::AngleAxisd(-0.8, Eigen::Vector3d::UnitX()));
-      scan.scan(room.see(pose, id));
+      scan.scan(room.render(pose, id));
       tree_.add(scan, scan.bricks(), model);
     }
   }

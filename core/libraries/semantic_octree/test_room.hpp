@@ -57,7 +57,7 @@ class TestRoom {
     return {best, surface};
   }
 
-  DenseKeyFrame see(const Pose& world_from_camera, KeyFrameId id = 0) const {
+  DenseKeyFrame render(const Pose& world_from_camera, KeyFrameId id = 0) const {
     auto frame = std::make_shared<Frame>();
     auto segmentation = std::make_shared<Segmentation>();
     frame->index = id;

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdint>
 #include <opencv2/imgproc.hpp>
+#include <string>
 
 #include "stillpoint/error.hpp"
 #include "stillpoint/support/image_codec.hpp"
@@ -12,6 +14,9 @@ namespace stillpoint::simulation {
 namespace {
 
 namespace fs = std::filesystem;
+
+constexpr std::uint64_t kBytesPerPixel = 3;
+constexpr std::uint64_t kMostBytes = std::uint64_t{2} << 30;  // of all photographs, decoded
 
 bool is_image(const fs::path& file) {
   static constexpr std::array<const char*, 4> kExtensions = {".jpg", ".jpeg", ".png", ".webp"};
@@ -32,10 +37,26 @@ std::vector<fs::path> images_in(const fs::path& folder) {
   return images;
 }
 
+/// Of what the headers state, before anything is decoded.
+void require_size(const fs::path& folder, const std::vector<fs::path>& files) {
+  std::uint64_t bytes = 0;
+  for (const fs::path& file : files)
+    if (const auto size = stated_image_size(read_image_file(file)))
+      bytes += kBytesPerPixel * static_cast<std::uint64_t>(size->width) * size->height;
+  if (bytes > kMostBytes)
+    throw Error(Fault::kUsage,
+                "its photographs take " + std::to_string(bytes >> 20) + " MiB of memory",
+                folder.string(),
+                "choose some, or make them smaller; at most " + std::to_string(kMostBytes >> 20) +
+                    " MiB are used");
+}
+
 }  // namespace
 
 Album::Album(const fs::path& folder) {
-  for (const fs::path& file : images_in(folder)) {
+  const std::vector<fs::path> files = images_in(folder);
+  require_size(folder, files);
+  for (const fs::path& file : files) {
     photographs_.push_back(decode_image(read_image_file(file), cv::IMREAD_COLOR));
     if (photographs_.back().empty())
       throw Error(Fault::kUsage, "the photograph cannot be read", file.string());

@@ -4,12 +4,14 @@
 #include <atomic>
 #include <exception>
 #include <mutex>
+#include <system_error>
 #include <thread>
 #include <vector>
 
 namespace stillpoint::simulation {
 
-/// Calls body(i) for 0 <= i < count; the caller's thread works as well. Rethrows the first fault.
+/// Calls body(i) for 0 <= i < count; the caller's thread works as well, alone where the system has
+/// no thread to give. Rethrows the first fault.
 template <class Body>
 void parallel_for(int threads, int count, Body&& body) {
   std::atomic<int> next = 0;
@@ -26,7 +28,10 @@ void parallel_for(int threads, int count, Body&& body) {
   };
   {
     std::vector<std::jthread> helpers;
-    for (int i = 1; i < threads && i < count; ++i) helpers.emplace_back(work);
+    try {
+      for (int i = 1; i < threads && i < count; ++i) helpers.emplace_back(work);
+    } catch (const std::system_error&) {  // those there are do the work
+    }
     work();
   }
   if (fault) std::rethrow_exception(fault);

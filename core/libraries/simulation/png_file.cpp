@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <fstream>
 #include <memory>
+#include <new>
 #include <string_view>
 #include <vector>
 
@@ -88,11 +89,16 @@ Bytes filtered(const cv::Mat& image) {
   return result;
 }
 
-Bytes compressed(const Bytes& data) {
+std::unique_ptr<libdeflate_compressor, Deleter> make_compressor() {
   constexpr int kFastest = 1;
+  std::unique_ptr<libdeflate_compressor, Deleter> compressor(libdeflate_alloc_compressor(kFastest));
+  if (!compressor) throw std::bad_alloc();
+  return compressor;
+}
+
+Bytes compressed(const Bytes& data) {
   // One per thread: making one costs as much as a small image.
-  thread_local const std::unique_ptr<libdeflate_compressor, Deleter> compressor(
-      libdeflate_alloc_compressor(kFastest));
+  thread_local const auto compressor = make_compressor();
   Bytes result(libdeflate_zlib_compress_bound(compressor.get(), data.size()));
   result.resize(libdeflate_zlib_compress(compressor.get(), data.data(), data.size(), result.data(),
                                          result.size()));

@@ -3,8 +3,11 @@
 #include <embree3/rtcore.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cstring>
+#include <new>
 
+#include "simulation/out_of_memory.hpp"
 #include "stillpoint/error.hpp"
 
 namespace stillpoint::simulation {
@@ -17,6 +20,12 @@ constexpr float kMiddle = 0.5F;
 constexpr RTCSceneFlags kForImages = RTC_SCENE_FLAG_NONE;
 constexpr RTCSceneFlags kForLight = RTC_SCENE_FLAG_ROBUST;
 constexpr float kFirstHit = 0.02F;  // metres from the camera
+
+// Bytes of address space. Without them, Embree and its scheduler may end the process, or fail and
+// wait for ever later on: 144 MiB were needed to begin with a small mesh.
+constexpr std::size_t kToStart = std::size_t{160} << 20;
+constexpr std::size_t kPerTriangle = 1024;
+constexpr std::size_t kPerScene = std::size_t{4} << 20;
 
 template <auto Release>
 struct Releaser {
@@ -33,14 +42,26 @@ using Geometry = std::unique_ptr<RTCGeometryTy, Releaser<rtcReleaseGeometry>>;
 void require_no_error(RTCDevice device) {
   const RTCError code = rtcGetDeviceError(device);
   if (code == RTC_ERROR_NONE) return;
+  if (code == RTC_ERROR_OUT_OF_MEMORY) throw std::bad_alloc();
   throw Error(Fault::kStage,
-              code == RTC_ERROR_OUT_OF_MEMORY
-                  ? std::string("Embree has not enough memory")
-                  : "Embree failed, with its error " + std::to_string(static_cast<int>(code)),
+              "Embree failed, with its error " + std::to_string(static_cast<int>(code)),
               "simulation");
 }
 
+RTCDevice new_device() {
+  // After a failed start, Embree waits for ever where a device is released.
+  static std::atomic<bool> has_failed = false;
+  if (has_failed) throw Error(Fault::kStage, "Embree cannot be started again", "simulation");
+  require_memory(kToStart);
+  RTCDevice device = rtcNewDevice("threads=1,set_affinity=0");
+  if (device) return device;
+  has_failed = true;
+  require_no_error(nullptr);
+  throw Error(Fault::kStage, "Embree cannot be started", "simulation");
+}
+
 Scene mesh_scene(RTCDevice device, const Mesh& mesh, RTCSceneFlags flags) {
+  require_memory(kPerScene + kPerTriangle * mesh.triangles.size());
   const Geometry geometry(rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE));
   void* vertices =
       rtcSetNewGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
@@ -48,7 +69,7 @@ Scene mesh_scene(RTCDevice device, const Mesh& mesh, RTCSceneFlags flags) {
   void* triangles =
       rtcSetNewGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
                               3 * sizeof(std::uint32_t), mesh.triangles.size());
-  if (!vertices || !triangles) throw Error(Fault::kStage, "no memory for a mesh", "simulation");
+  if (!vertices || !triangles) throw std::bad_alloc();
   std::ranges::copy(mesh.vertices, static_cast<Eigen::Vector3f*>(vertices));
   std::memcpy(triangles, mesh.triangles.data(), mesh.triangles.size() * 3 * sizeof(std::uint32_t));
   rtcCommitGeometry(geometry.get());
@@ -80,6 +101,7 @@ class BodyScene {
 
   /// The moments are spread evenly from `begin` to `end`, one alone lies in the middle.
   void pose(const std::vector<const Body*>& bodies, double begin, double end) {
+    require_memory(kPerScene);
     for (std::size_t i = 0; i < bodies.size(); ++i) {
       for (unsigned step = 0; step < steps_; ++step) {
         const double share = steps_ == 1 ? kMiddle : static_cast<double>(step) / (steps_ - 1);
@@ -110,8 +132,7 @@ class BodyScene {
 class RayCaster::Impl {
  public:
   Impl(const Mesh& room, RTCSceneFlags flags)
-      : device_(rtcNewDevice("threads=1,set_affinity=0")),
-        room_(scene_of(device_.get(), room, flags)) {}
+      : device_(new_device()), room_(mesh_scene(device_.get(), room, flags)) {}
 
   void add_bodies(const std::vector<Body>& bodies) {
     for (const Body& body : bodies) {
@@ -135,11 +156,6 @@ class RayCaster::Impl {
   }
 
  private:
-  static Scene scene_of(RTCDevice device, const Mesh& mesh, RTCSceneFlags flags) {
-    if (!device) throw Error(Fault::kStage, "Embree cannot be started", "simulation");
-    return mesh_scene(device, mesh, flags);
-  }
-
   Device device_;
   Scene room_;
   std::vector<Scene> parts_;
@@ -148,11 +164,17 @@ class RayCaster::Impl {
   BodyScene still_{device_.get(), 1};  // in the middle: most rays, and these are faster
 };
 
-RayCaster::RayCaster(const World& world) : impl_(std::make_unique<Impl>(world.room, kForImages)) {
+RayCaster::RayCaster(const World& world) try
+    : impl_(std::make_unique<Impl>(world.room, kForImages)) {
   impl_->add_bodies(world.bodies);
+} catch (...) {
+  rethrow_named();
 }
 
-RayCaster::RayCaster(const Mesh& mesh) : impl_(std::make_unique<Impl>(mesh, kForLight)) {}
+RayCaster::RayCaster(const Mesh& mesh) try : impl_(std::make_unique<Impl>(mesh, kForLight)) {
+} catch (...) {
+  rethrow_named();
+}
 
 RayCaster::~RayCaster() = default;
 

@@ -26,7 +26,8 @@ struct Hit {
   float v = 0;             ///< weight of the face's third corner
 };
 
-/// The world must outlive the caster. Casting is const and may be done by several threads.
+/// The world must outlive the caster. Casting is const and may be done by several threads. Throws
+/// Error(kStage) where Embree fails or would have too little memory.
 class RayCaster {
  public:
   explicit RayCaster(const World& world);

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "simulation/out_of_memory.hpp"
 #include "simulation/png_file.hpp"
 #include "stillpoint/error.hpp"
 
@@ -52,7 +53,11 @@ std::ofstream RecordingWriter::open(const char* name, const char* header) const 
   return file;
 }
 
-void RecordingWriter::write(const SimulatedFrame& frame) { list(frame.index, write_images(frame)); }
+void RecordingWriter::write(const SimulatedFrame& frame) try {
+  list(frame.index, write_images(frame));
+} catch (...) {
+  rethrow_named();
+}
 
 RecordingWriter::Names RecordingWriter::write_images(const SimulatedFrame& frame) const {
   const std::string color_name = seconds(frame.time) + ".png";

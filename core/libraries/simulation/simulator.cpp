@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "simulation/out_of_memory.hpp"
 #include "stillpoint/error.hpp"
 
 namespace stillpoint::simulation {
@@ -32,21 +33,27 @@ CameraModel default_camera() {
           .surface_noise = 0.0016};
 }
 
-Simulator::Simulator(const SceneOptions& scene, const CameraModel& camera, int threads)
+Simulator::Simulator(const SceneOptions& scene, const CameraModel& camera, int threads) try
     : scene_(scene),
       camera_(checked(camera)),
       world_(std::make_shared<const World>(build_world(scene))),
       motion_(scene.motion, scene.seed),
       renderer_(*world_, motion_, camera_.undistorted(), threads),
-      sensor_(scene.sensor, scene.seed, camera.depth_factor, threads) {}
+      sensor_(scene.sensor, scene.seed, camera.depth_factor, threads) {
+} catch (...) {
+  rethrow_named();
+}
 
-Simulator::Simulator(const Simulator& other)
+Simulator::Simulator(const Simulator& other) try
     : scene_(other.scene_),
       camera_(other.camera_),
       world_(other.world_),
       motion_(other.motion_),
       renderer_(*world_, motion_, camera_.undistorted(), other.renderer_.threads()),
-      sensor_(other.sensor_) {}
+      sensor_(other.sensor_) {
+} catch (...) {
+  rethrow_named();
+}
 
 double Simulator::stamp(int index) const {
   return whole_microseconds(scene_.start_time + index / scene_.rate);
@@ -64,7 +71,7 @@ Pose Simulator::world_from_camera(double stamp) const {
   return motion_.world_from_camera(stamp - scene_.start_time);
 }
 
-SimulatedFrame Simulator::frame(int index) {
+SimulatedFrame Simulator::frame(int index) try {
   SimulatedFrame frame{.index = index, .time = stamp(index), .depth_time = depth_stamp(index)};
   const double time = frame.time - scene_.start_time;
   frame.world_from_camera = world_from_camera(frame.time);
@@ -76,6 +83,8 @@ SimulatedFrame Simulator::frame(int index) {
   frame.depth = sensor_.depth_image(
       together ? view : renderer_.render_geometry(frame.depth_time - scene_.start_time), index);
   return frame;
+} catch (...) {
+  rethrow_named();
 }
 
 }  // namespace stillpoint::simulation

@@ -21,7 +21,8 @@ struct SimulatedFrame {
 };
 
 /// Two simulators of the same options give the same bytes, whatever their number of threads and
-/// whichever frames are asked for.
+/// whichever frames are asked for. Where the scene does not fit into memory, constructors and
+/// frame() throw Error(kStage).
 class Simulator {
  public:
   /// Throws Error(kUsage) when the camera is not a plain pinhole camera.

@@ -5,6 +5,7 @@
 #include <opencv2/core/hal/interface.h>
 #include <algorithm>
 #include <cstring>
+#include <new>
 #include <opencv2/imgproc.hpp>
 #include <stdexcept>
 #include <string_view>
@@ -126,7 +127,9 @@ void PngDecoder::Deleter::operator()(libdeflate_decompressor* decompressor) cons
   libdeflate_free_decompressor(decompressor);
 }
 
-PngDecoder::PngDecoder() : decompressor_(libdeflate_alloc_decompressor()) {}
+PngDecoder::PngDecoder() : decompressor_(libdeflate_alloc_decompressor()) {
+  if (!decompressor_) throw std::bad_alloc();
+}
 PngDecoder::~PngDecoder() = default;
 
 bool PngDecoder::is_png(std::span<const std::uint8_t> file) {

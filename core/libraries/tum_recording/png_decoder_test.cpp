@@ -106,6 +106,22 @@ TEST(PngDecoder, HasOneSizeAtItsBeginning) {
   EXPECT_THROW(decoder.decode(late), std::runtime_error);
 }
 
+// A few bytes of pixels can be gigabytes: no more is unpacked than the size at the beginning needs.
+TEST(PngDecoder, UnpacksNoMoreAndNoLessThanItsSize) {
+  constexpr std::ptrdiff_t kHeader = 33;  // bytes: signature, and IHDR with its 13 bytes
+  PngDecoder decoder;
+  const auto small = encode(picture(4, 3, CV_8UC1));
+  const auto large = encode(cv::Mat::zeros(4000, 4000, CV_8UC1));
+  const auto with_pixels_of = [&](const auto& header, const auto& pixels) {
+    std::vector<std::uint8_t> file(header.begin(), header.begin() + kHeader);
+    file.insert(file.end(), pixels.begin() + kHeader, pixels.end());
+    return file;
+  };
+  EXPECT_THROW(decoder.decode(with_pixels_of(small, large)), std::runtime_error);
+  EXPECT_THROW(decoder.decode(with_pixels_of(large, small)), std::runtime_error);
+  EXPECT_TRUE(equal(decoder.decode(with_pixels_of(small, small)), picture(4, 3, CV_8UC1)));
+}
+
 TEST(PngDecoder, RefusesTruncatedAndDamagedFilesWhereverTheyAreHit) {
   PngDecoder decoder;
   const auto sound = encode(picture(40, 30, CV_8UC3));

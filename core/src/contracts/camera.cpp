@@ -36,12 +36,14 @@ void CameraModel::visit(OptionVisitor& v) {
     {.min = 1e-6,
      .max = 100,
      .unit = "m",
-     .help = "standard deviation of a point feature's depth at 1 m; grows with the square"});
+     .help = "standard deviation of a point feature's depth at 1 m, with errors of registration "
+             "and timing; grows with the square of the depth"});
   v("surface_noise", surface_noise,
     {.min = 1e-6,
      .max = 100,
      .unit = "m",
-     .help = "the same on a smooth surface: the sensor's own"});
+     .help = "standard deviation of depth on a smooth surface at 1 m; grows with the square of the "
+             "depth"});
   v("crop", crop, {.unit = "px", .help = "x, y, width, height of the part to use; empty for all"});
   v.require(distortion.empty() || distortion.size() == 4 || distortion.size() == 5,
             "distortion takes 4 or 5 numbers: k1, k2, p1, p2[, k3]");

@@ -214,7 +214,8 @@ void RuntimeOptions::visit(OptionVisitor& v) {
   v.choice("mode", mode, {{"inline", Mode::kInline}, {"threaded", Mode::kThreaded}},
            {.help = "one thread with reproducible results, or one per stage"});
   v.choice("pace", pace, {{"free", Pace::kFree}, {"sensor", Pace::kSensor}},
-           {.help = "as fast as possible, or as recorded, dropping frames while busy"});
+           {.help = "free: every frame, as fast as possible; sensor: at the recorded pace, "
+                    "dropping frames while tracking is busy"});
   v("seed", seed, {.min = 0, .help = "seed of all random numbers"});
   v("threads", threads,
     {.min = 1, .max = 256, .help = "threads of each solver; inline always uses 1"});
@@ -241,7 +242,8 @@ void SegmentationOptions::visit(OptionVisitor& v) {
   v("max_labelled", max_labelled,
     {.min = 0,
      .max = 1,
-     .help = "largest share of the image for one class; labels above it are discarded"});
+     .help = "when one class covers a larger share of the image, all labels of that image are "
+             "discarded"});
 }
 
 void SegmentationOptions::visit_in_segmenter(OptionVisitor& v) {

@@ -151,15 +151,22 @@ FeaturesPtr orb_features(const Frame& frame) {
   return features;
 }
 
+/// Knows its noise; without any, it has that of a usual sensor.
+std::shared_ptr<const Camera> camera_of(const TestRecordingOptions& options) {
+  Camera camera{.width = options.width,
+                .height = options.height,
+                .fx = 0.82 * options.width,
+                .fy = 0.82 * options.width,
+                .cx = (options.width - 1) / 2.0,
+                .cy = (options.height - 1) / 2.0};
+  if (options.depth_noise > 0) camera.surface_noise = options.depth_noise;
+  camera.depth_noise = std::max(camera.depth_noise, options.depth_noise);
+  return std::make_shared<const Camera>(camera);
+}
+
 }  // namespace
 
-TestRecording::TestRecording(const TestRecordingOptions& options)
-    : camera_(std::make_shared<const Camera>(Camera{.width = options.width,
-                                                    .height = options.height,
-                                                    .fx = 0.82 * options.width,
-                                                    .fy = 0.82 * options.width,
-                                                    .cx = (options.width - 1) / 2.0,
-                                                    .cy = (options.height - 1) / 2.0})) {
+TestRecording::TestRecording(const TestRecordingOptions& options) : camera_(camera_of(options)) {
   for (int i = 0; i < options.frames; ++i) views_.push_back(view_at(i, options));
 }
 

@@ -76,6 +76,14 @@ INSTANTIATE_TEST_SUITE_P(
                    "the key frame has no features"},
         TrackFault{"Weights", [](TrackResult& r) { r.keyframe->map_weights.pop_back(); },
                    "has 2 keypoints, but 1 map weights; give one of each per keypoint"},
+        TrackFault{"MoreWeights", [](TrackResult& r) { r.keyframe->track_weights.push_back(255); },
+                   "has 2 keypoints, but 3 track weights; give one of each per keypoint"},
+        TrackFault{"Descriptors", with_features([](Features& f) { f.descriptors.pop_back(); }),
+                   "has 2 keypoints, but 1 descriptors; give one of each per keypoint"},
+        TrackFault{"Depths", with_features([](Features& f) { f.depth.clear(); }),
+                   "has 2 keypoints, but 0 depths; give one of each per keypoint"},
+        TrackFault{"Landmarks", [](TrackResult& r) { r.keyframe->landmarks.pop_back(); },
+                   "has 2 keypoints, but 1 landmarks; give one of each per keypoint"},
         TrackFault{"Landmark", [](TrackResult& r) { r.keyframe->landmarks[0] = 0; },
                    "sees a landmark that is not in the map"},
         TrackFault{"KeyFramePose",
@@ -221,6 +229,26 @@ TEST(MappingResults, WrongCorrectionsAreRefused) {
   EXPECT_THAT(message({.landmarks = {{0, Eigen::Vector3d::Zero()}}}),
               HasSubstr("names landmark 0 of 0"));
   EXPECT_THAT(message({.fused = {{0, kNoId}}}), HasSubstr("names landmark 0 of 0"));
+}
+
+TEST(MappingResults, NewPositionsOfLandmarksAreFinite) {
+  MapEdit edit(map_with_keyframes(1));
+  KeyFrame seeing{.id = 1};
+  seeing.features = std::make_shared<const Features>(
+      Features{.keypoints = {{}}, .descriptors = {{}}, .depth = {1}});
+  seeing.landmarks = {kNoId};
+  edit.add_keyframe(std::move(seeing));
+  edit.add_observation(edit.add_landmark({.reference = 1}), {.keyframe = 1, .feature = 0});
+  const SparseMap map = edit.map();
+  const auto message = [&](const Eigen::Vector3d& position) {
+    return message_of([&] {
+      check_correction({.keyframe_id_end = 2, .landmarks = {{0, position}}}, map);
+    });
+  };
+  EXPECT_EQ(message({1, 2, 3}), "");
+  for (const double wrong : {kNan, 1e300, -1e8})
+    EXPECT_THAT(message({0, wrong, 0}), HasSubstr("the new position of landmark 0 is not finite, "
+                                                  "or beyond 10,000 km; leave out"));
 }
 
 TEST(MappingResults, WrongPointsOfADenseMapAreRefused) {

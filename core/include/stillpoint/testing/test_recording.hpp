@@ -24,7 +24,7 @@ struct TestRecordingOptions {
   double metres_per_second = 0.5;   ///< of the camera; 0: it stands still
   bool person = true;               ///< whether somebody walks through the picture
   std::uint32_t first_index = 0;    ///< of the frames
-  double depth_noise = 0.0;         ///< metres at 1 m; grows with the square of the depth
+  double depth_noise = 0.0;         ///< metres at 1 m, see Camera::surface_noise
   std::uint64_t seed = 1;           ///< of texture and noise
 };
 
