@@ -20,7 +20,7 @@ using ::testing::ElementsAre;
 using testing::error_text;
 using ::testing::HasSubstr;
 
-constexpr int kWidth = 16, kHeight = 8;
+constexpr int kWidth = 16, kHeight = 16;
 constexpr std::uint32_t kDepthStride = 40;  // bytes; 32 of them are pixels
 constexpr std::uint64_t kSecond = 1'000'000;
 
@@ -142,7 +142,7 @@ TEST_F(V4l2SourceTest, SaysWhatTheDeviceHas) {
   color_.pixels = V4L2_PIX_FMT_MJPEG;
   color_.width = 1280;
   EXPECT_THAT(refused(Fault::kUsage),
-              AllOf(HasSubstr("/dev/video0: it does not have 16 x 8 pixels of YUYV, but 1280 x 8 "
+              AllOf(HasSubstr("/dev/video0: it does not have 16 x 16 pixels of YUYV, but 1280 x 16 "
                               "pixels of MJPG"),
                     HasSubstr("v4l2-ctl --list-formats-ext -d /dev/video0")));
 }
