@@ -1,7 +1,8 @@
 #include "map_checks/depth_consistency.hpp"
 
 #include <algorithm>
-#include <vector>
+#include <functional>
+#include <utility>
 
 namespace stillpoint::map_checks {
 namespace {
@@ -43,26 +44,44 @@ void DepthConsistency::Options::visit(OptionVisitor& v) {
              "evidence"});
 }
 
+std::vector<const View*> DepthConsistency::overlapping_views(const cv::Mat& depth,
+                                                             const CellCamera& camera,
+                                                             const Pose& world_from_camera) const {
+  std::vector<std::pair<double, const View*>> by_overlap;
+  for (const View& view : memory_.views()) {
+    const double share = overlap(view, depth, camera, world_from_camera);
+    if (share >= kMinViewOverlap) by_overlap.emplace_back(-share, &view);
+  }
+  std::ranges::stable_sort(by_overlap, {}, &std::pair<double, const View*>::first);
+  std::vector<const View*> views;
+  for (const auto& [share, view] : by_overlap) views.push_back(view);
+  return views;
+}
+
 MapEvidence DepthConsistency::check(const Frame& frame, std::span<const Pose> guesses,
                                     const SparseMap& map) {
   const cv::Mat depth = sample_depth(frame.depth);
   const CellCamera camera(*frame.camera);
-  std::vector<const View*> views;
-  std::vector<std::pair<double, const View*>> by_overlap;
-  for (const View& view : memory_.views_in(map)) {
-    const double share = overlap(view, depth, camera, guesses.front());
-    if (share < kMinViewOverlap) continue;
-    views.push_back(&view);
-    by_overlap.emplace_back(-share, &view);
-  }
+  memory_.move_to(map);
+  std::vector<const View*> views = overlapping_views(depth, camera, guesses.front());
   if (views.empty()) return {};
-  std::ranges::stable_sort(by_overlap, {}, &std::pair<double, const View*>::first);
-  std::vector<const View*> best;
-  for (const auto& [share, view] : by_overlap) best.push_back(view);
-  const ViewAlignment alignment = align(depth, camera, guesses, best);
+  const ViewAlignment alignment = align(depth, camera, guesses, views);
   if (alignment.agreement < options_.min_agreement) return {};
+  std::ranges::sort(views, std::greater(), &View::time);
   return {surface_evidence(depth, camera, alignment.world_from_camera, frame.time, views,
                            options_.surface)};
+}
+
+void DepthConsistency::remember(const TrackedFrame& frame) {
+  if (!memory_.is_new_view(frame)) return;
+  View view = make_view(frame);
+  const std::vector<const View*> others =
+      overlapping_views(view.depth, view.camera, view.world_from_camera);
+  if (!others.empty()) {
+    view.tracked_from_depth = tracked_from_depth(view, others, options_.min_agreement);
+    view.world_from_camera = view.world_from_camera * view.tracked_from_depth;
+  }
+  memory_.add(std::move(view));
 }
 
 }  // namespace stillpoint::map_checks

@@ -24,9 +24,13 @@ class DepthConsistency final : public MapChecker {
 
   MapEvidence check(const Frame& frame, std::span<const Pose> guesses,
                     const SparseMap& map) override;
-  void remember(const TrackedFrame& frame) override { memory_.add(frame); }
+  void remember(const TrackedFrame& frame) override;
 
  private:
+  /// Those that have enough of the depth image in theirs, the one with most first.
+  std::vector<const View*> overlapping_views(const cv::Mat& depth, const CellCamera& camera,
+                                             const Pose& world_from_camera) const;
+
   Options options_;
   ViewMemory memory_;
 };

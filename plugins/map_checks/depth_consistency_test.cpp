@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <numbers>
 #include <optional>
 
@@ -40,7 +42,7 @@ class World {
   Pose way() const { return pose(0.1 * std::sin(time), 0, 0, 2 * std::cos(time)); }
 
   MapEvidence next(std::optional<std::vector<Pose>> guesses = std::nullopt) {
-    const auto frame = room.see(way(), time);
+    const auto frame = room.render(way(), time);
     const std::vector<Pose> poses = guesses ? *guesses : std::vector<Pose>{way()};
     const MapEvidence evidence = check_.check(*frame, poses, map_);
     check_.remember({.frame = frame,
@@ -148,7 +150,7 @@ TEST(DepthConsistency, TakesImagesOfAnySize) {
 TEST(DepthConsistency, NoDepthIsNoEvidence) {
   World world;
   world.after(2);
-  const auto frame = std::const_pointer_cast<Frame>(world.room.see(world.way(), world.time));
+  const auto frame = std::const_pointer_cast<Frame>(world.room.render(world.way(), world.time));
   frame->depth.setTo(0);
   DepthConsistency check({});
   const Pose here = world.way();
@@ -165,9 +167,11 @@ TEST(ViewMemory, KeepsTheOldAndTheNew) {
   TestRoom room({64, 48});
   ViewMemory memory({.views = 5});
   const auto weights = std::make_shared<const StaticWeights>();
-  for (int i = 0; i < 300; ++i)
-    memory.add({.frame = room.see(Pose::Identity(), i / 30.0), .weights = weights});
-  const auto& views = memory.views_in({});
+  for (int i = 0; i < 300; ++i) {
+    const TrackedFrame frame{.frame = room.render(Pose::Identity(), i / 30.0), .weights = weights};
+    if (memory.is_new_view(frame)) memory.add(make_view(frame));
+  }
+  const auto& views = memory.views();
   ASSERT_EQ(views.size(), 5u);
   EXPECT_GT(views.front().time, 9.0);
   EXPECT_LT(views.back().time, 1.0);
@@ -183,22 +187,25 @@ TEST(ViewMemory, ViewsMoveWithTheMap) {
   MapEdit edit({});
   edit.add_keyframe(keyframe);
   const SparseMap map = std::move(edit).finish();
-  memory.add({.frame = room.see(Pose::Identity(), 0),
-              .weights = std::make_shared<const StaticWeights>(),
-              .reference = 0,
-              .reference_from_camera = pose(0.5, 0, 0)});
-  EXPECT_TRUE(memory.views_in(map)[0].world_from_camera.isApprox(pose(1.5, 2, 3)));
+  View view = make_view({.frame = room.render(Pose::Identity(), 0),
+                         .weights = std::make_shared<const StaticWeights>(),
+                         .reference = 0,
+                         .reference_from_camera = pose(0.5, 0, 0)});
+  view.tracked_from_depth = pose(0, 0, 0.01);
+  memory.add(std::move(view));
+  memory.move_to(map);
+  EXPECT_TRUE(memory.views()[0].world_from_camera.isApprox(pose(1.5, 2, 3.01)));
 }
 
 TEST(ViewAlignment, FindsThePoseToMillimetres) {
   TestRoom room;
   ViewMemory memory({});
-  memory.add(
-      {.frame = room.see(Pose::Identity(), 0), .weights = std::make_shared<const StaticWeights>()});
-  const View& view = memory.views_in({})[0];
+  memory.add(make_view({.frame = room.render(Pose::Identity(), 0),
+                        .weights = std::make_shared<const StaticWeights>()}));
+  const View& view = memory.views()[0];
   const View* const views[] = {&view};
   const Pose true_pose = pose(0.05, -0.02, 0.04, 2);
-  const auto frame = room.see(true_pose, 1);
+  const auto frame = room.render(true_pose, 1);
   const Pose guess = true_pose * pose(0.02, 0.01, -0.015, 1);
   const ViewAlignment found =
       align(sample_depth(frame->depth), CellCamera(*frame->camera), {&guess, 1}, views);
@@ -211,11 +218,11 @@ TEST(ViewAlignment, FindsThePoseToMillimetres) {
 TEST(ViewAlignment, ANoisierSensorFitsAsWell) {
   TestRoom room;
   ViewMemory memory({});
-  memory.add(
-      {.frame = room.see(Pose::Identity(), 0), .weights = std::make_shared<const StaticWeights>()});
-  const View* const views[] = {&memory.views_in({})[0]};
+  memory.add(make_view({.frame = room.render(Pose::Identity(), 0),
+                        .weights = std::make_shared<const StaticWeights>()}));
+  const View* const views[] = {&memory.views()[0]};
   const Pose true_pose = pose(0.05, -0.02, 0.04, 2);
-  const auto frame = room.see(true_pose, 1);
+  const auto frame = room.render(true_pose, 1);
   Camera camera = *frame->camera;
   camera.surface_noise = 0.02;  // m at 1 m: ten times a Kinect's
   cv::RNG random(7);
@@ -228,6 +235,44 @@ TEST(ViewAlignment, ANoisierSensorFitsAsWell) {
   const ViewAlignment taken_for_a_kinect =
       align(noisy, CellCamera(*frame->camera), {&guess, 1}, views);
   EXPECT_LT(taken_for_a_kinect.agreement, 0.7);
+}
+
+/// A view of a camera that was tracked with an error, before one without.
+class BadlyTrackedView : public ::testing::Test {
+ protected:
+  Pose fitted(const Pose& error, const StaticWeights& weights = {}) const {
+    const View before = make_view({.frame = room_.render(Pose::Identity(), 0),
+                                   .weights = std::make_shared<const StaticWeights>()});
+    const View view = make_view({.frame = room_.render(true_pose_, 1),
+                                 .weights = std::make_shared<const StaticWeights>(weights),
+                                 .world_from_camera = true_pose_ * error});
+    const View* const others[] = {&before};
+    return tracked_from_depth(view, others, 0.5);
+  }
+
+ private:
+  TestRoom room_;
+  Pose true_pose_ = pose(0.05, -0.02, 0.04, 2);
+};
+
+TEST_F(BadlyTrackedView, FitsTheOthersToMillimetres) {
+  const Pose error = pose(0.01, 0, -0.012, 0.6);
+  const Pose left = error * fitted(error);
+  EXPECT_LT(left.translation().norm(), 0.006);
+  EXPECT_LT(rotation_angle(left), 0.003);
+}
+
+// Farther off, it is not the tracking.
+TEST_F(BadlyTrackedView, IsMovedByCentimetresAtMost) {
+  const Pose offset = fitted(pose(0, 0, -0.08));
+  EXPECT_GT(offset.translation().z(), 0.02);
+  EXPECT_LT(offset.translation().norm(), 0.026);
+}
+
+TEST_F(BadlyTrackedView, StaysWhereNothingInItIsStatic) {
+  StaticWeights weights;
+  weights.track = weights.map = cv::Mat(240, 320, CV_8U, cv::Scalar(0));
+  EXPECT_TRUE(fitted(pose(0, 0, -0.01), weights).isApprox(Pose::Identity()));
 }
 
 }  // namespace

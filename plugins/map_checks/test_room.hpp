@@ -32,7 +32,7 @@ class TestRoom {
                                 {{-6, 1.2, -1}, {6, 1.4, 5}},
                                 {{0.6, 0.5, 2.4}, {1.6, 1.2, 3.0}}};
 
-  std::shared_ptr<const Frame> see(const Pose& world_from_camera, double time) const {
+  std::shared_ptr<const Frame> render(const Pose& world_from_camera, double time) const {
     auto frame = std::make_shared<Frame>();
     frame->index = static_cast<std::uint32_t>(time * 30 + 0.5);
     frame->time = time;
@@ -51,7 +51,7 @@ class TestRoom {
     for (int y = 0; y < mask.rows; ++y)
       for (int x = 0; x < mask.cols; ++x) {
         const int u = x * cell + cell / 2, v = y * cell + cell / 2;
-        const auto z = static_cast<float>(hit(box, world_from_camera, ray(u, v)));
+        const auto z = static_cast<float>(intersect(box, world_from_camera, ray(u, v)));
         if (z <= depth_of(world_from_camera, u, v)) mask.at<std::uint8_t>(y, x) = 255;
       }
     return mask;
@@ -63,12 +63,13 @@ class TestRoom {
   float depth_of(const Pose& world_from_camera, int u, int v) const {
     double nearest = std::numeric_limits<float>::max();
     for (const TestBox& box : boxes)
-      nearest = std::min(nearest, hit(box, world_from_camera, ray(u, v)));
+      nearest = std::min(nearest, intersect(box, world_from_camera, ray(u, v)));
     return nearest < 100 ? static_cast<float>(nearest) : 0.0F;
   }
 
   // Depth along z at which a ray meets a box: the slab method.
-  static double hit(const TestBox& box, const Pose& world_from_camera, const Eigen::Vector3d& ray) {
+  static double intersect(const TestBox& box, const Pose& world_from_camera,
+                          const Eigen::Vector3d& ray) {
     const Eigen::Vector3d eye = world_from_camera.translation();
     const Eigen::Vector3d along = world_from_camera.linear() * ray;
     double enter = 0, leave = std::numeric_limits<double>::max();

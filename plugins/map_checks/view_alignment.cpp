@@ -26,6 +26,9 @@ constexpr double kCorrelated = 5.0;
 constexpr double kSurfaceSigma = 0.01;
 constexpr double kGuessPosition = 0.05;  // m, standard deviation of the guess
 constexpr double kGuessAngle = 0.05;     // rad
+// m and rad: what depth may be off from a tracked pose. More would follow a person who was not
+// recognised.
+constexpr double kMaxOffset = 0.025;
 
 struct Fit {
   int on_surface = 0;  // points that lie on a trusted surface
@@ -178,6 +181,18 @@ ViewAlignment align(const cv::Mat& depth, const CellCamera& camera, std::span<co
   const Fit at_refined = aligner.compare(refined);
   if (at_refined.on_surface >= most) return {refined, agreement(at_refined)};
   return {*best, agreement(aligner.compare(*best))};
+}
+
+Pose tracked_from_depth(const View& view, std::span<const View* const> others,
+                        double min_agreement) {
+  cv::Mat static_depth = view.depth.clone();
+  static_depth.setTo(0, view.trust == static_cast<int>(kNotStatic));
+  const Pose& tracked = view.world_from_camera;
+  const ViewAlignment alignment = align(static_depth, view.camera, {&tracked, 1}, others);
+  if (alignment.agreement < min_agreement) return Pose::Identity();
+  const Vector6d offset = log_se3(tracked.inverse() * alignment.world_from_camera);
+  const double size = std::max(offset.head<3>().norm(), offset.tail<3>().norm());
+  return exp_se3(offset * (kMaxOffset / std::max(size, kMaxOffset)));
 }
 
 }  // namespace stillpoint::map_checks

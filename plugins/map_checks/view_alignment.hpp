@@ -22,4 +22,12 @@ struct ViewAlignment {
 ViewAlignment align(const cv::Mat& depth, const CellCamera& camera, std::span<const Pose> guesses,
                     std::span<const View* const> views);
 
+/// Where the static part of a view's depth fits the others, in the frame of the camera as it was
+/// tracked. The depth image is taken some milliseconds before or after the colour image, and in a
+/// fast motion tracking is off by centimetres: views that do not fit each other would give
+/// free-space violations on what is static. Identity where the agreement is below `min_agreement`.
+/// `others` must not be empty.
+Pose tracked_from_depth(const View& view, std::span<const View* const> others,
+                        double min_agreement);
+
 }  // namespace stillpoint::map_checks

@@ -18,7 +18,7 @@ cv::Mat used_cells(const cv::Mat& weight, cv::Size size) {
   return cells >= kMinUsedWeight;
 }
 
-cv::Mat trust_in(const StaticWeights& weights, cv::Size size) {
+cv::Mat trust_image(const StaticWeights& weights, cv::Size size) {
   const cv::Mat tracked = used_cells(weights.track, size);
   cv::Mat trust(size, CV_32S, cv::Scalar(kNotStatic));
   trust.setTo(kTracked, tracked);
@@ -26,20 +26,20 @@ cv::Mat trust_in(const StaticWeights& weights, cv::Size size) {
   return trust;
 }
 
+}  // namespace
+
 View make_view(const TrackedFrame& tracked) {
   const Frame& frame = *tracked.frame;
   View view{.tracked = tracked, .time = frame.time, .camera = CellCamera(*frame.camera)};
   view.depth = sample_depth(frame.depth);
   view.bounds = depth_bounds(view.depth);
   view.normals = surface_normals(view.depth, view.camera);
-  view.trust = trust_in(*tracked.weights, view.depth.size());
+  view.trust = trust_image(*tracked.weights, view.depth.size());
   view.world_from_camera = tracked.world_from_camera;
   view.tracked.frame = nullptr;
   view.tracked.weights = nullptr;
   return view;
 }
-
-}  // namespace
 
 void MemoryOptions::visit(OptionVisitor& v) {
   v("views", views, {.min = 2, .max = 100, .help = "number of earlier frames kept"});
@@ -61,15 +61,14 @@ void MemoryOptions::visit(OptionVisitor& v) {
      .help = "change of position at which a frame is kept at once; counts together with angle"});
 }
 
-void ViewMemory::add(const TrackedFrame& frame) {
-  if (!is_new_view(frame)) return;
+void ViewMemory::add(View view) {
   if (views_.size() == static_cast<std::size_t>(options_.views)) drop_most_redundant();
-  views_.insert(views_.begin(), make_view(frame));
+  views_.insert(views_.begin(), std::move(view));
 }
 
-const std::vector<View>& ViewMemory::views_in(const SparseMap& map) {
-  for (View& view : views_) view.world_from_camera = view.tracked.pose_in(map);
-  return views_;
+void ViewMemory::move_to(const SparseMap& map) {
+  for (View& view : views_)
+    view.world_from_camera = view.tracked.pose_in(map) * view.tracked_from_depth;
 }
 
 bool ViewMemory::is_new_view(const TrackedFrame& frame) const {

@@ -19,12 +19,17 @@ struct View {
   TrackedFrame tracked;  ///< without images
   double time = 0.0;     ///< seconds
   CellCamera camera;
-  cv::Mat depth;                              ///< CV_32FC1, see sample_depth
-  cv::Mat bounds;                             ///< CV_32FC2, see depth_bounds
-  cv::Mat normals;                            ///< CV_32FC3, see surface_normals
-  cv::Mat trust;                              ///< CV_32SC1, a Trust
-  Pose world_from_camera = Pose::Identity();  ///< at present
+  cv::Mat depth;    ///< CV_32FC1, see sample_depth
+  cv::Mat bounds;   ///< CV_32FC2, see depth_bounds
+  cv::Mat normals;  ///< CV_32FC3, see surface_normals
+  cv::Mat trust;    ///< CV_32SC1, a Trust
+  /// Where its depth fits the other views, in the frame of the camera as it was tracked.
+  Pose tracked_from_depth = Pose::Identity();
+  Pose world_from_camera = Pose::Identity();  ///< of the depth image, at present
 };
+
+/// On its tracked pose.
+View make_view(const TrackedFrame& tracked);
 
 struct MemoryOptions {
   int views = 8;           ///< kept
@@ -41,12 +46,15 @@ class ViewMemory {
  public:
   explicit ViewMemory(const MemoryOptions& options) : options_(options) {}
 
-  void add(const TrackedFrame& frame);
-  /// Moves all views to their poses in `map`. Newest first.
-  const std::vector<View>& views_in(const SparseMap& map);
+  /// Whether add() would keep it.
+  bool is_new_view(const TrackedFrame& frame) const;
+  void add(View view);
+  /// Moves all views to their poses in `map`.
+  void move_to(const SparseMap& map);
+  /// Newest first.
+  const std::vector<View>& views() const { return views_; }
 
  private:
-  bool is_new_view(const TrackedFrame& frame) const;
   double novelty(const Pose& a, const Pose& b) const;
   void drop_most_redundant();
 
