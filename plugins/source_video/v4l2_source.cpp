@@ -30,8 +30,9 @@ std::uint32_t pixels_of(V4l2Source::DepthFormat format) {
 }  // namespace
 
 void V4l2Source::Options::visit(OptionVisitor& v) {
-  v("color_device", color_device, {.help = "of the colour images"});
-  v("depth_device", depth_device, {.help = "of the depth images, registered to colour"});
+  v("color_device", color_device, {.help = "device that sends the colour images"});
+  v("depth_device", depth_device,
+    {.help = "device that sends the depth images, which it has registered to colour"});
   v.choice("color_format", color_format,
            {{"mjpeg", ColorFormat::kMjpeg}, {"yuyv", ColorFormat::kYuyv}},
            {.help = "how the device sends colour"});
