@@ -18,11 +18,11 @@ class AppearanceTest : public testing::Test {
     EXPECT_LT(radians_between(frame.world_from_camera, truth), 0.002);
   }
   TestWorld world_;
-  KnownMap known_ = known_map(world_, {world_.see(walk(0)), world_.see(walk(3))});
+  KnownMap known_ = known_map(world_, {world_.render(walk(0)), world_.render(walk(3))});
 };
 
 TEST_F(AppearanceTest, FindsThePoseWithoutAGuess) {
-  const View view = world_.see(walk(5));
+  const View view = world_.render(walk(5));
   ObservedFrame frame = observed(view);
   frame.world_from_camera = pose_at({100, 0, 0}, {0, 3, 0});
   EXPECT_GT(locate(frame), 100);
@@ -37,7 +37,7 @@ TEST_F(AppearanceTest, FindsThePoseWithoutAGuess) {
 
 TEST_F(AppearanceTest, AlsoUpsideDown) {
   const Pose upside_down = pose_at({0, 0, 0}, {0, 0, 3.1});
-  ObservedFrame frame = observed(world_.see(upside_down));
+  ObservedFrame frame = observed(world_.render(upside_down));
   EXPECT_GT(locate(frame), 100);
   expect_at(frame, upside_down);
 }
@@ -47,23 +47,23 @@ TEST_F(AppearanceTest, SurvivesManyWrongPoints) {
   for (LandmarkId id = 0; id < known_.map.landmark_id_end(); id += 3)
     edit.landmark(id).position_in_world += Eigen::Vector3d(0.5 + 0.01 * (id % 50), -0.7, 0.6);
   known_.map = std::move(edit).finish();
-  ObservedFrame frame = observed(world_.see(walk(2)));
+  ObservedFrame frame = observed(world_.render(walk(2)));
   EXPECT_GT(locate(frame), 60);
   expect_at(frame, walk(2));
 }
 
 TEST_F(AppearanceTest, FlatWorldIsNoSpecialCase) {
   TestWorld wall(600, 4, {.low = {-2, -1.5, 3}, .high = {2, 1.5, 3}});
-  known_ = known_map(wall, {wall.see(walk(0)), wall.see(walk(2))});
+  known_ = known_map(wall, {wall.render(walk(0)), wall.render(walk(2))});
   for (const int step : {-4, 1, 5}) {
-    ObservedFrame frame = observed(wall.see(walk(step)));
+    ObservedFrame frame = observed(wall.render(walk(step)));
     EXPECT_GT(locate(frame), 100) << step;
     expect_at(frame, walk(step));
   }
 }
 
 TEST_F(AppearanceTest, MovingFeaturesAreNotUsed) {
-  const View view = world_.see(walk(2));
+  const View view = world_.render(walk(2));
   ObservedFrame frame = observed(view);
   for (std::uint32_t i = 0; i < view.point.size(); i += 2) frame.track_weights[i] = 0;
   EXPECT_GT(locate(frame), 50);
@@ -72,20 +72,20 @@ TEST_F(AppearanceTest, MovingFeaturesAreNotUsed) {
 
 TEST_F(AppearanceTest, UnknownPlaceGivesNothing) {
   TestWorld elsewhere(1500, 77);
-  ObservedFrame frame = observed(elsewhere.see(walk(0)));
+  ObservedFrame frame = observed(elsewhere.render(walk(0)));
   EXPECT_EQ(locate(frame), 0);
 }
 
 TEST_F(AppearanceTest, NothingToLookForOrAtGivesNothing) {
-  ObservedFrame frame = observed(world_.see(walk(0)));
+  ObservedFrame frame = observed(world_.render(walk(0)));
   EXPECT_EQ(locate_by_appearance(frame, {}, known_.map), 0);
   TestWorld empty(0);
-  ObservedFrame blind = observed(empty.see(walk(0)));
+  ObservedFrame blind = observed(empty.render(walk(0)));
   EXPECT_EQ(locate(blind), 0);
 }
 
 TEST_F(AppearanceTest, RepeatsToTheBit) {
-  const View view = world_.see(walk(4));
+  const View view = world_.render(walk(4));
   ObservedFrame a = observed(view), b = observed(view);
   EXPECT_EQ(locate(a), locate(b));
   EXPECT_EQ(a.world_from_camera.matrix(), b.world_from_camera.matrix());

@@ -100,7 +100,8 @@ std::vector<KeyFrameId> most_covisible(const SparseMap& map, KeyFrameId centre, 
   return ids;
 }
 
-std::vector<LandmarkId> seen_by(const SparseMap& map, const std::vector<KeyFrameId>& keyframes) {
+std::vector<LandmarkId> observed_by(const SparseMap& map,
+                                    const std::vector<KeyFrameId>& keyframes) {
   std::set<LandmarkId> ids;
   for (const KeyFrameId keyframe : keyframes)
     for (const LandmarkId id : map.keyframe(keyframe)->landmarks)
@@ -114,7 +115,7 @@ std::vector<LandmarkId> adjust_locally(MapEdit& edit, KeyFrameId centre,
                                        const BundleOptions& options,
                                        const std::stop_token& end_early) {
   const std::vector<KeyFrameId> local = most_covisible(edit.map(), centre, options.max_keyframes);
-  std::vector<LandmarkId> points = seen_by(edit.map(), local);
+  std::vector<LandmarkId> points = observed_by(edit.map(), local);
   BundleProblem problem(edit.map(), local, points);
   if (!problem.solve(options.max_iterations, end_early)) return {};
   for (const MovedKeyFrame& moved : problem.keyframes())
@@ -130,7 +131,7 @@ std::optional<MapCorrection> adjust_all(const SparseMap& map, int max_iterations
   std::vector<KeyFrameId> keyframes;
   for (KeyFrameId id = 0; id < map.keyframe_id_end(); ++id)
     if (map.keyframe(id)) keyframes.push_back(id);
-  BundleProblem problem(map, keyframes, seen_by(map, keyframes));
+  BundleProblem problem(map, keyframes, observed_by(map, keyframes));
   if (!problem.solve(max_iterations, end_early)) return std::nullopt;
   return MapCorrection{.keyframe_id_end = static_cast<KeyFrameId>(map.keyframe_id_end()),
                        .moved = problem.keyframes(),

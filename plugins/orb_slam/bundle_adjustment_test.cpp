@@ -14,7 +14,7 @@ class BundleAdjustmentTest : public testing::Test {
   static constexpr int kViews = 8;
 
   BundleAdjustmentTest() {
-    for (int i = 0; i < kViews; ++i) views_.push_back(world_.see(walk(2 * i)));
+    for (int i = 0; i < kViews; ++i) views_.push_back(world_.render(walk(2 * i)));
     known_ = known_map(world_, views_);
     start_ = known_.map;
   }
@@ -87,7 +87,7 @@ TEST_F(BundleAdjustmentTest, PosesAndPointsGoToTheTruth) {
 
 TEST_F(BundleAdjustmentTest, ExactMeasurementsGiveTheExactMap) {
   views_.clear();
-  for (int i = 0; i < kViews; ++i) views_.push_back(world_.see(walk(2 * i), kNoNoise));
+  for (int i = 0; i < kViews; ++i) views_.push_back(world_.render(walk(2 * i), kNoNoise));
   known_ = known_map(world_, views_);
   start_ = known_.map;
   disturb();
@@ -193,7 +193,7 @@ TEST_F(BundleAdjustmentTest, SameInputSameBits) {
 
 TEST_F(BundleAdjustmentTest, KeyFrameWithoutLandmarksIsNoCrash) {
   MapEdit edit(start_);
-  edit.add_keyframe(keyframe_of(world_.see(walk(1)), kViews));
+  edit.add_keyframe(keyframe_of(world_.render(walk(1)), kViews));
   edit.update_covisibility(kViews);
   EXPECT_TRUE(adjust_locally(edit, kViews, kAll, {}).empty());
   EXPECT_EQ(edit.map().check(), std::nullopt);

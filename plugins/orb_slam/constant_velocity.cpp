@@ -21,7 +21,7 @@ Pose ConstantVelocity::predict(const Pose& world_from_last, double seconds) cons
 }
 
 void ConstantVelocity::update(const Pose& current_from_last, double seconds, bool smooth) {
-  if (seconds <= 0) return forget();  // two images of one time have no velocity
+  if (seconds <= 0) return reset();  // two images of one time have no velocity
   const auto before = std::exchange(current_from_last_, current_from_last);
   if (smooth && before)
     current_from_last_ =

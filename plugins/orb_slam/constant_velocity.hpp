@@ -10,8 +10,8 @@ namespace stillpoint::orb_slam {
 
 class ConstantVelocity {
  public:
-  bool known() const { return current_from_last_.has_value(); }
-  void forget() { current_from_last_.reset(); }
+  bool has_value() const { return current_from_last_.has_value(); }
+  void reset() { current_from_last_.reset(); }
 
   /// The pose `seconds` after a frame at `world_from_last`.
   Pose predict(const Pose& world_from_last, double seconds) const;

@@ -14,14 +14,14 @@ Pose current_from_last(double last, double current) {
 
 TEST(ConstantVelocity, GoesOnForAnyTime) {
   ConstantVelocity velocity;
-  EXPECT_FALSE(velocity.known());
+  EXPECT_FALSE(velocity.has_value());
   velocity.update(current_from_last(0.5, 0.6), 0.1, false);
-  ASSERT_TRUE(velocity.known());
+  ASSERT_TRUE(velocity.has_value());
   for (const double seconds : {0.0, 0.05, 0.3, 1.0})
     EXPECT_TRUE(velocity.predict(world_from_camera(0.6), seconds)
                     .isApprox(world_from_camera(0.6 + seconds), 1e-9));
-  velocity.forget();
-  EXPECT_FALSE(velocity.known());
+  velocity.reset();
+  EXPECT_FALSE(velocity.has_value());
 }
 
 TEST(ConstantVelocity, SmoothedOneFollowsSlowly) {
@@ -39,7 +39,7 @@ TEST(ConstantVelocity, TwoImagesOfOneTimeHaveNone) {
   ConstantVelocity velocity;
   velocity.update(current_from_last(0.5, 0.6), 0.1, true);
   velocity.update(Pose::Identity(), 0.0, true);
-  EXPECT_FALSE(velocity.known());
+  EXPECT_FALSE(velocity.has_value());
 }
 
 TEST(MotionPrior, IsTighterForShorterTimesAndNoneBesideItsPose) {

@@ -10,7 +10,7 @@ constexpr int kMinOtherObservers = 3;
 
 enum class Verdict { kRemove, kKeep, kUndecided };
 
-Verdict judge(const Landmark& landmark, KeyFrameId latest) {
+Verdict classify(const Landmark& landmark, KeyFrameId latest) {
   if (landmark.found < kMinFoundRatio * landmark.visible) return Verdict::kRemove;
   const KeyFrameId age = latest - landmark.created_by;
   if (age >= kTrialKeyFrames && landmark.observations.size() < 2) return Verdict::kRemove;
@@ -18,7 +18,7 @@ Verdict judge(const Landmark& landmark, KeyFrameId latest) {
 }
 
 // Whether enough other key frames see the landmark at most one pyramid level coarser.
-bool seen_elsewhere(const SparseMap& map, const Landmark& landmark, KeyFrameId id, int level) {
+bool observed_elsewhere(const SparseMap& map, const Landmark& landmark, KeyFrameId id, int level) {
   int others = 0;
   for (const Observation& o : landmark.observations) {
     if (o.keyframe == id) continue;
@@ -35,7 +35,7 @@ bool is_redundant(const SparseMap& map, const KeyFrame& keyframe, double share) 
     if (!landmark) continue;
     ++landmarks;
     redundant +=
-        seen_elsewhere(map, *landmark, keyframe.id, keyframe.features->keypoints[i].octave);
+        observed_elsewhere(map, *landmark, keyframe.id, keyframe.features->keypoints[i].octave);
   }
   return redundant > share * landmarks;
 }
@@ -46,7 +46,7 @@ void cull_landmarks(MapEdit& edit, KeyFrameId latest, std::vector<LandmarkId>& r
   std::erase_if(recent, [&](LandmarkId id) {
     const Landmark* landmark = edit.map().landmark(id);
     if (!landmark) return true;
-    const Verdict verdict = judge(*landmark, latest);
+    const Verdict verdict = classify(*landmark, latest);
     if (verdict == Verdict::kRemove) edit.remove_landmark(id);
     return verdict != Verdict::kUndecided;
   });

@@ -14,7 +14,7 @@ namespace {
 class CullLandmarksTest : public testing::Test {
  protected:
   CullLandmarksTest() {
-    const View view = world_.see(Pose::Identity());
+    const View view = world_.render(Pose::Identity());
     for (KeyFrameId id = 0; id < 10; ++id) edit_.add_keyframe(keyframe_of(view, id));
   }
   LandmarkId add(KeyFrameId created_by, int observations, std::uint32_t visible = 10,
@@ -93,7 +93,7 @@ class CullKeyFramesTest : public testing::Test {
 
 TEST_F(CullKeyFramesTest, RedundantOnesGoOriginAndLatestStay) {
   std::vector<View> views;
-  for (int i = 0; i < 8; ++i) views.push_back(world_.see(pose_at({0.002 * i, 0, 0})));
+  for (int i = 0; i < 8; ++i) views.push_back(world_.render(pose_at({0.002 * i, 0, 0})));
   const SparseMap map = culled(views, 0.9);
   EXPECT_LT(map.keyframe_count(), 6u);
   EXPECT_GE(map.keyframe_count(), 3u) << "somebody must see the landmarks";
@@ -105,7 +105,7 @@ TEST_F(CullKeyFramesTest, RedundantOnesGoOriginAndLatestStay) {
 
 TEST_F(CullKeyFramesTest, DifferentViewsStay) {
   std::vector<View> views;
-  for (int i = 0; i < 5; ++i) views.push_back(world_.see(pose_at({2.0 * i - 4, 0, 0})));
+  for (int i = 0; i < 5; ++i) views.push_back(world_.render(pose_at({2.0 * i - 4, 0, 0})));
   EXPECT_EQ(culled(views, 0.9).keyframe_count(), 5u);
 }
 
@@ -113,7 +113,7 @@ TEST_F(CullKeyFramesTest, AFinerLookIsNotReplacedByCoarserOnes) {
   // Coarser = on higher levels, as from nearer; the first view has all features on level 0.
   std::vector<View> views;
   for (int i = 0; i < 6; ++i) {
-    views.push_back(world_.see(pose_at({0.002 * i, 0, 0})));
+    views.push_back(world_.render(pose_at({0.002 * i, 0, 0})));
     auto features = std::make_shared<Features>(*views[i].features);
     for (cv::KeyPoint& k : features->keypoints) k.octave = i == 1 ? 0 : 4;
     views[i].features = std::move(features);
@@ -122,7 +122,7 @@ TEST_F(CullKeyFramesTest, AFinerLookIsNotReplacedByCoarserOnes) {
 }
 
 TEST_F(CullKeyFramesTest, ShareOfOneKeepsAll) {
-  std::vector<View> views(8, world_.see(Pose::Identity()));
+  std::vector<View> views(8, world_.render(Pose::Identity()));
   EXPECT_EQ(culled(views, 1.0).keyframe_count(), 8u);
 }
 

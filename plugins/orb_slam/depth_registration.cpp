@@ -7,10 +7,10 @@
 namespace stillpoint::orb_slam {
 namespace {
 
-constexpr int kMinPatches = 60;             // of 1,200, to constrain a pose
-constexpr double kMinKnown = 0.25;          // share of patches that key frames must cover
-constexpr double kMinAgreement = 0.6;       // inlier share of those; likewise of landmarks
-constexpr double kMaxKnownOfNewView = 0.7;  // a smaller known share requests a key frame
+constexpr int kMinPatches = 60;               // of 1,200, to constrain a pose
+constexpr double kMinOverlapOfViews = 0.25;   // share of patches that key frames must cover
+constexpr double kMinAgreement = 0.6;         // inlier share of those; likewise of landmarks
+constexpr double kMaxOverlapOfNewView = 0.7;  // a smaller overlap requests a key frame
 
 // Association gate: greatest point-to-plane distance in metres, smaller in every round, from what a
 // predicted pose may be off to what registration leaves. Where the sensor's noise is larger,
@@ -26,7 +26,7 @@ bool landmarks_agree(const ObservedFrame& frame) {
 }
 
 bool is_sound(const PlaneRegistration& registration) {
-  return registration.patches >= kMinPatches && registration.known() >= kMinKnown &&
+  return registration.patches >= kMinPatches && registration.overlap() >= kMinOverlapOfViews &&
          registration.agreement() >= kMinAgreement;
 }
 
@@ -78,7 +78,7 @@ bool DepthRegistration::refine(ObservedFrame& frame, const SparseMap& map,
 }
 
 bool DepthRegistration::shows_new_surfaces() const {
-  return registration_ && registration_->known() < kMaxKnownOfNewView;
+  return registration_ && registration_->overlap() < kMaxOverlapOfNewView;
 }
 
 const DepthView& DepthRegistration::view() {

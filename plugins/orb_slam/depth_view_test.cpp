@@ -29,7 +29,7 @@ int patches_in(const DepthView& view, const cv::Rect& area) {
 
 TEST(DepthView, PatchesLieOnTheirPlane) {
   const WorldPlane slanted{Eigen::Vector3d(0.3, -0.2, 1).normalized(), 2.0};
-  const DepthView view(*see_planes({slanted}, Pose::Identity()), {});
+  const DepthView view(*render_planes({slanted}, Pose::Identity()), {});
   ASSERT_EQ(view.columns(), 80);
   ASSERT_EQ(view.rows(), 60);
   EXPECT_EQ(patches_of(view), 76 * 56);
@@ -44,7 +44,7 @@ TEST(DepthView, PatchesLieOnTheirPlane) {
 }
 
 TEST(DepthView, NoiseOfDistanceAndNormalIsNoLargerThanSaid) {
-  const DepthView view(*see_planes({kAhead}, Pose::Identity(), 0, 0.002), {});
+  const DepthView view(*render_planes({kAhead}, Pose::Identity(), 0, 0.002), {});
   double distance = 0, tilt = 0;
   for (int row = 2; row < 58; ++row) {
     for (int column = 2; column < 78; ++column) {
@@ -60,13 +60,13 @@ TEST(DepthView, NoiseOfDistanceAndNormalIsNoLargerThanSaid) {
 
 TEST(DepthView, OfANoisySensorHasPatchesWhenItsNoiseIsKnown) {
   constexpr double kNoise = 0.01;  // five times a Kinect's
-  const FramePtr frame = see_planes({kAhead}, Pose::Identity(), 0, kNoise);
+  const FramePtr frame = render_planes({kAhead}, Pose::Identity(), 0, kNoise);
   EXPECT_LT(patches_of(DepthView(*frame, {})), 100) << "taken for discontinuities";
   EXPECT_GT(patches_of(DepthView(*with_surface_noise(frame, kNoise), {})), 0.99 * 76 * 56);
 }
 
 TEST(DepthView, EdgesHaveNone) {
-  const auto frame = std::make_shared<Frame>(*see_planes({kAhead}, Pose::Identity()));
+  const auto frame = std::make_shared<Frame>(*render_planes({kAhead}, Pose::Identity()));
   frame->depth = frame->depth.clone();
   frame->depth.colRange(320, 640) = 3.0F;
   const DepthView view(*frame, {});
@@ -75,7 +75,7 @@ TEST(DepthView, EdgesHaveNone) {
 }
 
 TEST(DepthView, WhatIsNotMeasuredOrMovesHasNone) {
-  const auto frame = std::make_shared<Frame>(*see_planes({kAhead}, Pose::Identity()));
+  const auto frame = std::make_shared<Frame>(*render_planes({kAhead}, Pose::Identity()));
   frame->depth = frame->depth.clone();
   frame->depth(cv::Rect(0, 0, 160, 480)) = 0.0F;
   StaticWeights weights;
@@ -92,7 +92,7 @@ TEST(DepthView, WhatIsNotMeasuredOrMovesHasNone) {
 // Real sensors have single pixels without depth, and patches of them.
 TEST(DepthView, HolesLeaveThePlanesAroundThem) {
   const WorldPlane slanted{Eigen::Vector3d(0.3, -0.2, 1).normalized(), 2.0};
-  const auto frame = std::make_shared<Frame>(*see_planes({slanted}, Pose::Identity()));
+  const auto frame = std::make_shared<Frame>(*render_planes({slanted}, Pose::Identity()));
   frame->depth = frame->depth.clone();
   cv::Mat random(frame->depth.size(), CV_8U);
   cv::RNG(1).fill(random, cv::RNG::UNIFORM, 0, 100);
@@ -112,7 +112,7 @@ TEST(DepthView, HolesLeaveThePlanesAroundThem) {
 }
 
 TEST(DepthView, OutsideTheImageIsNothing) {
-  const DepthView view(*see_planes({kAhead}, Pose::Identity()), {});
+  const DepthView view(*render_planes({kAhead}, Pose::Identity()), {});
   EXPECT_EQ(view.at({5, 0, 2}), nullptr);
   EXPECT_EQ(view.at({0, 0, -2}), nullptr);
   EXPECT_EQ(view.at({0, 0, 0}), nullptr);

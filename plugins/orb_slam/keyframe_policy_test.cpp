@@ -81,8 +81,8 @@ TEST(NeedsKeyFrame, BusyMapperIsSparedUnlessItIsUrgentOrLongAgo) {
 class TrackingQualityTest : public testing::Test {
  protected:
   TestWorld world_;
-  View view_ = world_.see(walk(0));
-  KnownMap known_ = known_map(world_, {view_, world_.see(walk(2)), world_.see(walk(4))});
+  View view_ = world_.render(walk(0));
+  KnownMap known_ = known_map(world_, {view_, world_.render(walk(2)), world_.render(walk(4))});
   ObservedFrame frame_ = observed(view_);
   KeyFrameOptions options_;
 };

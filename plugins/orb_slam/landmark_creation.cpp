@@ -36,8 +36,8 @@ double median_depth(const KeyFrame& keyframe) {
   return median(std::move(depths));
 }
 
-LandmarkId add_seen_by(MapEdit& edit, const Eigen::Vector3d& position, KeyFrameId creator,
-                       std::initializer_list<Observation> observations) {
+LandmarkId add_observed_by(MapEdit& edit, const Eigen::Vector3d& position, KeyFrameId creator,
+                           std::initializer_list<Observation> observations) {
   const LandmarkId id = edit.add_landmark({.position_in_world = position, .created_by = creator});
   for (const Observation& o : observations) edit.add_observation(id, o);
   refresh_landmark(edit, id);
@@ -137,7 +137,7 @@ void triangulate_pair(MapEdit& edit, KeyFrameId a_id, KeyFrameId b_id,
     const auto point = views.intersect(i, best);
     if (!point) continue;
     used[best] = true;
-    created.push_back(add_seen_by(edit, *point, a_id, {{b_id, best}, {a_id, i}}));
+    created.push_back(add_observed_by(edit, *point, a_id, {{b_id, best}, {a_id, i}}));
   }
 }
 
@@ -150,7 +150,7 @@ std::vector<LandmarkId> create_from_depth(MapEdit& edit, KeyFrameId id) {
     const double depth = keyframe->features->depth[i];
     if (depth <= 0) continue;
     const Eigen::Vector3d point = keyframe->world_from_camera * (ray(*keyframe, i) * depth);
-    created.push_back(add_seen_by(edit, point, id, {{id, i}}));
+    created.push_back(add_observed_by(edit, point, id, {{id, i}}));
   }
   return created;
 }

@@ -21,7 +21,7 @@ class CreateFromDepthTest : public testing::Test {
     return edit_.map().landmark(id)->observations.front().feature;
   }
   TestWorld world_;
-  View view_ = world_.see(walk(2));
+  View view_ = world_.render(walk(2));
   KeyFrame keyframe_ = keyframe_of(view_, 0);
   MapEdit edit_{SparseMap{}};
 };
@@ -43,7 +43,7 @@ TEST_F(CreateFromDepthTest, LandmarksLieWhereThePointsAre) {
 }
 
 TEST_F(CreateFromDepthTest, EveryFeatureWithDepthAndNoOther) {
-  view_ = world_.see(walk(2), {.max_depth = 4.0});
+  view_ = world_.render(walk(2), {.max_depth = 4.0});
   keyframe_ = keyframe_of(view_, 0);
   const auto created = create();
   const auto& depth = view_.features->depth;
@@ -76,7 +76,7 @@ TEST_F(CreateFromDepthTest, WhatMayMoveBecomesNoLandmark) {
 }
 
 TEST_F(CreateFromDepthTest, WithoutDepthNothingIsMade) {
-  keyframe_ = keyframe_of(world_.see(walk(2), kNoDepth), 0);
+  keyframe_ = keyframe_of(world_.render(walk(2), kNoDepth), 0);
   EXPECT_TRUE(create().empty());
 }
 
@@ -84,8 +84,8 @@ TEST_F(CreateFromDepthTest, WithoutDepthNothingIsMade) {
 class TriangulateTest : public testing::Test {
  protected:
   std::vector<LandmarkId> run(const Pose& second) {
-    first_ = world_.see(Pose::Identity(), kNoDepth);
-    second_ = world_.see(second, kNoDepth);
+    first_ = world_.render(Pose::Identity(), kNoDepth);
+    second_ = world_.render(second, kNoDepth);
     known_ = known_map(world_, {first_, second_});
     edit_ = MapEdit(known_.map);
     for (LandmarkId id = 0; id < known_.map.landmark_id_end(); id += 2) edit_.remove_landmark(id);
@@ -144,8 +144,8 @@ TEST_F(TriangulateTest, TurningOnTheSpotGivesNothing) {
 }
 
 TEST_F(TriangulateTest, WhatMayMoveBecomesNoLandmark) {
-  first_ = world_.see(Pose::Identity(), kNoDepth);
-  second_ = world_.see(pose_at({0.6, 0, 0}), kNoDepth);
+  first_ = world_.render(Pose::Identity(), kNoDepth);
+  second_ = world_.render(pose_at({0.6, 0, 0}), kNoDepth);
   known_ = known_map(world_, {first_, second_});
   edit_ = MapEdit(known_.map);
   for (LandmarkId id = 0; id < known_.map.landmark_id_end(); id += 2) edit_.remove_landmark(id);
@@ -157,7 +157,7 @@ TEST_F(TriangulateTest, WhatMayMoveBecomesNoLandmark) {
 }
 
 TEST_F(TriangulateTest, AloneItDoesNothing) {
-  edit_.add_keyframe(keyframe_of(world_.see(Pose::Identity()), 0));
+  edit_.add_keyframe(keyframe_of(world_.render(Pose::Identity()), 0));
   EXPECT_TRUE(triangulate(edit_, 0, 10).empty());
 }
 

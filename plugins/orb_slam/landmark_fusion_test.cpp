@@ -31,7 +31,7 @@ class LandmarkFusionTest : public testing::Test {
   }
   std::uint32_t point_of(const Observation& o) const { return views_[o.keyframe].point[o.feature]; }
   TestWorld world_;
-  std::vector<View> views_{world_.see(walk(0)), world_.see(walk(2))};
+  std::vector<View> views_{world_.render(walk(0)), world_.render(walk(2))};
   KnownMap known_ = known_map(world_, views_);
   MapEdit edit_{known_.map};
 };
@@ -67,7 +67,8 @@ TEST_F(LandmarkFusionTest, DuplicatesBecomeOne) {
 // point must not become an observation of it, however many there are already.
 TEST(LandmarkFusion, TheOneAtTheWrongPlaceGoes) {
   TestWorld world;
-  const std::vector<View> views{world.see(walk(0)), world.see(walk(2)), world.see(walk(4))};
+  const std::vector<View> views{world.render(walk(0)), world.render(walk(2)),
+                                world.render(walk(4))};
   const KnownMap known = known_map(world, views);
   MapEdit edit(known.map);
   std::vector<std::pair<LandmarkId, LandmarkId>> split;

@@ -13,10 +13,10 @@ class LandmarkGeometryTest : public testing::Test {
  protected:
   LandmarkGeometryTest() {
     std::vector<View> views;
-    for (int i = 0; i < 6; ++i) views.push_back(world_.see(walk(i)));
+    for (int i = 0; i < 6; ++i) views.push_back(world_.render(walk(i)));
     known_ = known_map(world_, views);
   }
-  LandmarkId seen_by_all() const {
+  LandmarkId observed_by_all() const {
     for (LandmarkId id = 0; id < known_.map.landmark_id_end(); ++id)
       if (known_.map.landmark(id)->observations.size() == 6) return id;
     return kNoId;
@@ -26,7 +26,7 @@ class LandmarkGeometryTest : public testing::Test {
 };
 
 TEST_F(LandmarkGeometryTest, FieldsFollowFromTheObservations) {
-  const LandmarkId id = seen_by_all();
+  const LandmarkId id = observed_by_all();
   const Landmark& landmark = *known_.map.landmark(id);
   Eigen::Vector3d mean = Eigen::Vector3d::Zero();
   for (int i = 0; i < 6; ++i)
@@ -41,7 +41,7 @@ TEST_F(LandmarkGeometryTest, FieldsFollowFromTheObservations) {
 }
 
 TEST_F(LandmarkGeometryTest, DescriptorIsTheMostTypicalOne) {
-  const LandmarkId id = seen_by_all();
+  const LandmarkId id = observed_by_all();
   MapEdit edit(known_.map);
   for (const KeyFrameId odd : {0u, 3u}) {  // the first one counts no more than others
     auto features = std::make_shared<Features>(*edit.map().keyframe(odd)->features);
@@ -77,7 +77,7 @@ TEST_F(LandmarkGeometryTest, TrueObservationsFit) {
 }
 
 TEST_F(LandmarkGeometryTest, ErrorInStandardDeviations) {
-  const View view = world_.see(Pose::Identity(), kNoNoise);
+  const View view = world_.render(Pose::Identity(), kNoNoise);
   KeyFrame keyframe = keyframe_of(view, 0);
   auto features = std::make_shared<Features>(*view.features);
   const Eigen::Vector3d point = world_.points()[view.point[0]].position;
@@ -97,7 +97,7 @@ TEST_F(LandmarkGeometryTest, ErrorInStandardDeviations) {
 }
 
 TEST_F(LandmarkGeometryTest, WrongDepthAloneDoesNotFit) {
-  const View view = world_.see(Pose::Identity(), kNoNoise);
+  const View view = world_.render(Pose::Identity(), kNoNoise);
   KeyFrame keyframe = keyframe_of(view, 0);
   auto features = std::make_shared<Features>(*view.features);
   const Eigen::Vector3d point = world_.points()[view.point[0]].position;

@@ -14,10 +14,10 @@ class LocalMapTest : public testing::Test {
  protected:
   LocalMapTest() {
     std::vector<View> views;
-    for (int i = 0; i < 12; ++i) views.push_back(world_.see(walk(3 * i)));
+    for (int i = 0; i < 12; ++i) views.push_back(world_.render(walk(3 * i)));
     known_ = known_map(world_, views);
   }
-  std::vector<LandmarkId> seen_by(KeyFrameId id) const {
+  std::vector<LandmarkId> observed_by(KeyFrameId id) const {
     return known_.map.keyframe(id)->landmarks;
   }
   TestWorld world_;
@@ -26,25 +26,25 @@ class LocalMapTest : public testing::Test {
 
 TEST_F(LocalMapTest, ReferenceSharesMostLandmarks) {
   for (const KeyFrameId id : {0u, 5u, 11u})
-    EXPECT_EQ(local_map_around(seen_by(id), known_.map, 80).reference, id);
+    EXPECT_EQ(local_map_around(observed_by(id), known_.map, 80).reference, id);
 }
 
 TEST_F(LocalMapTest, ElementsExistAndComeOnce) {
-  const LocalMap local = local_map_around(seen_by(4), known_.map, 80);
+  const LocalMap local = local_map_around(observed_by(4), known_.map, 80);
   const std::set<KeyFrameId> keyframes(local.keyframes.begin(), local.keyframes.end());
   const std::set<LandmarkId> landmarks(local.landmarks.begin(), local.landmarks.end());
   EXPECT_EQ(keyframes.size(), local.keyframes.size());
   EXPECT_EQ(landmarks.size(), local.landmarks.size());
   std::set<LandmarkId> expected;
   for (const KeyFrameId id : keyframes)
-    for (const LandmarkId landmark : seen_by(id))
+    for (const LandmarkId landmark : observed_by(id))
       if (landmark != kNoId) expected.insert(landmark);
   EXPECT_EQ(landmarks, expected);
 }
 
 TEST_F(LocalMapTest, NeighboursOfNeighboursComeIn) {
   // One landmark leads to key frames that do not see it.
-  const std::vector<LandmarkId> first = seen_by(0);
+  const std::vector<LandmarkId> first = observed_by(0);
   const LandmarkId lonely =
       *std::find_if(first.begin(), first.end(), [](LandmarkId id) { return id != kNoId; });
   const LocalMap local = local_map_around({lonely}, known_.map, 80);
@@ -52,7 +52,7 @@ TEST_F(LocalMapTest, NeighboursOfNeighboursComeIn) {
 }
 
 TEST_F(LocalMapTest, KeepsToTheLimit) {
-  const LocalMap local = local_map_around(seen_by(6), known_.map, 3);
+  const LocalMap local = local_map_around(observed_by(6), known_.map, 3);
   EXPECT_EQ(local.keyframes.size(), 3u);
   EXPECT_EQ(local.keyframes.front(), 6u);
 }
@@ -66,7 +66,7 @@ TEST_F(LocalMapTest, NothingMatchedNothingFound) {
 }
 
 TEST_F(LocalMapTest, LandmarksThatAreGoneDoNotCount) {
-  const std::vector<LandmarkId> matched = seen_by(2);
+  const std::vector<LandmarkId> matched = observed_by(2);
   MapEdit edit(known_.map);
   for (const LandmarkId id : matched)
     if (id != kNoId) edit.remove_landmark(id);

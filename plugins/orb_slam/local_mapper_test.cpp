@@ -14,7 +14,7 @@ class LocalMapperTest : public testing::Test {
  protected:
   KeyFrame next_keyframe(const Noise& noise = {}) {
     const auto id = static_cast<KeyFrameId>(views_.size());
-    views_.push_back(world_.see(walk(3 * static_cast<int>(id)), noise));
+    views_.push_back(world_.render(walk(3 * static_cast<int>(id)), noise));
     KeyFrame keyframe = keyframe_of(views_.back(), id);
     if (id == 0) return keyframe;
     const Vector6d twist = Vector6d::NullaryExpr([&] { return 0.003 * world_.normal(); });
@@ -149,7 +149,7 @@ TEST_F(LocalMapperTest, WrongMatchesOfTrackingAreThrownOut) {
 TEST_F(LocalMapperTest, KeyFrameThatSharesNothingIsInsertedAllTheSame) {
   step();
   TestWorld elsewhere(1500, 55);
-  views_.push_back(elsewhere.see(walk(0)));
+  views_.push_back(elsewhere.render(walk(0)));
   map_ = mapper_.insert(std::move(map_), keyframe_of(views_.back(), 1));
   EXPECT_EQ(map_.check(), std::nullopt);
   map_ = mapper_.refine(std::move(map_), 1, {});
@@ -160,7 +160,7 @@ TEST_F(LocalMapperTest, KeyFrameThatSharesNothingIsInsertedAllTheSame) {
 TEST_F(LocalMapperTest, KeyFrameWithoutFeaturesIsNoCrash) {
   step();
   TestWorld empty(0);
-  views_.push_back(empty.see(walk(0)));
+  views_.push_back(empty.render(walk(0)));
   map_ = mapper_.refine(mapper_.insert(std::move(map_), keyframe_of(views_.back(), 1)), 1, {});
   EXPECT_EQ(map_.check(), std::nullopt);
 }

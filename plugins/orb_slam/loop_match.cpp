@@ -101,7 +101,7 @@ std::vector<std::pair<LandmarkId, LandmarkId>> same_landmarks(const SparseMap& m
   std::set<std::pair<LandmarkId, LandmarkId>> same;
   for (const KeyFrameId id : newer) {
     const KeyFrame& keyframe = *map.keyframe(id);
-    ObservedFrame view = observe_again(keyframe);
+    ObservedFrame view = observation_of(keyframe);
     view.world_from_camera = correction * keyframe.world_from_camera;
     refine(view, targets, kNarrowWindow, map);
     for (std::size_t i = 0; i < view.landmarks.size(); ++i)
@@ -116,7 +116,7 @@ std::vector<std::pair<LandmarkId, LandmarkId>> same_landmarks(const SparseMap& m
 std::optional<LoopMatch> match_loop(const SparseMap& map, KeyFrameId keyframe, KeyFrameId place) {
   const std::vector<KeyFrameId> newer = neighbourhood(map, keyframe);
   const std::vector<Target> targets = targets_around(map, place, newer);
-  ObservedFrame view = observe_again(*map.keyframe(keyframe));
+  ObservedFrame view = observation_of(*map.keyframe(keyframe));
   const auto guess = camera_from_world(view, targets, map.keyframe(place)->world_from_camera);
   if (!guess) return std::nullopt;
   view.world_from_camera = guess->inverse();

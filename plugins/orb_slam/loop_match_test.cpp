@@ -63,9 +63,9 @@ TEST_F(LoopMatchTest, SameMapSameBits) {
 // The same poster hangs in two places: its points fit, nothing around them does.
 TEST(LoopMatch, OnePosterIsNoPlace) {
   TestWorld world(3000, 5, {{-4, -2, 2}, {4, 2, 6}});
-  const View here = world.see(pose_at({0, 0, 0}));
+  const View here = world.render(pose_at({0, 0, 0}));
   TestWorld other(3000, 6, {{-4, -2, 2}, {4, 2, 6}});
-  View there = other.see(pose_at({0, 0, 0}));
+  View there = other.render(pose_at({0, 0, 0}));
   auto features = std::make_shared<Features>(*there.features);
   for (std::size_t i = 0; i < here.features->size(); ++i) {
     const cv::KeyPoint& k = here.features->keypoints[i];

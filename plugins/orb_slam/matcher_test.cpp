@@ -170,7 +170,7 @@ TEST_F(MatcherTest, MatchesThatTurnedUnlikeTheOthersAreDropped) {
 
 TEST_F(MatcherTest, FindsTheSamePointsInTwoViews) {
   TestWorld world;
-  const View a = world.see(Pose::Identity()), b = world.see(walk(5));
+  const View a = world.render(Pose::Identity()), b = world.render(walk(5));
   std::vector<Query> queries;
   for (std::uint32_t i = 0; i < a.point.size(); ++i)
     queries.push_back({.id = a.point[i],

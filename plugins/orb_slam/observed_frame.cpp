@@ -67,7 +67,7 @@ ObservedFrame observe(FramePtr frame, Features features) {
   return unmatched(std::move(frame), std::make_shared<Features>(std::move(features)));
 }
 
-ObservedFrame observe_again(const KeyFrame& keyframe) {
+ObservedFrame observation_of(const KeyFrame& keyframe) {
   Frame frame{.index = keyframe.frame, .time = keyframe.time, .camera = keyframe.camera};
   ObservedFrame observed =
       unmatched(std::make_shared<const Frame>(std::move(frame)), keyframe.features);

@@ -55,7 +55,7 @@ ObservedFrame observe(FramePtr frame, Features features);
 
 /// A key frame's features to be matched anew, without images; what must not be mapped has no
 /// weight.
-ObservedFrame observe_again(const KeyFrame& keyframe);
+ObservedFrame observation_of(const KeyFrame& keyframe);
 
 /// Pose from the landmarks and temporary points assigned so far, starting from the frame's own;
 /// marks the outliers and returns the number of inliers. Landmarks count in full from an age of

@@ -63,7 +63,7 @@ TEST(Observe, NoiseOfFarSurfacesIsNoDepthEdge) {
 
 TEST(ObservedFrame, WeightsDecideWhoMayBeUsed) {
   TestWorld world;
-  ObservedFrame frame = observed(world.see(Pose::Identity()));
+  ObservedFrame frame = observed(world.render(Pose::Identity()));
   StaticWeights weights;
   weights.track = cv::Mat(480, 640, CV_8UC1, cv::Scalar(255));
   weights.track.colRange(0, 320) = 0;
@@ -81,7 +81,7 @@ TEST(ObservedFrame, WeightsDecideWhoMayBeUsed) {
 
 TEST(ObservedFrame, BookkeepingOfLandmarks) {
   TestWorld world;
-  ObservedFrame frame = observed(world.see(Pose::Identity()));
+  ObservedFrame frame = observed(world.render(Pose::Identity()));
   frame.assign(std::vector<Match>{{.id = 5, .feature = 0}, {.id = 6, .feature = 2}});
   EXPECT_EQ(frame.matched(), 2);
   EXPECT_FALSE(frame.free(0));
@@ -100,8 +100,8 @@ class SolvePoseTest : public testing::Test {
       frame_.landmarks[i] = known_.landmark_of[view_.point[i]];
   }
   TestWorld world_;
-  KnownMap known_ = known_map(world_, {world_.see(walk(0)), world_.see(walk(3))});
-  View view_ = world_.see(walk(2));
+  KnownMap known_ = known_map(world_, {world_.render(walk(0)), world_.render(walk(3))});
+  View view_ = world_.render(walk(2));
   ObservedFrame frame_ = observed(view_);
 };
 

@@ -35,8 +35,8 @@ std::vector<int> share_features(const OrbOptions& options) {
 }
 
 // Moves the corners of a level where `fallback` is not zero.
-void split_off(std::vector<Corner>& corners, const cv::Mat& fallback, cv::Size level,
-               std::vector<Corner>& apart) {
+void move_masked(std::vector<Corner>& corners, const cv::Mat& fallback, cv::Size level,
+                 std::vector<Corner>& apart) {
   const auto is_spare = [&](const Corner& c) {
     return fallback.at<std::uint8_t>(c.y * fallback.rows / level.height,
                                      c.x * fallback.cols / level.width);
@@ -120,7 +120,7 @@ void OrbExtractor::build_pyramid(const cv::Mat& gray) {
 void OrbExtractor::detect(const cv::Mat& image, const cv::Mat& fallback, int count, double share) {
   fast_.detect(image, options_.fast_min_threshold, kPatchBorder, corners_);
   fallback_corners_.clear();
-  if (!fallback.empty()) split_off(corners_, fallback, image.size(), fallback_corners_);
+  if (!fallback.empty()) move_masked(corners_, fallback, image.size(), fallback_corners_);
   keep_best(corners_, image.size(), static_cast<int>(std::lround(share * count)));
   const int missing = count - static_cast<int>(corners_.size());
   if (missing <= 0 || fallback_corners_.empty()) return;

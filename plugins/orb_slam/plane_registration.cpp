@@ -106,7 +106,7 @@ PlaneRegistration register_planes(const DepthView& current, std::span<const Plac
         const Eigen::Vector3f in_other = other.rotation * patch.point + other.translation;
         const PlanePatch* plane = other.view->at(in_other);
         if (!plane) continue;
-        ++result.met;
+        ++result.matched;
         add(current, patch, other, *plane, in_other, static_cast<float>(reach), sums, result);
         break;
       }

@@ -18,13 +18,15 @@ struct PlacedView {
 struct PlaneRegistration {
   QuadraticCost cost;    ///< of the camera's pose
   int patches = 0;       ///< of the current view that were projected
-  int met = 0;           ///< of those, fall on a patch of another view
+  int matched = 0;       ///< of those, fall on a patch of another view
   int inlier_count = 0;  ///< of those, lie on its plane within reach
 
   /// Share of the patches that the other views cover.
-  double known() const { return patches > 0 ? static_cast<double>(met) / patches : 0.0; }
+  double overlap() const { return patches > 0 ? static_cast<double>(matched) / patches : 0.0; }
   /// Inlier share of those.
-  double agreement() const { return met > 0 ? static_cast<double>(inlier_count) / met : 0.0; }
+  double agreement() const {
+    return matched > 0 ? static_cast<double>(inlier_count) / matched : 0.0;
+  }
 };
 
 /// Projective association: a patch of `current` is compared with the first of `others` that has one

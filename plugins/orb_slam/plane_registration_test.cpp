@@ -14,8 +14,8 @@ const std::vector<WorldPlane> kCorner = {kAhead, kRight, kFloor};
 const Pose kMoved = pose_at({0.04, -0.03, 0.05}, {0.02, -0.03, 0.015});  // world from camera
 
 PlaneRegistration register_at_rest(const std::vector<WorldPlane>& planes, double noise) {
-  const DepthView other(*see_planes(planes, Pose::Identity(), 0, noise), {});
-  const DepthView current(*see_planes(planes, Pose::Identity(), 1, noise), {});
+  const DepthView other(*render_planes(planes, Pose::Identity(), 0, noise), {});
+  const DepthView current(*render_planes(planes, Pose::Identity(), 1, noise), {});
   const PlacedView placed{&other};
   return register_planes(current, {&placed, 1}, Pose::Identity(), 0.05);
 }
@@ -41,9 +41,9 @@ Pose find(
     const std::vector<WorldPlane>& planes, const Pose& world_from_camera, double noise,
     const StaticWeights& weights = {},
     const std::function<void(cv::Mat&)>& spoil = [](cv::Mat&) {}) {
-  const DepthView other(*see_planes(planes, Pose::Identity(), 0, noise), {});
+  const DepthView other(*render_planes(planes, Pose::Identity(), 0, noise), {});
   const PlacedView placed{&other};
-  const auto frame = std::make_shared<Frame>(*see_planes(planes, world_from_camera, 1, noise));
+  const auto frame = std::make_shared<Frame>(*render_planes(planes, world_from_camera, 1, noise));
   frame->depth = frame->depth.clone();
   spoil(frame->depth);
   const DepthView current(*frame, weights);
@@ -57,11 +57,11 @@ Pose find(
 // 12 cm off: an outlier to a Kinect, and within the noise of a sensor ten times as bad.
 TEST(PlaneRegistration, GatesFollowTheNoiseOfTheSensor) {
   const auto inlier_share = [](double noise) {
-    const auto see = [&](double ahead, std::uint32_t index) {
-      return with_surface_noise(see_planes({kAhead}, pose_at({0, 0, ahead}, {0, 0, 0}), index),
+    const auto render = [&](double ahead, std::uint32_t index) {
+      return with_surface_noise(render_planes({kAhead}, pose_at({0, 0, ahead}, {0, 0, 0}), index),
                                 noise);
     };
-    const DepthView other(*see(0, 0), {}), current(*see(0.12, 1), {});
+    const DepthView other(*render(0, 0), {}), current(*render(0.12, 1), {});
     const PlacedView placed{&other};
     return register_planes(current, {&placed, 1}, Pose::Identity(), 0.02).agreement();
   };
@@ -134,13 +134,13 @@ TEST(PlaneRegistration, NeighboursCountTogether) {
 }
 
 TEST(PlaneRegistration, AnotherPlaceDoesNotAgree) {
-  const DepthView other(*see_planes(kCorner, Pose::Identity()), {});
-  const DepthView current(*see_planes(kCorner, pose_at({0, 0, 0.5}), 1), {});
+  const DepthView other(*render_planes(kCorner, Pose::Identity()), {});
+  const DepthView current(*render_planes(kCorner, pose_at({0, 0, 0.5}), 1), {});
   const PlacedView placed{&other};
   const PlaneRegistration result = register_planes(current, {&placed, 1}, Pose::Identity(), 0.02);
-  EXPECT_GT(result.known(), 0.5);
+  EXPECT_GT(result.overlap(), 0.5);
   EXPECT_LT(result.agreement(), 0.8);
-  EXPECT_EQ(register_planes(DepthView(), {&placed, 1}, Pose::Identity(), 0.02).known(), 0.0);
+  EXPECT_EQ(register_planes(DepthView(), {&placed, 1}, Pose::Identity(), 0.02).overlap(), 0.0);
   EXPECT_EQ(register_planes(current, {}, Pose::Identity(), 0.02).agreement(), 0.0);
 }
 

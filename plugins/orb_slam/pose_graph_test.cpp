@@ -53,7 +53,7 @@ TEST_F(PoseGraphTest, WhereTheCameraSlidTakesTheError) {
   MapEdit edit{SparseMap{}};
   for (KeyFrameId id = 0; id < kCount; ++id) {
     KeyFrame keyframe =
-        keyframe_of(nothing.see(pose_at({id + (id >= kSlid ? 0.5 : 0.0), 0, 0})), id);
+        keyframe_of(nothing.render(pose_at({id + (id >= kSlid ? 0.5 : 0.0), 0, 0})), id);
     if (id == kSlid) keyframe.covariance(0, 0) = 1.0;
     edit.add_keyframe(std::move(keyframe));
     edit.update_covisibility(id);

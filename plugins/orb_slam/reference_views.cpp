@@ -16,16 +16,16 @@ constexpr double kMinGain = 0.05;          // of the patches; closer ones count 
 double overlap(const DepthView& current, const DepthView& other, const Pose& other_from_current) {
   const Eigen::Matrix3f rotation = other_from_current.linear().cast<float>();
   const Eigen::Vector3f translation = other_from_current.translation().cast<float>();
-  int patches = 0, met = 0;
+  int patches = 0, matched = 0;
   for (int row = 0; row < current.rows(); row += kSparse) {
     for (int column = 0; column < current.columns(); column += kSparse) {
       const PlanePatch& patch = current.patch(column, row);
       if (patch.weight <= 0) continue;
       ++patches;
-      met += other.at(rotation * patch.point + translation) != nullptr;
+      matched += other.at(rotation * patch.point + translation) != nullptr;
     }
   }
-  return patches > 0 ? static_cast<double>(met) / patches : 0.0;
+  return patches > 0 ? static_cast<double>(matched) / patches : 0.0;
 }
 
 }  // namespace

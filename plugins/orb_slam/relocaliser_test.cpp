@@ -17,7 +17,7 @@ class RelocaliserTest : public testing::Test {
     for (KeyFrameId id = 0; id < kRooms; ++id) {
       const double x = 10.0 * id;
       rooms_.emplace_back(150, id + 1, Box{{x - 1.5, -1, 2}, {x + 1.5, 1, 4}});
-      const View view = rooms_.back().see(place(id));
+      const View view = rooms_.back().render(place(id));
       edit.add_keyframe(keyframe_of(view, id));
       for (std::uint32_t i = 0; i < view.point.size(); ++i) {
         const LandmarkId landmark = edit.add_landmark(
@@ -31,7 +31,7 @@ class RelocaliserTest : public testing::Test {
   }
   static Pose place(KeyFrameId room) { return pose_at({10.0 * room, 0, 0}); }
   ObservedFrame seen_in(KeyFrameId room) {
-    return observed(rooms_[room].see(pose_at({10.0 * room + 0.1, 0.05, 0.1}, {0, 0.1, 0.1})));
+    return observed(rooms_[room].render(pose_at({10.0 * room + 0.1, 0.05, 0.1}, {0, 0.1, 0.1})));
   }
   // Calls until it is found, 0 = never within `limit`.
   int calls_to_find(KeyFrameId room, int limit = kRooms) {
@@ -73,7 +73,7 @@ TEST_F(RelocaliserTest, LastPlaceMayBeGone) {
 
 TEST_F(RelocaliserTest, UnknownPlaceIsNeverFound) {
   TestWorld unknown(400, 999);
-  ObservedFrame frame = observed(unknown.see(Pose::Identity()));
+  ObservedFrame frame = observed(unknown.render(Pose::Identity()));
   for (int i = 0; i < kRooms; ++i) EXPECT_FALSE(relocaliser_.find(frame, map_));
   EXPECT_EQ(frame.matched(), 0);
 }

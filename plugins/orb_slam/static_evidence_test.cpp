@@ -26,7 +26,7 @@ class StaticEvidenceTest : public testing::Test {
   }
 
   TestWorld world_;
-  View view_ = world_.see(walk(0), kNoNoise);
+  View view_ = world_.render(walk(0), kNoNoise);
   KnownMap known_ = known_map(world_, {view_});
   LandmarkId landmark_ = known_.landmark_of[view_.point[0]];
 };

@@ -10,7 +10,7 @@ namespace {
 class TargetsTest : public testing::Test {
  protected:
   TestWorld world_;
-  View view_ = world_.see(walk(0), kNoNoise);
+  View view_ = world_.render(walk(0), kNoNoise);
   KnownMap known_ = known_map(world_, {view_});
 };
 
@@ -38,7 +38,7 @@ TEST_F(TargetsTest, FrameAddsTemporaryPointsFromFullyTrustedDepth) {
 }
 
 TEST_F(TargetsTest, ProjectedTargetsFindTheirFeatures) {
-  const View next = world_.see(walk(1));
+  const View next = world_.render(walk(1));
   ObservedFrame frame = observed(next);
   frame.track_weights[3] = 0;
   const auto targets = targets_of(*known_.map.keyframe(0), known_.map);
@@ -54,7 +54,7 @@ TEST_F(TargetsTest, ProjectedTargetsFindTheirFeatures) {
 
 TEST_F(TargetsTest, TemporaryPointsAloneGiveThePose) {
   ObservedFrame last = observed(view_);
-  ObservedFrame frame = observed(world_.see(walk(1)));
+  ObservedFrame frame = observed(world_.render(walk(1)));
   const int matches =
       match_projected(frame, targets_of(last, SparseMap{}), walk(0).inverse(), 60, 1);
   EXPECT_EQ(frame.matched(), 0) << "temporary points are no landmarks";

@@ -17,7 +17,7 @@ class RoundTrip {
   static constexpr KeyFrameId kOneTurnOn = kPerTurn;  // looks where key frame 0 looked
 
   explicit RoundTrip(double drift = 0.004) : drift_(drift) {
-    for (int i = 0; i < kKeyFrames; ++i) views_.push_back(world_.see(truth(i)));
+    for (int i = 0; i < kKeyFrames; ++i) views_.push_back(world_.render(truth(i)));
   }
 
   // On a circle of 1 m, looking outwards.

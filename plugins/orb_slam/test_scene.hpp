@@ -27,7 +27,7 @@ class TestScene {
   TestScene()
       : TestScene({{-4, -3, 8, 6, 3.0}, {-1.6, -0.6, 1.1, 1.5, 2.2}, {0.4, -0.2, 0.9, 1.2, 1.8}}) {}
 
-  FramePtr see(const Pose& world_from_camera, std::uint32_t index) const {
+  FramePtr render(const Pose& world_from_camera, std::uint32_t index) const {
     auto frame = std::make_shared<Frame>();
     frame->index = index;
     frame->time = index / 30.0;
@@ -39,7 +39,7 @@ class TestScene {
     return frame;
   }
   FramePtr black(std::uint32_t index) const {
-    return TestScene(std::vector<Panel>{}).see(Pose::Identity(), index);
+    return TestScene(std::vector<Panel>{}).render(Pose::Identity(), index);
   }
 
  private:

@@ -24,8 +24,8 @@ inline const WorldPlane kRight{{1, 0, 0}, 0.9};
 inline const WorldPlane kFloor{{0, 1, 0}, 0.8};
 
 // `noise`: standard deviation of the inverse depth, 1/m.
-inline FramePtr see_planes(const std::vector<WorldPlane>& planes, const Pose& world_from_camera,
-                           std::uint32_t index = 0, double noise = 0.0) {
+inline FramePtr render_planes(const std::vector<WorldPlane>& planes, const Pose& world_from_camera,
+                              std::uint32_t index = 0, double noise = 0.0) {
   auto frame = std::make_shared<Frame>();
   auto camera = std::make_shared<Camera>();
   frame->index = index;

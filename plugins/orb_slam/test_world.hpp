@@ -56,7 +56,7 @@ class TestWorld {
     }
   }
 
-  View see(const Pose& world_from_camera, const Noise& noise = {}) {
+  View render(const Pose& world_from_camera, const Noise& noise = {}) {
     View view{world_from_camera, camera_};
     const Pose camera_from_world = world_from_camera.inverse();
     const Eigen::Vector3d x_axis = camera_from_world.linear().col(0);

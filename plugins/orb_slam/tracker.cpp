@@ -115,7 +115,7 @@ void OrbTracker::follow_map(const SparseMap& map) {
 
 void OrbTracker::predict_pose() {
   prediction_.reset();
-  if (velocity_.known())
+  if (velocity_.has_value())
     prediction_ = velocity_.predict(last_.world_from_camera, seconds_since_last());
   current_.world_from_camera = prediction_.value_or(last_.world_from_camera);
 }
@@ -131,7 +131,7 @@ int OrbTracker::match_last_frame(const SparseMap& map) {
 }
 
 bool OrbTracker::track_with_motion(const SparseMap& map) {
-  if (!velocity_.known()) return false;
+  if (!velocity_.has_value()) return false;
   predict_pose();
   const int matches = match_last_frame(map);
   const int inliers = solve(map);
@@ -268,7 +268,7 @@ PoseUncertainty OrbTracker::uncertainty(const SparseMap& map) const {
 
 void OrbTracker::update_velocity() {
   if (state_ != TrackState::kTracking || !last_.frame) {
-    velocity_.forget();
+    velocity_.reset();
     return;
   }
   velocity_.update(current_.world_from_camera.inverse() * last_.world_from_camera,
@@ -282,7 +282,7 @@ TrackResult OrbTracker::not_tracked(TrackState state) {
   result.tracked = describe(current_);
   if (state_ == TrackState::kTracking) relocaliser_.begin(last_.reference);
   state_ = state;
-  velocity_.forget();
+  velocity_.reset();
   return result;
 }
 

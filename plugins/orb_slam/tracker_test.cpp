@@ -30,7 +30,7 @@ class TrackerTest : public testing::Test {
     return result;
   }
   TrackResult step(const Pose& pose, const StaticWeights& weights = {}) {
-    return step(scene_.see(pose, next_++), weights);
+    return step(scene_.render(pose, next_++), weights);
   }
   static void expect_at(const TrackResult& result, const Pose& truth, double metres = 0.006,
                         double radians = 0.003) {
@@ -111,7 +111,7 @@ TEST_F(TrackerTest, ResultsAreInAgreementWithEachOther) {
 
 TEST_F(TrackerTest, WithoutDepthItWaits) {
   for (int i = 0; i < 3; ++i) {
-    auto frame = std::make_shared<Frame>(*scene_.see(Pose::Identity(), next_++));
+    auto frame = std::make_shared<Frame>(*scene_.render(Pose::Identity(), next_++));
     frame->depth = cv::Mat::zeros(frame->depth.size(), CV_32FC1);
     const TrackResult result = step(frame);
     EXPECT_EQ(result.state, TrackState::kWaiting);
@@ -126,7 +126,7 @@ TEST_F(TrackerTest, DepthGivesThePoseInAPlainCorner) {
     SCOPED_TRACE(i);
     const double t = i / 39.0;
     const Pose truth = pose_at({-0.3 * t, 0.1 * t, 0.2 * t}, {-0.1 * t, 0.2 * t, 0.05 * t});
-    const TrackResult result = step(see_planes({kAhead, kRight, kFloor}, truth, next_++, 0.002));
+    const TrackResult result = step(render_planes({kAhead, kRight, kFloor}, truth, next_++, 0.002));
     expect_at(result, truth);
     EXPECT_FALSE(result.uncertainty->poorly_constrained());
     EXPECT_EQ(result.depth_registered, i > 0);
@@ -139,7 +139,7 @@ TEST_F(TrackerTest, ASlideAlongAWallIsReported) {
   for (int i = 6; i < 12; ++i) {
     SCOPED_TRACE(i);
     const Pose truth = pose_at({0.01 * i, 0, 0.01 * (i - 6)});
-    const TrackResult result = step(see_planes({{{0, 0, 1}, 3.0}}, truth, next_++, 0.002));
+    const TrackResult result = step(render_planes({{{0, 0, 1}, 3.0}}, truth, next_++, 0.002));
     ASSERT_EQ(result.state, TrackState::kTracking);
     EXPECT_TRUE(result.depth_registered);
     EXPECT_TRUE(result.uncertainty->poorly_constrained());
@@ -165,7 +165,7 @@ TEST_F(TrackerTest, WhereLandmarksSufficeDepthIsNotAsked) {
 
 TEST_F(TrackerTest, SurfacesOfNoWeightDoNotHold) {
   const auto corner = [&](const Pose& pose) {
-    return see_planes({kAhead, kRight, kFloor}, pose, next_++, 0.002);
+    return render_planes({kAhead, kRight, kFloor}, pose, next_++, 0.002);
   };
   StaticWeights person;
   person.track = cv::Mat::zeros(480, 640, CV_8UC1);
@@ -202,7 +202,7 @@ TEST_F(TrackerTest, LostFarAwayIsFoundWhereTheMapIsKnown) {
 
 TEST_F(TrackerTest, UnknownViewIsLost) {
   for (int i = 0; i < 5; ++i) step(pose_at({0.02 * i, 0, 0}));
-  EXPECT_EQ(step(TestScene({{-6, -6, 15, 15, 2.7}}).see(pose_at({3, 3, 0}), next_++)).state,
+  EXPECT_EQ(step(TestScene({{-6, -6, 15, 15, 2.7}}).render(pose_at({3, 3, 0}), next_++)).state,
             TrackState::kLost);
 }
 
@@ -249,7 +249,7 @@ TEST_F(TrackerTest, WhatIsHiddenIsMadeUpFor) {
     weights.map(hidden) = 0;
     int features = 0;
     for (std::uint32_t i = 0; i < 2; ++i) {  // the next frame's features make up for this one's
-      const FramePtr frame = scene_.see(Pose::Identity(), i);
+      const FramePtr frame = scene_.render(Pose::Identity(), i);
       features = tracker.track(tracker.prepare(frame), weights, {}, {}).features;
     }
     return features;
@@ -268,7 +268,7 @@ TEST_F(TrackerTest, MovingThingWithoutWeightDoesNotPull) {
   };
   for (int i = 0; i < 10; ++i) {
     const Pose truth = pose_at({0, 0.02 * i, 0});
-    const FramePtr frame = scene_at(i).see(truth, next_++);
+    const FramePtr frame = scene_at(i).render(truth, next_++);
     StaticWeights weights;
     weights.track = frame->depth > 2.5;
     cv::erode(weights.track, weights.track, cv::Mat(), {-1, -1}, 15);
@@ -305,7 +305,7 @@ TEST_F(TrackerTest, FollowsWhenMappingMovesTheMap) {
 
 TEST_F(TrackerTest, TwoFramesOfOneTimeAreNoCrash) {
   for (int i = 0; i < 6; ++i) {
-    auto frame = std::make_shared<Frame>(*scene_.see(pose_at({0.01 * i, 0, 0}), next_++));
+    auto frame = std::make_shared<Frame>(*scene_.render(pose_at({0.01 * i, 0, 0}), next_++));
     frame->time = i < 3 ? 0.1 * i : 0.3;
     expect_at(step(frame), pose_at({0.01 * i, 0, 0}));
   }
