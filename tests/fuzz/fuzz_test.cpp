@@ -25,7 +25,7 @@ extern "C" const char* __asan_default_options() {
 namespace stillpoint::testing {
 namespace {
 
-constexpr std::uint64_t kCases = 3'000;
+constexpr std::uint64_t kCases = 1'000;
 
 std::vector<NamedFuzzTarget> all_targets() {
   std::vector<NamedFuzzTarget> all;

@@ -26,11 +26,7 @@ using stillpoint::Error;
 using stillpoint::Fault;
 
 constexpr void (*kCommands[])(CLI::App&) = {
-    stillpoint::add_ablate,   stillpoint::add_check,   stillpoint::add_compare,
-    stillpoint::add_evaluate, stillpoint::add_import,  stillpoint::add_inspect,
-    stillpoint::add_map,      stillpoint::add_plugins, stillpoint::add_record,
-    stillpoint::add_report,   stillpoint::add_run,     stillpoint::add_run_cell,
-    stillpoint::add_simulate,
+#include "command_list.inc"
 };
 
 constexpr const char* kExitCodes =

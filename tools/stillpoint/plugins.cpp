@@ -151,7 +151,9 @@ void add_plugins(CLI::App& app) {
   describe_command->fallthrough();
   describe_command->callback([folders, name] { describe_all(search_plugins(*folders), *name); });
 
+#ifdef STILLPOINT_ALL_COMMANDS
   add_plugins_check(*command);
+#endif
   add_plugins_new(*command);
 }
 

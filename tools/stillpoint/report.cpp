@@ -10,6 +10,7 @@
 #include "commands.hpp"
 #include "commit.hpp"
 #include "evaluation/format.hpp"
+#include "evaluation/origin.hpp"
 #include "report/figures.hpp"
 #include "report/page.hpp"
 #include "report/report_reader.hpp"
@@ -17,7 +18,6 @@
 #include "report/table_files.hpp"
 #include "stillpoint/engine/install_layout.hpp"
 #include "stillpoint/error.hpp"
-#include "study/origin.hpp"
 #include "study/text_file.hpp"
 #include "study_file.hpp"
 
@@ -101,8 +101,8 @@ void write_report(const ReportArguments& arguments) {
   if (!arguments.figures.empty())
     std::cout << report::write_figures(data, arguments.figures) << " figures in "
               << arguments.figures.string() << ", each as SVG and PDF\n";
-  const study::Origin here =
-      study::origin_of({.version = STILLPOINT_VERSION, .commit = built_from_commit()});
+  const evaluation::Origin here =
+      evaluation::origin_of({.version = STILLPOINT_VERSION, .commit = built_from_commit()});
   const std::string html = filled_page(page_file(), data, fs::absolute(page).parent_path(),
                                        "Stillpoint " STILLPOINT_VERSION ", " + here.date);
   write_text(fs::absolute(page), html);

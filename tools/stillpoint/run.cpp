@@ -14,6 +14,7 @@
 #include "commands.hpp"
 #include "commit.hpp"
 #include "console.hpp"
+#include "evaluation/origin.hpp"
 #include "interrupt.hpp"
 #include "map_saver.hpp"
 #include "progress.hpp"
@@ -24,7 +25,6 @@
 #include "stillpoint/engine/make_stages.hpp"
 #include "stillpoint/engine/stage_error.hpp"
 #include "stillpoint/engine/stage_guard.hpp"
-#include "study/origin.hpp"
 
 namespace stillpoint {
 namespace {
@@ -162,7 +162,7 @@ int run(const RunArguments& arguments) {
   require_no_conflicts(arguments, config, folder);
   folder.log(LogLevel::kInfo, "stillpoint " STILLPOINT_VERSION ", " + config.file.string());
   folder.log(LogLevel::kInfo,
-             "by " + origin_text(study::origin_of(
+             "by " + origin_text(evaluation::origin_of(
                          {.version = STILLPOINT_VERSION, .commit = built_from_commit()})));
   loading.reset();
   const LateCalls late(config.runtime.stage_timeout, [&folder](const std::string& text) {

@@ -5,10 +5,13 @@
 #include <optional>
 #include <string>
 
+#include "evaluation/origin.hpp"
 #include "study/metrics.hpp"
-#include "study/origin.hpp"
 
 namespace stillpoint::study {
+
+using evaluation::Origin;
+using evaluation::Program;
 
 struct CellResult {
   std::string fingerprint;

@@ -3,7 +3,7 @@
 
 #include <string>
 
-namespace stillpoint::study {
+namespace stillpoint::evaluation {
 
 /// The program that makes the runs.
 struct Program {
@@ -30,4 +30,4 @@ std::string origin_text(const Origin& origin);
 /// Here and now.
 Origin origin_of(const Program& program);
 
-}  // namespace stillpoint::study
+}  // namespace stillpoint::evaluation

@@ -1,11 +1,11 @@
-#include "study/origin.hpp"
+#include "evaluation/origin.hpp"
 
 #include <chrono>
 #include <cstdio>
 #include <fstream>
 #include <thread>
 
-namespace stillpoint::study {
+namespace stillpoint::evaluation {
 namespace {
 
 /// As Linux names it; empty elsewhere.
@@ -52,4 +52,4 @@ Origin origin_of(const Program& program) {
       .version = program.version, .commit = program.commit, .machine = machine(), .date = today()};
 }
 
-}  // namespace stillpoint::study
+}  // namespace stillpoint::evaluation
