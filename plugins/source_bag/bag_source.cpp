@@ -102,13 +102,10 @@ std::vector<BagSource::Pair> BagSource::make_pairs(const Options& options) {
 
 std::optional<Frame> BagSource::next() {
   while (position_ < pairs_.size()) {
-    try {
-      Frame frame = load(pairs_[position_++]);
-      frame.index = given_++;
+    const auto& pair = pairs_[position_++];
+    if (auto frame = skipped_.load_or_skip([&] { return load(pair); }, given_)) {
+      ++given_;
       return frame;
-    } catch (const Error& reason) {
-      if (reason.fault() != Fault::kData) throw;
-      skipped_.add(reason, given_);
     }
   }
   return std::nullopt;

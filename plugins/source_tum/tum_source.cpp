@@ -60,13 +60,10 @@ TumSource::TumSource(Options options, const StageContext& context)
 
 std::optional<Frame> TumSource::next() {
   while (position_ < recording_.pairs.size()) {
-    try {
-      Frame frame = load(recording_.pairs[position_++]);
-      frame.index = given_++;
+    const auto& pair = recording_.pairs[position_++];
+    if (auto frame = skipped_.load_or_skip([&] { return load(pair); }, given_)) {
+      ++given_;
       return frame;
-    } catch (const Error& reason) {
-      if (reason.fault() != Fault::kData) throw;
-      skipped_.add(reason, given_);
     }
   }
   return std::nullopt;

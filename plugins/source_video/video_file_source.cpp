@@ -90,14 +90,13 @@ std::optional<Frame> VideoFileSource::next() {
   if (options_.limit > 0 && given_ == static_cast<std::uint32_t>(options_.limit))
     return std::nullopt;
   while (auto pair = next_pair()) {
-    try {
+    const auto load = [&] {
       const cv::Mat depth = depths_.read(pair->depth, {camera_.width, camera_.height});
-      Frame frame = rectifier_.frame(pair->time, pair->bgr, depth);
-      frame.index = given_++;
+      return rectifier_.frame(pair->time, pair->bgr, depth);
+    };
+    if (auto frame = skipped_.load_or_skip(load, given_)) {
+      ++given_;
       return frame;
-    } catch (const Error& reason) {
-      if (reason.fault() != Fault::kData) throw;
-      skipped_.add(reason, given_);
     }
   }
   return std::nullopt;

@@ -15,9 +15,22 @@ void SkippedPairs::warn(const std::string& warning) {
   report_.warnings.push_back(warning);
 }
 
-void SkippedPairs::add(const Error& reason, std::size_t used) {
+std::optional<Frame> SkippedPairs::load_or_skip(const std::function<Frame()>& load,
+                                                std::uint32_t index) {
+  try {
+    Frame frame = load();
+    frame.index = index;
+    return frame;
+  } catch (const Error& reason) {
+    if (reason.fault() != Fault::kData) throw;
+    add(reason, index == 0);
+    return std::nullopt;
+  }
+}
+
+void SkippedPairs::add(const Error& reason, bool none_before) {
   ++report_.skipped;
-  const bool hopeless = used == 0 && report_.skipped >= std::min(kMaxUnusableAtStart, total_);
+  const bool hopeless = none_before && report_.skipped >= std::min(kMaxUnusableAtStart, total_);
   if (hopeless || 2 * report_.skipped > total_)
     throw Error(
         Fault::kData,

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -22,13 +24,15 @@ class SkippedPairs {
 
   /// Something to report that leaves out nothing.
   void warn(const std::string& warning);
-  /// One more, after `used` that were good. Throws Error(kData) when the first ten are all
-  /// unusable, or more than half.
-  void add(const Error& reason, std::size_t used);
+  /// What `load` gives, as frame `index`; nothing when it throws Error(kData): the pair is left
+  /// out. Throws Error(kData) when the first ten are all unusable, or more than half.
+  std::optional<Frame> load_or_skip(const std::function<Frame()>& load, std::uint32_t index);
 
   const SourceReport& report() const { return report_; }
 
  private:
+  void add(const Error& reason, bool none_before);
+
   std::size_t total_;
   std::string recording_;
   Log log_;
