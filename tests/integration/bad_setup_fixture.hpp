@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "support/plugin_libraries.hpp"
 #include "support/simulated_recording.hpp"
 
 namespace stillpoint::testing {
@@ -41,10 +42,6 @@ class BadSetup : public ::testing::Test {
 
   const TemporaryFolder folder_;
 };
-
-/// Those of tests/plugins_bad.
-inline const std::filesystem::path kBadPlugins =
-    std::filesystem::path(STILLPOINT_BINARY_DIR) / "tests/plugins_bad/plugins";
 
 /// Every bad plugin in one folder: each gives its own message and the good ones are still there.
 class BadPlugins : public BadSetup {

@@ -8,6 +8,7 @@
 #include <tuple>
 #include <vector>
 
+#include "support/plugin_libraries.hpp"
 #include "support/simulated_recording.hpp"
 
 namespace stillpoint::testing {
@@ -96,10 +97,8 @@ class WrongResults : public ::testing::TestWithParam<std::tuple<const char*, Wro
 
 TEST_P(WrongResults, EndTheRunWithTheStageThatGaveThem) {
   const fs::path out = folder_.path() / "out";
-  const Outcome outcome =
-      call({"run", pipeline().string(), "-o", out.string()},
-           {.environment = {{"STILLPOINT_PLUGIN_PATH",
-                             std::string(STILLPOINT_BINARY_DIR) + "/tests/plugins_bad/plugins"}}});
+  const Outcome outcome = call({"run", pipeline().string(), "-o", out.string()},
+                               {.environment = {{"STILLPOINT_PLUGIN_PATH", kBadPlugins.string()}}});
   EXPECT_EQ(outcome.exit_code, kStageFailed) << outcome.signal;
   const std::string message = std::string(wrong().role) + " (wrong) failed on frame 3: ";
   EXPECT_THAT(outcome.err, HasSubstr("error: " + message));
@@ -124,10 +123,8 @@ TEST(WrongResultsAtTheEnd, ASourceWithoutFramesIsSaid) {
   const fs::path pipeline = folder.write("empty.yaml",
                                          "version: 1\nsource: {type: wrong, how: no_frames}\n"
                                          "tracker: {type: wrong, how: right}\n");
-  const Outcome outcome =
-      call({"run", pipeline.string(), "-o", (folder.path() / "out").string()},
-           {.environment = {{"STILLPOINT_PLUGIN_PATH",
-                             std::string(STILLPOINT_BINARY_DIR) + "/tests/plugins_bad/plugins"}}});
+  const Outcome outcome = call({"run", pipeline.string(), "-o", (folder.path() / "out").string()},
+                               {.environment = {{"STILLPOINT_PLUGIN_PATH", kBadPlugins.string()}}});
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_THAT(outcome.err, HasSubstr("warning: the source gave no frame"));
 }

@@ -9,6 +9,7 @@
 namespace stillpoint::testing {
 
 inline const std::filesystem::path kShippedPlugins = build_folder() / "lib/stillpoint/plugins";
+/// Those of tests/plugins_bad.
 inline const std::filesystem::path kBadPlugins =
     std::filesystem::path(STILLPOINT_BINARY_DIR) / "tests/plugins_bad/plugins";
 
