@@ -44,6 +44,11 @@ class Processes:
             signal_group(process, signal.SIGKILL)
             process.wait()
 
+    def kill(self, name):
+        process = self.running.pop(name)
+        signal_group(process, signal.SIGKILL)
+        process.wait()
+
     def log(self, name):
         return (self.folder / f"{name}.log").read_text(errors="replace")
 

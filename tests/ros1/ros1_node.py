@@ -242,12 +242,12 @@ def check_another_camera(inbox):
 
 
 def check_second_play(processes, inbox, bag, truth, map_from_room):
-    """Of the same bag, whose player ends in the middle of it."""
+    """Of the same bag, whose player is killed in the middle of it."""
     answer = call("reset")
     expect(answer.success, answer.message)
     start_playing(processes, inbox, bag)
     inbox.wait("state", lambda its: values(its).get("frame") == "20", "after a reset, the same bag is tracked again")
-    processes.stop("play")
+    processes.kill("play")
     error = worst_error(list(inbox.messages["pose"]), truth, map_from_room, numpy.eye(4))
     expect(error < LIMIT, f"its poses are right, to {error * 1000:.1f} mm")
     inbox.clear()

@@ -1,4 +1,6 @@
-"""browser.py CHROMIUM URL CONDITION [PICTURE]: opens the page, waits until the JavaScript expression holds, and
+"""Pages in headless Chromium.
+
+browser.py CHROMIUM URL CONDITION [PICTURE]: opens the page, waits until the JavaScript expression holds, and
 prints the document; errors of its scripts go to standard error. With PICTURE, a PNG of it, of 1280 x 800 px.
 
 Speaks the DevTools protocol over a WebSocket: JSON in text frames."""
@@ -11,6 +13,7 @@ import struct
 import subprocess
 import sys
 import tempfile
+import threading
 
 WAIT = """new Promise((resolve, reject) => {
   const look = () => (CONDITION) ? resolve(document.documentElement.outerHTML) : setTimeout(look, 50);
@@ -60,42 +63,63 @@ class DevTools:
         return json.loads(message)
 
 
-def look_at(browser, url, condition, picture):
-    for line in browser.stderr:
-        listening = re.search(r"DevTools listening on ws://127\.0\.0\.1:(\d+)(\S+)", line)
-        if listening:
-            break
-    else:
-        sys.exit("the browser does not start")
-    port = int(listening[1])
-    target = DevTools(port, listening[2]).call("Target.createTarget", url="about:blank")["targetId"]
-    page = DevTools(port, f"/devtools/page/{target}")
-    page.call("Runtime.enable")
-    page.call("Page.enable")
-    page.call("Emulation.setDeviceMetricsOverride", width=1280, height=800, deviceScaleFactor=1, mobile=False)
-    page.call("Page.navigate", url=url)
-    page.wait_for("method", "Page.loadEventFired")
-    seen = page.call("Runtime.evaluate", expression=WAIT.replace("CONDITION", condition), awaitPromise=True)
-    if "exceptionDetails" in seen:
-        sys.exit(seen["exceptionDetails"]["exception"]["description"])
-    print(seen["result"]["value"])
-    if picture:
-        with open(picture, "wb") as file:
-            file.write(base64.b64decode(page.call("Page.captureScreenshot")["data"]))
+class Page:
+    """A page of a headless Chromium of its own."""
+
+    def __init__(self, chromium, profile):
+        self.browser = subprocess.Popen(
+            [*chromium, "--headless=new", "--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader",
+             "--remote-debugging-port=0", f"--user-data-dir={profile}", "about:blank"],
+            stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+        for line in self.browser.stderr:
+            listening = re.search(r"DevTools listening on ws://127\.0\.0\.1:(\d+)(\S+)", line)
+            if listening:
+                break
+        else:
+            sys.exit("the browser does not start")
+        threading.Thread(target=self.browser.stderr.read, daemon=True).start()  # or it waits when the pipe is full
+        port = int(listening[1])
+        target = DevTools(port, listening[2]).call("Target.createTarget", url="about:blank")["targetId"]
+        self.tools = DevTools(port, f"/devtools/page/{target}")
+        self.tools.call("Runtime.enable")
+        self.tools.call("Page.enable")
+        self.tools.call("Emulation.setDeviceMetricsOverride", width=1280, height=800, deviceScaleFactor=1,
+                        mobile=False)
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.kill()
+
+    def open(self, url):
+        self.tools.call("Page.navigate", url=url)
+        self.tools.wait_for("method", "Page.loadEventFired")
+
+    def evaluate(self, expression):
+        """Of a promise, what it gives at last."""
+        seen = self.tools.call("Runtime.evaluate", expression=expression, awaitPromise=True, returnByValue=True)
+        if "exceptionDetails" in seen:
+            sys.exit(seen["exceptionDetails"]["exception"]["description"])
+        return seen["result"].get("value")
+
+    def save_picture(self, file):
+        with open(file, "wb") as stream:
+            stream.write(base64.b64decode(self.tools.call("Page.captureScreenshot")["data"]))
+
+    def kill(self):
+        self.browser.kill()
+        self.browser.wait()
 
 
 def main():
     chromium, url, condition, *picture = sys.argv[1:]
-    with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as profile:
-        browser = subprocess.Popen(
-            [chromium, "--headless=new", "--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader",
-             "--remote-debugging-port=0", f"--user-data-dir={profile}", "about:blank"],
-            stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
-        try:
-            look_at(browser, url, condition, picture[0] if picture else None)
-        finally:
-            browser.kill()
-            browser.wait()
+    with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as profile, Page([chromium], profile) as page:
+        page.open(url)
+        print(page.evaluate(WAIT.replace("CONDITION", condition)))
+        if picture:
+            page.save_picture(picture[0])
 
 
-main()
+if __name__ == "__main__":
+    main()
