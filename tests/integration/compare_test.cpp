@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <utility>
 
 #include "support/program.hpp"
 
@@ -52,6 +53,11 @@ TEST_F(Compare, ReadsTheFormatsOfOthersBesideEachOther) {
   EXPECT_THAT(outcome.out, ::testing::ContainsRegex("ours +100.0 +0.0020[*]"));
   EXPECT_THAT(outcome.out, ::testing::ContainsRegex("theirs +100.0 +0.0100 "));
   EXPECT_GT(std::filesystem::file_size(plot), 10'000u);
+  EXPECT_THAT(outcome.out, ::testing::ContainsRegex(
+                               "\n\nstillpoint compare --reference " + reference + " " + ours +
+                               " " + theirs + " --plot " + plot +
+                               "\nStillpoint [0-9.]+(, commit [-0-9a-z]+)?; [^;\n]* cores?; "
+                               "20[0-9]+-[0-9]+-[0-9]+\n$"));
 
   outcome = call({"compare", "--reference", reference, "a=" + ours, "b=" + theirs, "--align",
                   "none", "--json"});
@@ -98,14 +104,28 @@ TEST_F(Compare, TheAlignedTrajectoryReplacesNoneThatIsRead) {
   }
 }
 
+TEST_F(Compare, PosesWithoutTimesHaveNoPartnersAmongThoseWithTimes) {
+  const std::string timed = write("timed.txt", "tum", 0.0),
+                    counted = write("counted.txt", "kitti", 0.0);
+  const std::string message =
+      counted + ": has no time stamps (the format of KITTI), and " + timed + " has: ";
+  for (const auto& [truth, run] : {std::pair(timed, counted), std::pair(counted, timed)}) {
+    const Outcome outcome = call({"compare", "--reference", truth, run});
+    EXPECT_EQ(outcome.exit_code, 3);
+    EXPECT_THAT(outcome.err,
+                ::testing::AllOf(HasSubstr(message), HasSubstr("; write both with times, "),
+                                 ::testing::Not(HasSubstr("--offset"))));
+  }
+}
+
 TEST_F(Compare, WhatCannotBeComparedIsNamed) {
-  const std::string truth = write("truth.txt", "tum", 0.0),
-                    kitti = write("kitti.txt", "kitti", 0.0);
+  const std::string truth = write("truth.txt", "tum", 0.0);
+  const std::string early = folder_.write("early.txt", "1 0 0 0 0 0 0 1\n").string();
   const std::string again = write("again/truth.txt", "tum", 0.0);
   Outcome outcome = call({"compare", "--reference", truth, truth, again});
   EXPECT_EQ(outcome.exit_code, 2);
   EXPECT_THAT(outcome.err, HasSubstr("two runs are named 'truth'; give them names: NAME="));
-  outcome = call({"compare", "--reference", truth, kitti});
+  outcome = call({"compare", "--reference", truth, early});
   EXPECT_EQ(outcome.exit_code, 3);
   EXPECT_THAT(outcome.err, HasSubstr("do not overlap in time"));
   outcome = call({"compare", "--reference", truth, truth, "--plot", "plot.jpg"});

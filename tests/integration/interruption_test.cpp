@@ -44,8 +44,8 @@ TEST_P(Interruption, LeavesWhatWasComputed) {
   Program program({"run", "orb_baseline", "--dataset", recording.path().string(), "-o",
                    out.string(), "--set", std::string("runtime.mode=") + mode});
   ASSERT_TRUE(program.wait_for(" key frames  tracking")) << "no line of progress";
-  program.send(signal);
-  if (signal == SIGHUP) program.send(signal);  // shell and kernel both tell it
+  // Shell and kernel both tell the end of a terminal; `timeout` tells process and group.
+  for (int i = 0; i < 3; ++i) program.send(signal);
   const Outcome outcome = program.finish();
   EXPECT_EQ(outcome.signal, signal) << outcome.exit_code;
   EXPECT_THAT(outcome.err, HasSubstr("stopped; what was computed until then is saved"));

@@ -27,15 +27,15 @@ std::vector<fs::path> files_below(const fs::path& folder) {
 
 bool is_part(const fs::path& file) { return file.extension() == ".part"; }
 
-// Whatever has the name of a result is whole, but for the bag, which grows and is read as far as it
-// goes.
+// Whatever has the name of a result is whole, but for bag and page, which grow and are read as far
+// as they go.
 void expect_whole(const fs::path& file) {
   if (file.extension() == ".jpg")
     EXPECT_EQ(cv::imread(file.string()).size(), cv::Size(640, 480)) << file;
   else if (file.filename() == "run.mcap")
     EXPECT_EQ(call({"inspect", file.string()}).exit_code, 0);
   else
-    EXPECT_THAT((std::vector<std::string>{"log.txt", "pipeline.yaml"}),
+    EXPECT_THAT((std::vector<std::string>{"live.html", "log.txt", "pipeline.yaml"}),
                 ::testing::Contains(file.filename()));
 }
 
@@ -47,8 +47,8 @@ TEST_P(KilledRun, LeavesNoTornFileAndTheNextOneItsOwnOnly) {
   const std::vector<std::string> arguments = {
       "run", "orb_baseline", "--dataset", simulated_recording().string(), "-o", out.string()};
   std::vector<std::string> watched = arguments;
-  for (const char* more : {"--with", "mcap", "--with", "images.every=1", "--view=0", "--set",
-                           "runtime.pace=sensor", "--save-map"})
+  for (const char* more : {"--with", "mcap", "--with", "images.every=1", "--view=0", "--with",
+                           "web.record=live.html", "--set", "runtime.pace=sensor", "--save-map"})
     watched.emplace_back(more);
   watched.push_back((out / "sparse.map").string());
   Program program(watched);

@@ -66,6 +66,8 @@ TEST(ReportPage, DrawsSortsAndTurnsInABrowser) {
   const nlohmann::json seen = probed(page, folder);
   ASSERT_EQ(seen["ready"], "yes") << seen;
   EXPECT_EQ(seen["errors"], nlohmann::json::array());
+  EXPECT_EQ(seen.value("command", ""),
+            "stillpoint report '" + finished_run().string() + "' -o " + page.string());
   EXPECT_EQ(seen["charts"], 5);  // ATE, RPE, excluded pixels, features, stages
   EXPECT_GT(seen["lines"], 4);
   EXPECT_GT(seen["pictures"], 1);

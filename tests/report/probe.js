@@ -56,6 +56,7 @@ function look() {
   setTimeout(async () => {
     try {
       seen.ready = ready;
+      seen.command = document.querySelector('#top code').textContent;
       seen.charts = [...document.querySelectorAll('.uplot canvas')].filter(isDrawn).length;
       seen.lines = document.querySelectorAll('svg.path path.coloured').length;
       seen.pictures = [...document.querySelectorAll('.frames img')].filter(i => i.naturalWidth).length;

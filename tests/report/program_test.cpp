@@ -54,8 +54,13 @@ TEST(ReportProgram, WritesPageAndTablesOfARunAndChangesNothingElse) {
   EXPECT_THAT(text_of(page), AllOf(HasSubstr("id=\"report\">"), HasSubstr("id=\"run-0\">"),
                                    HasSubstr("id=\"map-0\">"), HasSubstr("id=\"picture-0-0\">"),
                                    HasSubstr("id=\"replay-0\">")));
-  EXPECT_THAT(text_of(folder.path() / "new/page.tex"), HasSubstr("\\toprule"));
-  EXPECT_THAT(text_of(folder.path() / "new/page.csv"), HasSubstr("Runs,a run,ATE RMSE (m),0.0"));
+  const std::string command =
+      "stillpoint report '" + finished_run().string() + "' -o " + page.string();
+  EXPECT_THAT(text_of(folder.path() / "new/page.tex"),
+              AllOf(HasSubstr("\n% " + command + "\n% Stillpoint "), HasSubstr("\\toprule")));
+  EXPECT_THAT(
+      text_of(folder.path() / "new/page.csv"),
+      AllOf(HasSubstr("Runs,a run,ATE RMSE (m),0.0"), HasSubstr(command + " | Stillpoint ")));
   EXPECT_EQ(text_of(finished_run() / "summary.json"), before);
   EXPECT_FALSE(fs::exists(finished_run() / "report.html"));
 }

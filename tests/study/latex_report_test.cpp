@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <utility>
+
 #include "report_fixture.hpp"
 
 namespace stillpoint::study {
@@ -69,11 +71,28 @@ TEST_F(Report, AsLatexOnlyWhatIsThereIsExplained) {
       ::testing::AllOf(::testing::HasSubstr("\\caption{Absolute trajectory error, RMSE (m). "
                                             "One run of each.}"),
                        ::testing::Not(::testing::HasSubstr("In brackets:")),
-                       ::testing::Not(::testing::HasSubstr("Bold"))));
+                       ::testing::Not(::testing::HasSubstr("Bold")),
+                       ::testing::Not(::testing::HasSubstr("dagger"))));
   results.results[1] = result_with(0.05, 40.0);
   EXPECT_THAT(latex_report(results, "demo"),
               ::testing::HasSubstr("One run of each. In brackets: coverage, where it is below "
                                    "100\\,\\%.}"));
+}
+
+TEST(LatexReport, WhatIsNoChanceHasADagger) {
+  Study study = two_by_two(8);
+  study.baseline = "plain";
+  study.new_noise = true;  // each repeat of a scene is a recording of its own
+  for (Sequence& sequence : study.sequences) sequence.scene = std::exchange(sequence.dataset, "");
+  StudyResults results{.study = study, .cells = cells_of(study), .results = {}, .command = ""};
+  for (const Cell& cell : results.cells)
+    results.results.emplace_back(result_with(cell.variant == 0 ? 0.1 : 0.02));
+  EXPECT_THAT(
+      latex_report(results, "demo"),
+      ::testing::AllOf(
+          ::testing::HasSubstr("    Sequence & plain & better$^\\dagger$ \\\\\n"),
+          ::testing::HasSubstr(" $^\\dagger$: differs from plain over all recordings, corrected p "
+                               "$<$ 0.05.}\n  \\label{tab:demo-ate}")));
 }
 
 TEST_F(Report, NegativeImprovementsKeepTheirSigns) {

@@ -15,7 +15,19 @@ std::string range_text(const Trajectory& trajectory, double offset) {
          " s (" + trajectory.name + ")";
 }
 
+[[noreturn]] void throw_without_times(const Trajectory& counted, const Trajectory& timed) {
+  throw Error(
+      Fault::kData,
+      "has no time stamps (the format of KITTI), and " + timed.name +
+          " has: which poses belong together is not known",
+      counted.name,
+      "write both with times, 'time tx ty tz qx qy qz qw', or both in the format of KITTI, a line "
+      "per frame");
+}
+
 [[noreturn]] void throw_too_few_pairs(const Evaluation& e) {
+  if (!e.estimate.has_times && e.reference.has_times) throw_without_times(e.estimate, e.reference);
+  if (!e.reference.has_times && e.estimate.has_times) throw_without_times(e.reference, e.estimate);
   const double offset = e.options.offset;
   const bool overlap = e.estimate.start() + offset <= e.reference.end() &&
                        e.reference.start() <= e.estimate.end() + offset;

@@ -188,6 +188,7 @@ Trajectory read_trajectory(const std::filesystem::path& file) {
     return true;
   });
   check_not_empty(poses.empty(), file, kPoseFormat);
+  trajectory.has_times = columns != kKittiColumns;
   return trajectory;
 }
 

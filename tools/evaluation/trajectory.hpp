@@ -19,6 +19,7 @@ struct Trajectory {
   std::string name;  ///< the file, for messages
   std::vector<StampedPose> poses;
   int repeated_stamps = 0;  ///< lines left out because a later one has the same time
+  bool has_times = true;    ///< false: its format has none, and the poses were counted
 
   double start() const { return poses.front().time; }
   double end() const { return poses.back().time; }

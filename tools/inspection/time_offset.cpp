@@ -9,9 +9,14 @@ namespace stillpoint::inspection {
 namespace {
 
 const cv::Size kSmall(160, 120);
-constexpr double kMaxOffset = 0.15;         // seconds
-constexpr double kStep = 0.005;             // seconds
-constexpr int kParabolaSteps = 4;           // on either side of the best step
+constexpr double kStep = 0.005;    // seconds
+constexpr int kMaxSteps = 30;      // of the offset that is looked for
+constexpr int kParabolaSteps = 4;  // on either side of the best step
+// A peak is clear when the correlation falls by so much on both sides. While the camera moves
+// steadily, all offsets are about as good.
+constexpr int kFallSteps = 20;
+constexpr double kMinFall = 0.1;
+constexpr int kCurveSteps = kMaxSteps + kFallSteps;
 constexpr std::size_t kMinVelocities = 10;  // per stretch, that both sensors have
 constexpr double kMinSpeed = 0.05;          // image widths per second
 constexpr double kMinCorrelation = 0.7;
@@ -61,12 +66,11 @@ Agreement compare(const std::vector<PictureVelocity>& samples,
   return agreement;
 }
 
-/// Agreement at every offset from -kMaxOffset in steps of kStep. Interpolation smooths one of the
+/// Agreement at every offset up to kCurveSteps in both directions. Interpolation smooths one of the
 /// two signals, so that each is interpolated in turn.
 std::vector<Agreement> agreement_curve(const MotionStretch& stretch) {
   std::vector<Agreement> curve;
-  const int steps = static_cast<int>(std::lround(kMaxOffset / kStep));
-  for (int i = -steps; i <= steps; ++i) {
+  for (int i = -kCurveSteps; i <= kCurveSteps; ++i) {
     Agreement agreement =
         compare(stretch.color.velocities(), stretch.depth.velocities(), i * kStep);
     agreement += compare(stretch.depth.velocities(), stretch.color.velocities(), -i * kStep);
@@ -75,26 +79,36 @@ std::vector<Agreement> agreement_curve(const MotionStretch& stretch) {
   return curve;
 }
 
-/// Top of the parabola through the correlations around the best step; nothing at the border.
-std::optional<double> best_offset(const std::vector<Agreement>& curve) {
+/// The step of kMaxSteps on either side at which the correlation is largest.
+int best_step(const std::vector<Agreement>& curve) {
+  const auto zero = curve.begin() + kCurveSteps;
   const auto best = std::max_element(
-      curve.begin(), curve.end(),
+      zero - kMaxSteps, zero + kMaxSteps + 1,
       [](const Agreement& a, const Agreement& b) { return a.correlation() < b.correlation(); });
-  const auto index = static_cast<int>(best - curve.begin());
-  const int size = static_cast<int>(curve.size());
-  if (index < kParabolaSteps || index + kParabolaSteps >= size) return std::nullopt;
+  return static_cast<int>(best - zero);
+}
+
+/// Top of the parabola through the correlations around the best step; nothing at the border, and
+/// where the peak is not clear.
+std::optional<double> best_offset(const std::vector<Agreement>& curve) {
+  const int best = best_step(curve);
+  const auto correlation = [&](int step) { return curve[kCurveSteps + step].correlation(); };
+  if (std::abs(best) + kParabolaSteps > kMaxSteps) return std::nullopt;
+  if (std::max(correlation(best - kFallSteps), correlation(best + kFallSteps)) >
+      correlation(best) - kMinFall)
+    return std::nullopt;
   cv::Mat_<double> terms(2 * kParabolaSteps + 1, 3), values(2 * kParabolaSteps + 1, 1), solution;
   for (int i = -kParabolaSteps; i <= kParabolaSteps; ++i) {
     terms(i + kParabolaSteps, 0) = 1.0;
     terms(i + kParabolaSteps, 1) = i;
     terms(i + kParabolaSteps, 2) = i * i;
-    values(i + kParabolaSteps) = curve[index + i].correlation();
+    values(i + kParabolaSteps) = correlation(best + i);
   }
   cv::solve(terms, values, solution, cv::DECOMP_QR);
   if (solution(2) >= 0) return std::nullopt;
   const double top =
       std::clamp(-solution(1) / (2 * solution(2)), -1.0 * kParabolaSteps, 1.0 * kParabolaSteps);
-  return (index + top) * kStep - kMaxOffset;
+  return (best + top) * kStep;
 }
 
 double standard_error(const std::vector<double>& values) {
@@ -147,12 +161,12 @@ void VelocityTrack::add(double time, const cv::Mat& small) {
 
 TimeOffset estimate_time_offset(std::span<const MotionStretch> stretches) {
   TimeOffset result;
-  std::vector<Agreement> total(static_cast<std::size_t>(std::lround(2 * kMaxOffset / kStep)) + 1);
+  std::vector<Agreement> total(2 * kCurveSteps + 1);
   std::vector<double> offsets;  // one per stretch that moves
   std::size_t usable = 0;
   for (const MotionStretch& stretch : stretches) {
     const auto curve = agreement_curve(stretch);
-    const Agreement& middle = curve[curve.size() / 2];
+    const Agreement& middle = curve[kCurveSteps];
     if (middle.count < 2 * kMinVelocities || speed(middle) < kMinSpeed) continue;
     ++usable;
     for (std::size_t i = 0; i < total.size(); ++i) total[i] += curve[i];
@@ -162,11 +176,14 @@ TimeOffset estimate_time_offset(std::span<const MotionStretch> stretches) {
     result.reason = "the camera hardly moves or the recording is too short";
     return result;
   }
-  const auto offset = best_offset(total);
-  for (const Agreement& agreement : total)
-    result.correlation = std::max(result.correlation, agreement.correlation());
-  if (!offset || result.correlation < kMinCorrelation) {
+  result.correlation = total[kCurveSteps + best_step(total)].correlation();
+  if (result.correlation < kMinCorrelation) {
     result.reason = "colour and depth do not move alike at any offset within 150 ms";
+    return result;
+  }
+  const auto offset = best_offset(total);
+  if (!offset) {
+    result.reason = "no offset within 150 ms fits clearly best: the camera moves too steadily";
     return result;
   }
   result.offset = *offset;

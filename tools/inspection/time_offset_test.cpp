@@ -80,6 +80,19 @@ TEST(TimeOffset, CannotBeToldOfACameraAtRest) {
   EXPECT_THAT(estimate.reason, HasSubstr("hardly moves"));
 }
 
+// It looks alike at all offsets, and noise would decide.
+TEST(TimeOffset, CannotBeToldOfSteadyMotion) {
+  const Path steady = [](double t) {
+    const double seconds = std::fmod(t, 10.0);  // of the stretch
+    return cv::Point2d(20 + 90 * seconds + 0.5 * std::sin(9 * t), 50);
+  };
+  for (const double offset : {0.0, 0.06}) {
+    const TimeOffset estimate = estimate_time_offset(record(steady, steady, offset));
+    EXPECT_FALSE(estimate.known) << estimate.offset;
+    EXPECT_THAT(estimate.reason, HasSubstr("steadily"));
+  }
+}
+
 TEST(TimeOffset, CannotBeToldOfUnrelatedMotion) {
   const Path other = [](double t) { return wobble(1.7 * t + 5); };
   const TimeOffset estimate = estimate_time_offset(record(wobble, other, 0.0));

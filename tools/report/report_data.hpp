@@ -107,8 +107,8 @@ struct RunData {
 
 struct ReportData {
   std::string title;
-  std::string question;              ///< of the study; may be empty
-  std::string command;               ///< that made the runs; may be empty
+  std::string question;  ///< of the study; may be empty
+  std::string command;   ///< of the study, or that makes a report of runs again; may be empty
   std::vector<std::string> origins;  ///< which builds made the runs, where and when
   std::vector<std::string> notes;    ///< what is incomplete
   std::vector<study::Table> tables;

@@ -9,7 +9,8 @@
 
 namespace stillpoint::report {
 
-/// Of one or more run folders. Throws Error(kUsage) for one that holds no run.
+/// Of one or more run folders; the caller adds the command. Throws Error(kUsage) for one that holds
+/// no run.
 ReportData read_runs(const std::vector<std::filesystem::path>& folders);
 
 /// Of a study's folder, whose runs may be missing, unfinished or made by another version: notes say

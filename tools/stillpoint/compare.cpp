@@ -9,10 +9,13 @@
 #include <vector>
 
 #include "commands.hpp"
+#include "commit.hpp"
 #include "evaluation/comparison.hpp"
+#include "evaluation/origin.hpp"
 #include "figures/evaluation_figure.hpp"
 #include "figures/figure_file.hpp"
 #include "stillpoint/error.hpp"
+#include "typed_command.hpp"
 
 namespace stillpoint {
 namespace {
@@ -103,7 +106,11 @@ void print_comparison(const CompareArguments& arguments) {
   if (arguments.json)
     std::cout << comparison_json(comparison).dump(2) << '\n';
   else
-    std::cout << comparison_table(comparison);
+    std::cout << comparison_table(comparison) << '\n'
+              << typed_command() << '\n'
+              << origin_text(
+                     origin_of({.version = STILLPOINT_VERSION, .commit = built_from_commit()}))
+              << '\n';
   if (!arguments.plot.empty())
     figures::write_figure(figures::evaluation_figure(comparison.contestants), arguments.plot);
 }

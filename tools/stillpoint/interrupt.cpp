@@ -8,6 +8,7 @@
 #include <cerrno>
 #include <csignal>
 #include <cstdint>
+#include <ctime>
 #include <utility>
 
 #include "stillpoint/engine/stage_guard.hpp"
@@ -17,12 +18,22 @@ namespace stillpoint {
 namespace {
 
 constexpr int kPatience = 1000;  // ms after the first signal
+// Signals that come so soon after one are the same: `timeout` tells process and group, a terminal
+// that ends shell and group.
+constexpr std::int64_t kSame = 500;  // ms
 
 // A signal handler may do little more than this: wake a thread that may do anything.
 std::atomic<int> received{0};
 std::atomic<int> signals{0};
-std::atomic<int> wake_up{-1};  // an eventfd
-static_assert(std::atomic<int>::is_always_lock_free);
+std::atomic<std::int64_t> last_came{0};  // ms
+std::atomic<int> wake_up{-1};            // an eventfd
+static_assert(std::atomic<std::int64_t>::is_always_lock_free);
+
+std::int64_t milliseconds() {
+  timespec now{};
+  ::clock_gettime(CLOCK_MONOTONIC, &now);
+  return std::int64_t{1000} * now.tv_sec + now.tv_nsec / 1'000'000;
+}
 
 void wake() {
   const int saved_errno = errno;
@@ -32,11 +43,13 @@ void wake() {
 }
 
 extern "C" void on_signal(int signal) {
-  if (signal == SIGHUP && signals > 0) return;  // shell and kernel both tell it: no insistence
+  const std::int64_t now = milliseconds();
+  if (signals > 0 && (signal == SIGHUP || now - last_came < kSame)) return;
+  last_came = now;
   received = signal;
-  if (++signals == 2) {  // the third one ends the process
-    std::signal(SIGINT, SIG_DFL);
-    std::signal(SIGTERM, SIG_DFL);
+  if (++signals == 3) {
+    std::signal(signal, SIG_DFL);
+    std::raise(signal);  // comes when this handler returns
   }
   wake();
 }

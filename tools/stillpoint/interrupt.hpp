@@ -11,7 +11,8 @@ namespace stillpoint {
 /// While it lives, the first SIGINT, SIGTERM or SIGHUP (the terminal is gone; unless nohup ignores
 /// it) requests a stop; should a stage not return for a second after that, `say` is told. The
 /// second one gives up the stages under way (see StageGuard), or ends the process as usual when
-/// there are none; so does the third in any case. One at a time.
+/// there are none; so does the third in any case. Signals within half a second count as one. One
+/// object at a time.
 class Interrupt {
  public:
   explicit Interrupt(std::function<void(const std::string& line)> say = [](const auto&) {});

@@ -20,6 +20,7 @@
 #include "stillpoint/error.hpp"
 #include "study/text_file.hpp"
 #include "study_file.hpp"
+#include "typed_command.hpp"
 
 namespace stillpoint {
 namespace {
@@ -62,6 +63,7 @@ report::ReportData read(const ReportArguments& arguments) {
                 "give it alone");
   report::ReportData data = is_study ? report::read_study(*study, read_study(*study / "study.yaml"))
                                      : report::read_runs(arguments.folders);
+  if (!is_study) data.command = typed_command();
   if (!arguments.base.empty()) {
     std::map<fs::path, std::string> yaml;  // by recording: loading a pipeline takes a while
     for (report::RunData& run : data.runs) {

@@ -87,7 +87,10 @@ std::string bold_note(const LatexTable& table, const char* note) {
 class LatexReport {
  public:
   LatexReport(const StudyResults& results, std::string title)
-      : results_(results), study_(results.study), title_(std::move(title)) {}
+      : results_(results),
+        study_(results.study),
+        title_(std::move(title)),
+        comparisons_(compare_with_baseline(results)) {}
 
   std::string text() const {
     std::string text = "% Needs \\usepackage{booktabs}. Tables of the study " + title_ + ".\n";
@@ -116,6 +119,12 @@ class LatexReport {
     if (results_.missing() == 0) return {};
     return " Not finished: " + std::to_string(results_.missing()) + " of " +
            std::to_string(results_.cells.size()) + " runs are missing.";
+  }
+
+  /// What † in the header says.
+  std::string dagger_note() const {
+    const std::string note = significance_note(study_, comparisons_);
+    return note.empty() ? "" : " " + latex_text(note);
   }
 
   /// Systems with the same source together.
@@ -161,6 +170,8 @@ class LatexReport {
         .header = {"Sequence"},
         .rows = {}};
     add_systems(systems, table);
+    for (const PairedComparison& one : comparisons_)
+      if (one.is_significant()) table.header[one.variant + 1] += latex_text("†");
     for (std::size_t sequence = 0; sequence < study_.sequences.size(); ++sequence) {
       const auto best = best_variants(results_, sequence, kAte);
       std::vector<std::string> row = {latex_text(study_.sequences[sequence].name)};
@@ -176,7 +187,7 @@ class LatexReport {
     table.caption +=
         brackets_note(table) +
         bold_note(table, " Bold: the smallest of its row, among those that cover the same.") +
-        published_note(systems) + missing_note();
+        dagger_note() + published_note(systems) + missing_note();
     return table;
   }
 
@@ -263,10 +274,9 @@ class LatexReport {
   }
 
   LatexTable comparison_table() const {
-    const std::vector<PairedComparison> comparisons = compare_with_baseline(results_);
     std::string notes;
     for (const std::string& note :
-         {left_out_note(study_), recordings_note(comparisons), dependence_note(study_)})
+         {left_out_note(study_), recordings_note(comparisons_), dependence_note(study_)})
       if (!note.empty()) notes += " " + note;
     LatexTable table{
         .label = label("comparison"),
@@ -280,7 +290,7 @@ class LatexReport {
         .header = {"Variant", "$n$", "Better", "Worse", "By coverage", "ATE ratio", "CPU ratio",
                    "Effect", "$p$"},
         .rows = {}};
-    for (const PairedComparison& one : comparisons) {
+    for (const PairedComparison& one : comparisons_) {
       std::string p = one.corrected_p < 0.0001 ? "$<$0.0001" : fixed(one.corrected_p, 4);
       if (!one.can_be_significant())
         p += " {\\scriptsize (at least " + fixed(one.least_p, 4) + ")}";
@@ -332,6 +342,7 @@ class LatexReport {
   const StudyResults& results_;
   const Study& study_;
   const std::string title_;
+  const std::vector<PairedComparison> comparisons_;
 };
 
 }  // namespace

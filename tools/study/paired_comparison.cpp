@@ -158,6 +158,12 @@ std::vector<PairedComparison> compare_with_baseline(const StudyResults& results)
   return comparisons;
 }
 
+std::string significance_note(const Study& study,
+                              const std::vector<PairedComparison>& comparisons) {
+  if (std::ranges::none_of(comparisons, &PairedComparison::is_significant)) return "";
+  return "†: differs from " + study.baseline + " over all recordings, corrected p < 0.05.";
+}
+
 std::string left_out_note(const Study& study) {
   for (std::size_t sequence = 0; sequence < study.sequences.size(); ++sequence)
     if (is_twin_without_motion(study, sequence))

@@ -40,6 +40,9 @@ struct PairedComparison {
 /// Of every variant but the baseline that shares a recording with it. Empty without a baseline.
 std::vector<PairedComparison> compare_with_baseline(const StudyResults& results);
 
+/// What † says behind a variant, where one is significant; else empty.
+std::string significance_note(const Study& study, const std::vector<PairedComparison>& comparisons);
+
 /// That twins without motion take no part, where there are any; else empty.
 std::string left_out_note(const Study& study);
 

@@ -86,15 +86,10 @@ Table metric_table(const StudyResults& results, MetricId metric) {
 
 void mark_significant(const Study& study, const std::vector<PairedComparison>& comparisons,
                       Table& table) {
-  bool any = false;
-  for (const PairedComparison& one : comparisons) {
-    if (!one.is_significant()) continue;
-    table.header[one.variant + 1] += " †";
-    any = true;
-  }
-  if (any)
-    table.note += (table.note.empty() ? "" : " ") + ("†: differs from " + study.baseline) +
-                  " over all recordings, corrected p < 0.05.";
+  for (const PairedComparison& one : comparisons)
+    if (one.is_significant()) table.header[one.variant + 1] += " †";
+  const std::string note = significance_note(study, comparisons);
+  if (!note.empty()) table.note += (table.note.empty() ? "" : " ") + note;
 }
 
 Table improvement_table(const StudyResults& results) {

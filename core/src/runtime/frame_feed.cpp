@@ -61,6 +61,7 @@ FrameFeed::FrameFeed(Stage<Source> source, const RuntimeOptions& options, PaceCl
 
 FrameFeed::~FrameFeed() {
   queue_.close();
+  say_that_first_frame_is_processed();
   end();
 }
 
@@ -82,6 +83,7 @@ SourceReport FrameFeed::report() {
 }
 
 FramePtr FrameFeed::next() {
+  if (std::exchange(first_taken_, true)) say_that_first_frame_is_processed();
   FramePtr frame;
   if (!thread_.joinable()) {
     if (!stop_.requested()) frame = read();
@@ -122,6 +124,10 @@ void FrameFeed::deliver(FramePtr frame) {
     return;
   }
   const double time = frame->time;
+  if (frames_read_ == 2) {
+    wait_for_first_frame();
+    clock_ahead_ = clock_.now() - *last_time_;
+  }
   if (last_time_ && time - *last_time_ > kLongestWait) {
     clock_ahead_.reset();  // due at once
     ++clock_steps_;
@@ -136,6 +142,17 @@ void FrameFeed::deliver(FramePtr frame) {
   clock_ahead_.reset();  // after a pause, the next frame is due at once, as the first one was
   if (!paused) clock_ahead_ = clock_.now() - time;
   queue_.push(std::move(frame), stop_.token());
+}
+
+void FrameFeed::wait_for_first_frame() {
+  std::unique_lock lock(mutex_);
+  first_processed_.wait(lock, stop_.token(), [this] { return is_first_processed_; });
+}
+
+void FrameFeed::say_that_first_frame_is_processed() {
+  const std::lock_guard lock(mutex_);
+  is_first_processed_ = true;
+  first_processed_.notify_all();
 }
 
 }  // namespace stillpoint

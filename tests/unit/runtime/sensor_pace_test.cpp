@@ -32,11 +32,20 @@ class ManualClock final : public PaceClock {
     std::unique_lock lock(mutex_);
     waits_for_ = time;
     changed_.notify_all();
-    changed_.wait(lock, std::move(stop), [&] { return now_ >= time - 1e-9; });
+    changed_.wait(lock, std::move(stop), [&] { return now_ >= time - 1e-9 || waits_to_end_ > 0; });
+    if (now_ >= time - 1e-9) return;
+    now_ = time;
+    --waits_to_end_;
   }
   void set(double time) {
     const std::lock_guard lock(mutex_);
     now_ = time;
+    changed_.notify_all();
+  }
+  /// The clock goes to whatever is waited for, now or next.
+  void end_one_wait() {
+    const std::lock_guard lock(mutex_);
+    ++waits_to_end_;
     changed_.notify_all();
   }
   /// Returns when all frames due by `time` have been delivered and the next one is waited for.
@@ -51,21 +60,40 @@ class ManualClock final : public PaceClock {
   std::condition_variable_any changed_;
   double now_ = 0.0;
   double waits_for_ = -1.0;
+  int waits_to_end_ = 0;
 };
 
 TEST_P(SensorPace, TwoFramesWaitAndTheOldestMakesRoom) {
-  EngineFixture f(8);  // 0.1 s apart
+  EngineFixture f(9);  // 0.1 s apart
   auto clock = std::make_unique<ManualClock>();
   ManualClock* time = clock.get();
   f.calls.hook = [&](const std::string& entry) {
-    if (entry == "track 0") time->advance(0.45);   // 3 and 4 wait, 1 and 2 had to go
-    if (entry == "output 4") time->advance(0.65);  // 5 and 6 wait
-    if (entry == "output 6") time->set(0.75);      // frame 7, the last
+    if (entry == "output 0") time->end_one_wait();  // frame 1
+    if (entry == "track 1") time->advance(0.55);    // 4 and 5 wait, 2 and 3 had to go
+    if (entry == "output 5") time->advance(0.75);   // 6 and 7 wait
+    if (entry == "output 7") time->set(0.85);       // frame 8, the last
   };
   Engine(f.stages(), runtime(GetParam(), Pace::kSensor), {}, std::move(clock)).run();
   EXPECT_EQ(f.calls.entries("track"),
-            (Strings{"track 0", "track 3", "track 4", "track 5", "track 6", "track 7"}));
+            (Strings{"track 0", "track 1", "track 4", "track 5", "track 6", "track 7", "track 8"}));
   EXPECT_EQ(f.output->dropped, 2);
+}
+
+// It takes as long as several others.
+TEST_P(SensorPace, WhileTheFirstFrameIsProcessedTheRecordingWaits) {
+  EngineFixture f(4);
+  auto clock = std::make_unique<ManualClock>();
+  ManualClock* time = clock.get();
+  double began = 0.0;
+  f.calls.hook = [&](const std::string& entry) {
+    if (entry == "track 0") time->set(10);
+    if (entry.starts_with("output")) time->end_one_wait();
+    if (entry == "track 1") began = time->now();
+  };
+  Engine(f.stages(), runtime(GetParam(), Pace::kSensor), {}, std::move(clock)).run();
+  EXPECT_EQ(f.calls.entries("track").size(), 4u);
+  EXPECT_EQ(f.output->dropped, 0);
+  EXPECT_NEAR(began, 10.1, 1e-9);
 }
 
 /// Keeps the run that it is of.
@@ -86,9 +114,11 @@ TEST_P(SensorPace, WhilePausedTheRecordingWaitsAndNothingIsDropped) {
   f.calls.hook = [&](const std::string& entry) {
     if (entry != "output 0") return;
     pause = keeper->kept->pause();
-    time->set(100);  // all are due
+    time->end_one_wait();
   };
   std::thread viewer([&] {
+    f.calls.wait_for("source 2");
+    time->set(100);                // all are due
     f.calls.wait_for("source 4");  // 1 is to be tracked next, 2 and 3 wait, there is no room for 4
     pause.reset();
   });
@@ -118,11 +148,15 @@ TEST_P(SensorPace, AClockThatWasSetIsNotWaitedFor) {
   auto clock = std::make_unique<ManualClock>();
   clock->set(100);
   ManualClock* time = clock.get();
+  double latest = 0.0;
   f.calls.hook = [&](const std::string& entry) {
-    if (entry.starts_with("output")) time->set(time->now() + 0.1);
+    if (!entry.starts_with("output")) return;
+    latest = time->now();
+    time->end_one_wait();
   };
   Engine(f.stages(), runtime(GetParam(), Pace::kSensor), {}, std::move(clock)).run();
   EXPECT_EQ(f.calls.entries("track").size(), 6u);
+  EXPECT_LT(latest, 101);
   ASSERT_EQ(f.output->source.warnings.size(), 1u);
   EXPECT_THAT(f.output->source.warnings[0], ::testing::HasSubstr("more than an hour, 1 time:"));
 }

@@ -2,8 +2,10 @@
 #pragma once
 
 #include <atomic>
+#include <condition_variable>
 #include <cstddef>
 #include <exception>
+#include <mutex>
 #include <optional>
 #include <thread>
 
@@ -18,9 +20,9 @@ namespace stillpoint {
 /// `inline` and `pace: free`: next() asks the source. Otherwise the source has a thread of its own:
 /// * `free`: it decodes up to two frames ahead, and every frame is used;
 /// * `sensor`: it delivers frames at the rate at which they were recorded. Two may wait; when a
-///   third comes, the oldest is dropped and counted. While the run is paused, it waits instead. A
-///   step of more than an hour is a clock that was set: it is not waited for, and the report says
-///   so.
+///   third comes, the oldest is dropped and counted. While the run is paused, it waits instead, and
+///   while the first frame is processed: with it, network and memory are set up. A step of more
+///   than an hour is a clock that was set: it is not waited for, and the report says so.
 class FrameFeed {
  public:
   FrameFeed(Stage<Source> source, const RuntimeOptions& options, PaceClock& clock,
@@ -44,6 +46,8 @@ class FrameFeed {
   FramePtr read();
   void work();
   void deliver(FramePtr frame);
+  void wait_for_first_frame();
+  void say_that_first_frame_is_processed();
 
   const RuntimeOptions::Pace pace_;
   const bool thorough_;
@@ -59,7 +63,11 @@ class FrameFeed {
   std::optional<double> clock_ahead_;  // seconds from the recording's time to that of the clock
   std::optional<double> last_time_;    // seconds, of the recording, delivered
   int clock_steps_ = 0;                // too long to be waited for
-  std::exception_ptr failure_;         // written before the queue is closed, read after
+  bool first_taken_ = false;           // by the thread that calls next()
+  std::mutex mutex_;
+  std::condition_variable_any first_processed_;
+  bool is_first_processed_ = false;  // guarded by mutex_
+  std::exception_ptr failure_;       // written before the queue is closed, read after
   BoundedQueue<FramePtr> queue_;
   std::jthread thread_;  // last: it uses all the others
 };

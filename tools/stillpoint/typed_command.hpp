@@ -1,0 +1,11 @@
+// The command line of this call.
+#pragma once
+
+#include <string>
+
+namespace stillpoint {
+
+/// For a shell: "stillpoint report 'a run' -o page.html". Paths are as they were typed.
+std::string typed_command();
+
+}  // namespace stillpoint
