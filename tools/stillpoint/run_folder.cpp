@@ -72,7 +72,9 @@ RunFolder::RunFolder(fs::path path, std::string effective_yaml, Console& console
   add_earlier(unfinished_in(path_, earlier));
   for (const std::string& folder : earlier.picture_folders)
     add_earlier(pictures_in(path_ / folder));
-  if (holds_earlier_run_) add_earlier(listed_in(path_));
+  if (holds_earlier_run_)
+    add_earlier(fs::exists(path_ / kWrittenFiles, error) ? listed_in(path_)
+                                                         : files_with_names_in(path_, earlier));
   add_earlier(fixed_results(path_));  // last: they say which the others are
   require_replaceable();
 }

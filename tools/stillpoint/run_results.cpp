@@ -154,6 +154,14 @@ std::vector<fs::path> unfinished_in(const fs::path& run, const NamedResults& nam
   return files;
 }
 
+std::vector<fs::path> files_with_names_in(const fs::path& run, const NamedResults& named) {
+  std::vector<fs::path> files;
+  for (const std::string& file : named.files)
+    if (!is_elsewhere(file) && !is_fixed_result(file) && lies_in_run(run / file, run))
+      files.push_back(run / file);
+  return files;
+}
+
 // By its first line: "2026-01-30 12:00:00.000 info
 // …". An empty one is: of a run that was killed at once.
 bool is_log_of_a_run(const fs::path& file) {

@@ -34,13 +34,6 @@ std::optional<Version> version_of(const fs::path& file) {
   return Version(bytes, written.time_since_epoch().count());
 }
 
-/// Links in the way would lead to folders that are not the run's.
-bool lies_below(const fs::path& file, const fs::path& folder) {
-  std::error_code error;
-  const fs::path way = fs::canonical(file.parent_path(), error).lexically_relative(folder);
-  return !error && !way.empty() && *way.begin() != "..";
-}
-
 std::string text_of_list(const fs::path& run) {
   try {
     return read_input_file(run / kWrittenFiles, kLargestList);
@@ -70,14 +63,20 @@ bool is_list_of_a_run(const fs::path& file) {
   return std::getline(list, head) && head == kHead;
 }
 
+bool lies_in_run(const fs::path& file, const fs::path& run) {
+  if (!version_of(file)) return false;
+  std::error_code error, other;
+  const fs::path folder = fs::canonical(file.parent_path(), error);
+  const fs::path way = folder.lexically_relative(fs::canonical(run, other));
+  return !error && !other && !way.empty() && *way.begin() != "..";
+}
+
 std::vector<fs::path> listed_in(const fs::path& run) {
   std::istringstream list(text_of_list(run));
   std::string line;
   if (!std::getline(list, line) || line != kHead) return {};
-  std::error_code error;
-  const fs::path folder = fs::canonical(run, error);
   std::vector<fs::path> files;
-  while (!error && std::getline(list, line)) {
+  while (std::getline(list, line)) {
     std::istringstream entry(line);
     Version written;
     std::string name;
@@ -85,7 +84,7 @@ std::vector<fs::path> listed_in(const fs::path& run) {
         !std::getline(entry, name))
       continue;
     const fs::path file = run / name;
-    if (version_of(file) == written && lies_below(file, folder)) files.push_back(file);
+    if (version_of(file) == written && lies_in_run(file, run)) files.push_back(file);
   }
   return files;
 }

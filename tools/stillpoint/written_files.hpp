@@ -17,8 +17,11 @@ void list_written(const std::filesystem::path& run,
 /// Whether a file begins as such a list does.
 bool is_list_of_a_run(const std::filesystem::path& file);
 
-/// Of the files in the list those that are as they were written, of the same size and time. None
-/// that lies outside the folder, or is reached through a link.
+/// Whether it is a file in the folder `run` or below, not reached through a link.
+bool lies_in_run(const std::filesystem::path& file, const std::filesystem::path& run);
+
+/// Of the files in the list those that are as they were written, of the same size and time, and
+/// that lie in the run.
 std::vector<std::filesystem::path> listed_in(const std::filesystem::path& run);
 
 }  // namespace stillpoint
