@@ -25,7 +25,7 @@ void Viewer::start(const beast::http::request<beast::http::empty_body>& request)
       .handshake_timeout = kRequestTime, .idle_timeout = kIdleTime, .keep_alive_pings = true});
   socket_.read_message_max(kRequestSize);
   socket_.binary(true);
-  socket_.auto_fragment(false);  // frames of 4 kB would take nine times the processor time
+  socket_.auto_fragment(false);  // frames of 4 kB take twice to nine times the processor time
   socket_.async_accept(request, [self = shared_from_this()](error_code error) {
     if (error) return;
     self->open_ = true;

@@ -71,6 +71,13 @@ class Page:
             [*chromium, "--headless=new", "--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader",
              "--remote-debugging-port=0", f"--user-data-dir={profile}", "about:blank"],
             stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+        try:
+            self.connect()
+        except BaseException:
+            self.kill()
+            raise
+
+    def connect(self):
         for line in self.browser.stderr:
             listening = re.search(r"DevTools listening on ws://127\.0\.0\.1:(\d+)(\S+)", line)
             if listening:

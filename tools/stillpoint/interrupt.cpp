@@ -44,8 +44,9 @@ void wake() {
 
 extern "C" void on_signal(int signal) {
   const std::int64_t now = milliseconds();
-  if (signals > 0 && (signal == SIGHUP || now - last_came < kSame)) return;
-  last_came = now;
+  std::int64_t last = last_came;
+  if (now - last < kSame || (signal == SIGHUP && signals > 0)) return;
+  if (!last_came.compare_exchange_strong(last, now)) return;  // another thread has got the other
   received = signal;
   if (++signals == 3) {
     std::signal(signal, SIG_DFL);
@@ -68,6 +69,7 @@ bool wait_for_wake_up(int milliseconds) {
 Interrupt::Interrupt(std::function<void(const std::string& line)> say) {
   received = 0;
   signals = 0;
+  last_came = milliseconds() - kSame;
   wake_up = ::eventfd(0, EFD_CLOEXEC);
   if (wake_up < 0) throw Error(Fault::kStage, "the system gives no eventfd to wait for Ctrl-C");
   watcher_ =
@@ -106,7 +108,10 @@ void Interrupt::watch(const std::stop_token& end,
     wait_for_wake_up(-1);
   }
   if (end.stop_requested()) return;
-  if (StageGuard::give_up() == 0) std::raise(received);
+  if (StageGuard::give_up() > 0) return;
+  const int signal = received;
+  std::signal(signal, SIG_DFL);
+  std::raise(signal);
 }
 
 }  // namespace stillpoint

@@ -69,12 +69,12 @@ RunFolder::RunFolder(fs::path path, std::string effective_yaml, Console& console
   const NamedResults earlier = holds_earlier_run_ ? earlier_named_results(path_) : NamedResults();
   named_files_.assign(own.files.begin(), own.files.end());
   require_none_of(files_in_the_way(path_, own, earlier));
-  add_earlier(unfinished_in(path_, earlier));
+  const std::vector<fs::path> unfinished = unfinished_in(path_, earlier);
+  add_earlier(unfinished);
+  if (!unfinished.empty()) add_earlier(files_with_names_in(path_, earlier));  // it was killed
   for (const std::string& folder : earlier.picture_folders)
     add_earlier(pictures_in(path_ / folder));
-  if (holds_earlier_run_)
-    add_earlier(fs::exists(path_ / kWrittenFiles, error) ? listed_in(path_)
-                                                         : files_with_names_in(path_, earlier));
+  if (holds_earlier_run_) add_earlier(listed_in(path_));
   add_earlier(fixed_results(path_));  // last: they say which the others are
   require_replaceable();
 }

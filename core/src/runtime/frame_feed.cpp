@@ -111,7 +111,10 @@ FramePtr FrameFeed::read() {
 
 void FrameFeed::work() {
   try {
-    while (FramePtr frame = stop_.requested() ? nullptr : read()) deliver(std::move(frame));
+    while (FramePtr frame = stop_.requested() ? nullptr : read()) {
+      deliver(std::move(frame));
+      if (pace_ == RuntimeOptions::Pace::kSensor && frames_read_ == 1) wait_for_first_frame();
+    }
   } catch (...) {
     failure_ = std::current_exception();
   }
@@ -124,10 +127,6 @@ void FrameFeed::deliver(FramePtr frame) {
     return;
   }
   const double time = frame->time;
-  if (frames_read_ == 2) {
-    wait_for_first_frame();
-    clock_ahead_ = clock_.now() - *last_time_;
-  }
   if (last_time_ && time - *last_time_ > kLongestWait) {
     clock_ahead_.reset();  // due at once
     ++clock_steps_;
@@ -144,9 +143,11 @@ void FrameFeed::deliver(FramePtr frame) {
   queue_.push(std::move(frame), stop_.token());
 }
 
+// Before the second one is read: of a camera, it would be old by then.
 void FrameFeed::wait_for_first_frame() {
   std::unique_lock lock(mutex_);
   first_processed_.wait(lock, stop_.token(), [this] { return is_first_processed_; });
+  clock_ahead_.reset();  // the second one is due at once
 }
 
 void FrameFeed::say_that_first_frame_is_processed() {

@@ -20,9 +20,10 @@ namespace stillpoint {
 /// `inline` and `pace: free`: next() asks the source. Otherwise the source has a thread of its own:
 /// * `free`: it decodes up to two frames ahead, and every frame is used;
 /// * `sensor`: it delivers frames at the rate at which they were recorded. Two may wait; when a
-///   third comes, the oldest is dropped and counted. While the run is paused, it waits instead, and
-///   while the first frame is processed: with it, network and memory are set up. A step of more
-///   than an hour is a clock that was set: it is not waited for, and the report says so.
+///   third comes, the oldest is dropped and counted. While the run is paused, it waits instead. The
+///   second frame is read when the first one has been processed, with which network and memory are
+///   set up. A step of more than an hour is a clock that was set: it is not waited for, and the
+///   report says so.
 class FrameFeed {
  public:
   FrameFeed(Stage<Source> source, const RuntimeOptions& options, PaceClock& clock,
