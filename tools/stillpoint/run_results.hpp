@@ -41,8 +41,8 @@ std::vector<std::filesystem::path> pictures_in(const std::filesystem::path& fold
 /// Files that a killed run of `named` has left under their temporary names.
 std::vector<std::filesystem::path> unfinished_in(const std::filesystem::path& run,
                                                  const NamedResults& named);
-/// Files with the names of `named` that are there: of a killed run, which leaves no list, those that
-/// grew where they are.
+/// Files with the names of `named` that are there: of a killed run, which leaves no list, those
+/// that grew where they are.
 std::vector<std::filesystem::path> files_with_names_in(const std::filesystem::path& run,
                                                        const NamedResults& named);
 /// Whether the file is a log that a run has begun.
