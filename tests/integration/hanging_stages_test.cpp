@@ -3,8 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <chrono>
 #include <csignal>
+#include <filesystem>
 #include <string>
+#include <thread>
 #include <tuple>
 #include <vector>
 
@@ -13,6 +16,7 @@
 namespace stillpoint::testing {
 namespace {
 
+namespace fs = std::filesystem;
 using ::testing::HasSubstr;
 
 struct Hanging {
@@ -68,6 +72,28 @@ TEST_P(StageOfAnyKind, ThatHangsIsNamedAndGivenUpByTheSecondCtrlC) {
   EXPECT_THAT(outcome.err, HasSubstr("error: " + stage + " failed on frame "));
   const std::string failure = json_file(out() / "summary.json")["failure"];
   EXPECT_THAT(failure, HasSubstr("it did not return and was given up"));
+}
+
+// Nothing of a stage is under way in its process: the stage hangs in that of the run.
+class StudyWhoseRunHangs : public BadPlugins {};
+
+TEST_F(StudyWhoseRunHangs, EndsAtTheSecondCtrlC) {
+  const fs::path study =
+      folder_.write("hangs.yaml",
+                    "version: 1\n"
+                    "sequences: [{name: s, scene: fr3_walking_xyz_empty, frames: 5}]\n"
+                    "variants:\n"
+                    "  - name: v\n"
+                    "    pipeline: orb_baseline\n"
+                    "    set: ['tracker={type: hangs}', runtime.stage_timeout=0.1]\n");
+  Program program({"ablate", study.string(), "-o", out().string()}, with_plugins());
+  const fs::path console = out() / "runs/s/v/0/console.txt";
+  while (text_of(console).find("has not returned") == std::string::npos)
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  program.send(SIGINT);
+  std::this_thread::sleep_for(std::chrono::milliseconds(600));  // sooner, it would be the same one
+  program.send(SIGINT);
+  EXPECT_EQ(program.finish().signal, SIGINT);
 }
 
 }  // namespace

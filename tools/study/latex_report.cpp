@@ -1,12 +1,11 @@
 #include "study/latex_report.hpp"
 
 #include <algorithm>
-#include <string_view>
 #include <utility>
 #include <vector>
 
 #include "evaluation/format.hpp"
-#include "stillpoint/support/did_you_mean.hpp"
+#include "study/latex_cells.hpp"
 #include "study/latex_table.hpp"
 #include "study/paired_comparison.hpp"
 #include "study/provenance.hpp"
@@ -16,73 +15,6 @@ namespace stillpoint::study {
 namespace {
 
 using evaluation::fixed;
-
-constexpr const char* kEmpty = "--";
-constexpr const char* kBracket = "{\\scriptsize [";
-
-constexpr const char* kBold = "\\textbf{";
-constexpr const char* kItalic = "\\textit{";
-
-std::string bold(const std::string& text) { return kBold + text + "}"; }
-std::string italic(const std::string& text) { return kItalic + text + "}"; }
-
-std::string number(double value, int digits) {
-  const std::string text = fixed(value, digits);
-  return text.starts_with('-') ? "$-$" + text.substr(1) : text;
-}
-
-/// "0.0021 {\scriptsize (0.0020--0.0022)}"
-std::string latex_spread(const std::optional<Spread>& spread, int digits, bool best = false) {
-  if (!spread) return kEmpty;
-  const std::string median = number(spread->median, digits);
-  std::string text = best ? bold(median) : median;
-  if (spread->count > 1)
-    text += " {\\scriptsize (" + number(spread->min, digits) + (spread->min < 0 ? " to " : "--") +
-            number(spread->max, digits) + ")}";
-  return text;
-}
-
-std::string latex_published(const Published& system, const std::string& recording,
-                            MetricId metric) {
-  const auto value = system.find(recording, metric);
-  return value ? italic(fixed(*value, metrics()[metric].digits)) : kEmpty;
-}
-
-bool has(const LatexTable& table, std::string_view mark) {
-  return std::ranges::any_of(table.rows, [&](const std::vector<std::string>& row) {
-    return std::ranges::any_of(
-        row, [&](const std::string& cell) { return cell.find(mark) != std::string::npos; });
-  });
-}
-
-/// What stands in brackets, of all cells.
-std::string in_brackets(const LatexTable& table) {
-  std::string text;
-  for (const std::vector<std::string>& row : table.rows)
-    for (const std::string& cell : row)
-      for (std::size_t at = cell.find(kBracket); at != std::string::npos;
-           at = cell.find(kBracket, at + 1))
-        text += cell.substr(at, cell.find(']', at) - at) + "\n";
-  return text;
-}
-
-/// Of those that there are.
-std::string brackets_note(const LatexTable& table) {
-  const std::string text = in_brackets(table);
-  std::vector<std::string> meanings;
-  const auto add = [&](const char* mark, const char* meaning) {
-    if (text.find(mark) != std::string::npos) meanings.emplace_back(meaning);
-  };
-  add("%", "coverage, where it is below 100\\,\\%");
-  add(" of ", "how many runs a figure is of, where not all have one");
-  add("failed", "failed: no run has come to its end");
-  return meanings.empty() ? "" : " In brackets: " + join(meanings, "; ") + ".";
-}
-
-/// `note`, where something is bold.
-std::string bold_note(const LatexTable& table, const char* note) {
-  return has(table, kBold) ? note : "";
-}
 
 class LatexReport {
  public:
@@ -151,13 +83,13 @@ class LatexReport {
       note += (note.empty() ? "" : ", ") + std::to_string(figure->count) + " of " +
               std::to_string(repeats);
     if (!figure && results_.all_failed(sequence, variant)) note = "failed";
-    return note.empty() ? "" : " {\\scriptsize [" + note + "]}";
+    return latex_limit(note);
   }
 
   void add_systems(const std::vector<const Published*>& systems, LatexTable& table) const {
     for (const Variant& variant : study_.variants) table.header.push_back(latex_text(variant.name));
     for (const Published* system : systems)
-      table.header.push_back(italic(latex_text(system->name)));
+      table.header.push_back(latex_italic(latex_text(system->name)));
     table.columns += std::string(study_.variants.size() + systems.size(), 'r');
   }
 
@@ -215,7 +147,7 @@ class LatexReport {
         const std::string covered =
             partial_coverage(results_, sequence, *baseline_of(study_), "--");
         if (percent && !covered.empty())
-          row.back() += " {\\scriptsize [baseline " + covered + "\\,\\%]}";
+          row.back() += latex_limit("baseline " + covered + "\\,\\%");
         any |= percent.has_value();
       }
       if (any) table.rows.push_back(std::move(row));
@@ -239,7 +171,7 @@ class LatexReport {
     table.caption +=
         brackets_note(table) +
         bold_note(table, " Bold: the smallest of a sequence, among those that cover the same.") +
-        (has(table, kItalic) ? published_note(systems) : "") + missing_note();
+        (has_italics(table) ? published_note(systems) : "") + missing_note();
     return table;
   }
 
@@ -258,8 +190,9 @@ class LatexReport {
       for (std::size_t i = 0; i < best.size(); ++i) {
         const MetricId metric = figures.all()[i];
         const auto spread = results_.spread(sequence, variant, metric);
-        const std::string text = spread ? fixed(spread->median, metrics()[metric].digits) : kEmpty;
-        rows.back().push_back(best[i][variant] ? bold(text) : text);
+        const std::string text =
+            spread ? fixed(spread->median, metrics()[metric].digits) : kNoFigure;
+        rows.back().push_back(best[i][variant] ? latex_bold(text) : text);
         if (i == 0) rows.back().back() += partial_note(sequence, variant, rmse);
       }
     }
@@ -267,7 +200,7 @@ class LatexReport {
     const std::string original = original_of(study_.sequences[sequence]);
     for (const Published* system : systems) {
       if (!system->find(original, figures.rmse)) continue;
-      rows.push_back({"", italic(latex_text(system->name))});
+      rows.push_back({"", latex_italic(latex_text(system->name))});
       for (const MetricId metric : figures.all())
         rows.back().push_back(latex_published(*system, original, metric));
     }
@@ -297,21 +230,11 @@ class LatexReport {
       table.rows.push_back({latex_text(study_.variants[one.variant].name),
                             std::to_string(one.recordings), std::to_string(one.better),
                             std::to_string(one.worse), std::to_string(one.incomplete),
-                            ratio(one.ate_ratio), ratio(one.time_ratio), fixed(one.effect, 2),
-                            one.is_significant() ? bold(p) : p});
+                            latex_ratio(one.ate_ratio), latex_ratio(one.time_ratio),
+                            fixed(one.effect, 2), one.is_significant() ? latex_bold(p) : p});
     }
     table.caption += bold_note(table, " Bold: below 0.05.") + notes + missing_note();
     return table;
-  }
-
-  static std::string ratio(const std::optional<Spread>& spread) {
-    if (!spread) return kEmpty;
-    const int digits = ratio_digits(*spread);
-    std::string text = fixed(spread->median, digits);
-    if (spread->count > 1)
-      text += " {\\scriptsize (" + fixed(spread->first_quartile, digits) + "--" +
-              fixed(spread->third_quartile, digits) + ")}";
-    return text;
   }
 
   /// The form of Table IV.
