@@ -87,11 +87,9 @@ TEST_F(StudyWhoseRunHangs, EndsAtTheSecondCtrlC) {
                     "    pipeline: orb_baseline\n"
                     "    set: ['tracker={type: hangs}', runtime.stage_timeout=0.1]\n");
   Program program({"ablate", study.string(), "-o", out().string()}, with_plugins());
-  const fs::path console = out() / "runs/s/v/0/console.txt";
-  while (text_of(console).find("has not returned") == std::string::npos)
-    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  ASSERT_TRUE(program.wait_for_text(out() / "runs/s/v/0/console.txt", "has not returned"));
   program.send(SIGINT);
-  std::this_thread::sleep_for(std::chrono::milliseconds(600));  // sooner, it would be the same one
+  ASSERT_TRUE(program.wait_for("Ctrl-C again ends it at once"));
   program.send(SIGINT);
   EXPECT_EQ(program.finish().signal, SIGINT);
 }

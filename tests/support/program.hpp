@@ -4,13 +4,16 @@
 
 #include <fcntl.h>
 #include <gtest/gtest.h>
+#include <poll.h>
 #include <signal.h>
 #include <spawn.h>
+#include <sys/syscall.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <array>
 #include <cerrno>
+#include <chrono>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -46,7 +49,7 @@ struct Surroundings {
 };
 
 /// One call of the program. Standard error comes through a pipe, so that a test can wait for a line
-/// of it; standard output goes to a file.
+/// of it; standard output goes to a file. A program that hangs is killed, and the test fails.
 class Program {
  public:
   explicit Program(std::vector<std::string> arguments, const Surroundings& surroundings = {}) {
@@ -75,10 +78,13 @@ class Program {
     posix_spawn_file_actions_destroy(&actions);
     ::close(pipe[1]);
     if (error != 0) fail("cannot start " + surroundings.program.string(), error);
+    ended_ = static_cast<int>(::syscall(SYS_pidfd_open, process_, 0));
+    if (ended_ < 0) fail("no descriptor of the process", errno);
   }
   ~Program() {
     if (process_ > 0) finish();
     if (err_ >= 0) ::close(err_);
+    ::close(ended_);
   }
   Program(const Program&) = delete;
   Program& operator=(const Program&) = delete;
@@ -100,6 +106,13 @@ class Program {
     const std::size_t begin = outcome_.err.rfind('\n', at) + 1;  // npos + 1 is 0
     return outcome_.err.substr(begin, end - begin);
   }
+  /// False when the program ended without having written `text` to `file`.
+  bool wait_for_text(const std::filesystem::path& file, const std::string& text) {
+    while (text_of(file).find(text) == std::string::npos) {
+      if (is_ready(ended_, std::chrono::milliseconds(20)) || is_late()) return false;
+    }
+    return true;
+  }
   void send(int signal) const { ::kill(process_, signal); }
   /// Nobody listens to standard error any more.
   void stop_reading() {
@@ -110,6 +123,8 @@ class Program {
   /// Waits for the end.
   Outcome finish() {
     while (read_more()) {
+    }
+    while (!is_ready(ended_, std::chrono::seconds(1)) && !is_late()) {
     }
     int status = 0;
     while (::waitpid(process_, &status, 0) < 0 && errno == EINTR) {
@@ -145,9 +160,22 @@ class Program {
   }
   std::filesystem::path out_file() const { return output_.path() / "stdout"; }
 
+  static bool is_ready(int descriptor, std::chrono::milliseconds patience) {
+    pollfd wanted{.fd = descriptor, .events = POLLIN, .revents = 0};
+    return ::poll(&wanted, 1, static_cast<int>(patience.count())) > 0;
+  }
+  /// True when the program has had its time, and is killed.
+  bool is_late() {
+    if (std::chrono::steady_clock::now() < deadline_) return false;
+    if (::kill(process_, SIGKILL) == 0) ADD_FAILURE() << "killed: it hung\n" << outcome_.err;
+    return true;
+  }
+
   // False at the end of standard error.
   bool read_more() {
     if (err_ < 0) return false;
+    while (!is_ready(err_, std::chrono::seconds(1)))
+      if (is_late()) return false;
     std::array<char, 4096> bytes{};
     const ssize_t count = ::read(err_, bytes.data(), bytes.size());
     if (count > 0) outcome_.err.append(bytes.data(), static_cast<std::size_t>(count));
@@ -157,6 +185,9 @@ class Program {
   TemporaryFolder output_;
   pid_t process_ = -1;
   int err_ = -1;
+  int ended_ = -1;  // a pidfd, ready when the process has ended
+  const std::chrono::steady_clock::time_point deadline_ =
+      std::chrono::steady_clock::now() + std::chrono::minutes(10);
   Outcome outcome_;
 };
 

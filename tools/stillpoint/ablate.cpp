@@ -83,7 +83,7 @@ class Ablation {
     claim_folder(output_, file_.file, command_);
     int signal = 0;
     {
-      const Interrupt interrupt;
+      const Interrupt interrupt([this](const std::string& line) { console_.line(line); });
       const StudyResults results = run_cells(interrupt.token());
       write(results);
       signal = Interrupt::signal();

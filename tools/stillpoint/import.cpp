@@ -74,7 +74,7 @@ void import_recording(const ImportArguments& arguments) {
   Console console(arguments.quiet);
   int signal = 0;
   {
-    const Interrupt interrupt;
+    const Interrupt interrupt([&console](const std::string& line) { console.line(line); });
     if (import_frames(*recording, folder, console, interrupt.token()))
       folder.commit(recording->truth(), "version: 1\n" + camera_yaml(recording->camera()));
     else

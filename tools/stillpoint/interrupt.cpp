@@ -9,7 +9,9 @@
 #include <csignal>
 #include <cstdint>
 #include <ctime>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "stillpoint/engine/stage_guard.hpp"
 #include "stillpoint/error.hpp"
@@ -103,8 +105,9 @@ void Interrupt::watch(const std::stop_token& end,
   if (end.stop_requested()) return;
   stop_.request_stop();
   if (signals < 2 && !wait_for_wake_up(kPatience)) {
-    for (const std::string& text : StageGuard::calls_longer_than(1e-3 * kPatience))
-      say(text + "; Ctrl-C again gives it up");
+    const std::vector<std::string> calls = StageGuard::calls_longer_than(1e-3 * kPatience);
+    for (const std::string& text : calls) say(text + "; Ctrl-C again gives it up");
+    if (calls.empty()) say("still stopping; Ctrl-C again ends it at once");
     wait_for_wake_up(-1);
   }
   if (end.stop_requested()) return;

@@ -9,13 +9,13 @@
 namespace stillpoint {
 
 /// While it lives, the first SIGINT, SIGTERM or SIGHUP (the terminal is gone; unless nohup ignores
-/// it) requests a stop; should a stage not return for a second after that, `say` is told. The
+/// it) requests a stop; when that takes more than a second, `say` is told what it waits for. The
 /// second one gives up the stages under way (see StageGuard), or ends the process as usual when
 /// there are none; so does the third in any case. Signals within half a second count as one. One
 /// object at a time.
 class Interrupt {
  public:
-  explicit Interrupt(std::function<void(const std::string& line)> say = [](const auto&) {});
+  explicit Interrupt(std::function<void(const std::string& line)> say);
   ~Interrupt();
   Interrupt(const Interrupt&) = delete;
   Interrupt& operator=(const Interrupt&) = delete;

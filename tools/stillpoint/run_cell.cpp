@@ -22,7 +22,7 @@ void run_listed_cell(const RunCellArguments& arguments) {
   if (study::valid_result(listed.cell)) return;  // Slurm has queued it again
   int signal = 0;
   {
-    const Interrupt interrupt;
+    const Interrupt interrupt([](const std::string&) {});
     study::run_cell(listed.cell,
                     {.fingerprint = listed.program,
                      .version = STILLPOINT_VERSION,
