@@ -15,6 +15,9 @@ namespace {
 
 using ::testing::HasSubstr;
 
+constexpr const char* kOrigin =
+    "\nStillpoint [0-9.]+(, commit [-0-9a-z]+)?; [^;\n]* cores?; 20[0-9]+-[0-9]+-[0-9]+\n$";
+
 /// A camera that goes along x for 3 s, 1 m/s, looking along z; the estimates are `aside` off in y
 /// at every second pose.
 class Compare : public ::testing::Test {
@@ -53,11 +56,9 @@ TEST_F(Compare, ReadsTheFormatsOfOthersBesideEachOther) {
   EXPECT_THAT(outcome.out, ::testing::ContainsRegex("ours +100.0 +0.0020[*]"));
   EXPECT_THAT(outcome.out, ::testing::ContainsRegex("theirs +100.0 +0.0100 "));
   EXPECT_GT(std::filesystem::file_size(plot), 10'000u);
-  EXPECT_THAT(outcome.out, ::testing::ContainsRegex(
-                               "\n\nstillpoint compare --reference " + reference + " " + ours +
-                               " " + theirs + " --plot " + plot +
-                               "\nStillpoint [0-9.]+(, commit [-0-9a-z]+)?; [^;\n]* cores?; "
-                               "20[0-9]+-[0-9]+-[0-9]+\n$"));
+  EXPECT_THAT(outcome.out,
+              ::testing::ContainsRegex("\n\nstillpoint compare --reference " + reference + " " +
+                                       ours + " " + theirs + " --plot " + plot + kOrigin));
 
   outcome = call({"compare", "--reference", reference, "a=" + ours, "b=" + theirs, "--align",
                   "none", "--json"});
@@ -104,18 +105,30 @@ TEST_F(Compare, TheAlignedTrajectoryReplacesNoneThatIsRead) {
   }
 }
 
+// Whether the times are those since 1970, or begin with 0 as the counted ones do.
 TEST_F(Compare, PosesWithoutTimesHaveNoPartnersAmongThoseWithTimes) {
-  const std::string timed = write("timed.txt", "tum", 0.0),
-                    counted = write("counted.txt", "kitti", 0.0);
-  const std::string message =
-      counted + ": has no time stamps (the format of KITTI), and " + timed + " has: ";
-  for (const auto& [truth, run] : {std::pair(timed, counted), std::pair(counted, timed)}) {
-    const Outcome outcome = call({"compare", "--reference", truth, run});
-    EXPECT_EQ(outcome.exit_code, 3);
-    EXPECT_THAT(outcome.err,
-                ::testing::AllOf(HasSubstr(message), HasSubstr("; write both with times, "),
-                                 ::testing::Not(HasSubstr("--offset"))));
+  const std::string counted = write("counted.txt", "kitti", 0.0);
+  const std::string from_zero =
+      folder_.write("from_zero.txt", "0 0 0 0 0 0 0 1\n0.1 1 0 0 0 0 0 1\n0.2 1 1 0 0 0 0 1\n");
+  for (const std::string& timed : {write("timed.txt", "tum", 0.0), from_zero}) {
+    const std::string message =
+        counted + ": has no time stamps (the format of KITTI), and " + timed + " has: ";
+    for (const auto& [truth, run] : {std::pair(timed, counted), std::pair(counted, timed)}) {
+      const Outcome outcome = call({"compare", "--reference", truth, run});
+      EXPECT_EQ(outcome.exit_code, 3);
+      EXPECT_THAT(outcome.err,
+                  ::testing::AllOf(HasSubstr(message), HasSubstr("; write both with times, "),
+                                   ::testing::Not(HasSubstr("--offset"))));
+    }
   }
+}
+
+TEST_F(Compare, TheTableOfOneNamesCommandAndOrigin) {
+  const std::string truth = write("truth.txt", "tum", 0.0), run = write("run.txt", "tum", 0.02);
+  const Outcome outcome = call({"evaluate", "--reference", truth, "--estimate", run});
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, ::testing::ContainsRegex("\n\nstillpoint evaluate --reference " + truth +
+                                                    " --estimate " + run + kOrigin));
 }
 
 TEST_F(Compare, WhatCannotBeComparedIsNamed) {

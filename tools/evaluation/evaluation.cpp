@@ -15,7 +15,12 @@ std::string range_text(const Trajectory& trajectory, double offset) {
          " s (" + trajectory.name + ")";
 }
 
-[[noreturn]] void throw_without_times(const Trajectory& counted, const Trajectory& timed) {
+/// Also where the counted times happen to lie near the measured ones: pairs would be wrong by ever
+/// more frames.
+void require_times_of_both_or_neither(const Trajectory& reference, const Trajectory& estimate) {
+  if (reference.has_times == estimate.has_times) return;
+  const Trajectory& counted = reference.has_times ? estimate : reference;
+  const Trajectory& timed = reference.has_times ? reference : estimate;
   throw Error(
       Fault::kData,
       "has no time stamps (the format of KITTI), and " + timed.name +
@@ -26,8 +31,6 @@ std::string range_text(const Trajectory& trajectory, double offset) {
 }
 
 [[noreturn]] void throw_too_few_pairs(const Evaluation& e) {
-  if (!e.estimate.has_times && e.reference.has_times) throw_without_times(e.estimate, e.reference);
-  if (!e.reference.has_times && e.estimate.has_times) throw_without_times(e.reference, e.estimate);
   const double offset = e.options.offset;
   const bool overlap = e.estimate.start() + offset <= e.reference.end() &&
                        e.reference.start() <= e.estimate.end() + offset;
@@ -47,6 +50,7 @@ std::string range_text(const Trajectory& trajectory, double offset) {
 
 Evaluation evaluate(Trajectory reference, Trajectory estimate,
                     const std::vector<double>& frame_times, const EvaluationOptions& options) {
+  require_times_of_both_or_neither(reference, estimate);
   Evaluation e{options, std::move(reference), std::move(estimate), {}, {}, {}, {}, {}, {}};
   e.pairs = associate(times_of(e.reference), times_of(e.estimate), options.max_difference,
                       options.offset);

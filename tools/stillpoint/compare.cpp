@@ -9,9 +9,7 @@
 #include <vector>
 
 #include "commands.hpp"
-#include "commit.hpp"
 #include "evaluation/comparison.hpp"
-#include "evaluation/origin.hpp"
 #include "figures/evaluation_figure.hpp"
 #include "figures/figure_file.hpp"
 #include "stillpoint/error.hpp"
@@ -106,11 +104,7 @@ void print_comparison(const CompareArguments& arguments) {
   if (arguments.json)
     std::cout << comparison_json(comparison).dump(2) << '\n';
   else
-    std::cout << comparison_table(comparison) << '\n'
-              << typed_command() << '\n'
-              << origin_text(
-                     origin_of({.version = STILLPOINT_VERSION, .commit = built_from_commit()}))
-              << '\n';
+    std::cout << comparison_table(comparison) << '\n' << made_by();
   if (!arguments.plot.empty())
     figures::write_figure(figures::evaluation_figure(comparison.contestants), arguments.plot);
 }

@@ -13,6 +13,7 @@
 #include "figures/evaluation_figure.hpp"
 #include "figures/figure_file.hpp"
 #include "stillpoint/error.hpp"
+#include "typed_command.hpp"
 
 namespace stillpoint {
 namespace {
@@ -47,7 +48,7 @@ void print_evaluation(const EvaluateArguments& arguments) {
   if (arguments.json)
     std::cout << report_json(result).dump(2) << '\n';
   else
-    std::cout << report_table(result);
+    std::cout << report_table(result) << '\n' << made_by();
   if (!arguments.aligned.empty())
     write_trajectory(arguments.aligned,
                      aligned(result.rigid.reference_from_estimate, result.estimate));

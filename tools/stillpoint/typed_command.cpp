@@ -2,6 +2,8 @@
 
 #include <fstream>
 
+#include "commit.hpp"
+#include "evaluation/origin.hpp"
 #include "shell_word.hpp"
 
 namespace stillpoint {
@@ -12,6 +14,12 @@ std::string typed_command() {
   std::getline(words, word, '\0');  // the path of the program, which others do not have
   while (std::getline(words, word, '\0')) command += ' ' + shell_word(word);
   return command;
+}
+
+std::string made_by() {
+  const evaluation::Origin here =
+      evaluation::origin_of({.version = STILLPOINT_VERSION, .commit = built_from_commit()});
+  return typed_command() + '\n' + origin_text(here) + '\n';
 }
 
 }  // namespace stillpoint

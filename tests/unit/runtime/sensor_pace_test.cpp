@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <condition_variable>
+#include <latch>
 #include <mutex>
 #include <thread>
 
@@ -111,12 +112,15 @@ TEST_P(SensorPace, WhilePausedTheRecordingWaitsAndNothingIsDropped) {
   Stages stages = f.stages();
   stages.outputs.push_back({{keeper, "keeper"}});
   LiveRun::Pause pause;
+  std::latch paused(1);
   f.calls.hook = [&](const std::string& entry) {
     if (entry != "output 0") return;
     pause = keeper->kept->pause();
+    paused.count_down();
     time->end_one_wait();
   };
   std::thread viewer([&] {
+    paused.wait();  // in mode threaded, frame 2 may have been read before
     f.calls.wait_for("source 2");
     time->set(100);                // all are due
     f.calls.wait_for("source 4");  // 1 is to be tracked next, 2 and 3 wait, there is no room for 4
