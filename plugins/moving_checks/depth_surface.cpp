@@ -46,7 +46,10 @@ bool is_discontinuous(double a, double middle, double b, double step) {
 
 void SurfaceOptions::visit(OptionVisitor& v) {
   v("edge_radius", edge_radius,
-    {.min = 1, .max = 50, .unit = "px", .help = "points this near to a depth edge never move"});
+    {.min = 1,
+     .max = 50,
+     .unit = "px",
+     .help = "points this near to a depth edge are never called moving"});
   v("edge_jump", edge_jump,
     {.min = 0, .unit = "m", .help = "a larger deviation from a plane is a depth discontinuity"});
 }

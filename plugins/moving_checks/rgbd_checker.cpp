@@ -17,6 +17,9 @@ namespace {
 // additional error in depth.
 constexpr double kTrackedNoiseFactor = 2.0;
 constexpr double kUnknownTrust = 0.5;
+// Seconds that memory bridges where few points are found again, and what share is few.
+constexpr double kMemory = 0.5;
+constexpr double kMinKept = 0.25;
 constexpr double kTrustRate = 0.3;        // of the way to 0 or 1 per frame
 constexpr double kMinTrustWeight = 0.05;  // so that a wrong static scene can be corrected
 // px of 640 x 480, within which points of a surface share trust. Images of any size have about as
@@ -95,7 +98,9 @@ void RgbdChecker::Options::visit(OptionVisitor& v) {
 
 MovingPoints RgbdChecker::check(const Frame& previous, const Frame& current,
                                 const TrackingHistory&) {
-  if (memory_.frame != previous.index) memory_ = {};
+  const bool is_next = memory_.frame == previous.index;
+  const double age = previous.time - memory_.time;
+  if (!is_next && (age < 0 || age > kMemory)) memory_ = {};
   std::vector<Observation> observations = observe(previous, current);
   MovingPoints result;
   for (const Observation& o : observations)
@@ -106,8 +111,7 @@ MovingPoints RgbdChecker::check(const Frame& previous, const Frame& current,
     classify(observations, *motion, *current.camera, result);
     search_from_prediction(observations, motion->target_from_source, current, result);
   }
-  remember(observations, result, motion ? motion->target_from_source : memory_.motion,
-           current.index);
+  remember(observations, result, motion ? motion->target_from_source : memory_.motion, current);
   return result;
 }
 
@@ -124,7 +128,10 @@ std::vector<RgbdChecker::Observation> RgbdChecker::observe(const Frame& previous
                                                            const Frame& current) {
   std::vector<Observation> result;
   const bool with_depth = usable_depth(previous) && usable_depth(current);
-  for (const Match& match : follower_.follow(previous, current, memory_.points)) {
+  // Of an older frame, places are known roughly: new points there take the trust of the old ones.
+  const bool is_fresh = memory_.frame == previous.index;
+  const std::vector<cv::Point2f> kept = is_fresh ? memory_.points : std::vector<cv::Point2f>();
+  for (const Match& match : follower_.follow(previous, current, kept)) {
     Observation observation{.match = match};
     if (with_depth) {
       observation.from = surface_in(previous, match.previous);
@@ -250,8 +257,15 @@ void RgbdChecker::search_from_prediction(std::vector<Observation>& observations,
 }
 
 void RgbdChecker::remember(const std::vector<Observation>& observations, const MovingPoints& result,
-                           const Pose& motion, std::uint32_t frame) {
-  Memory memory{.frame = frame, .motion = motion, .points = {}, .inverse_depth = {}, .trust = {}};
+                           const Pose& motion, const Frame& frame) {
+  const double enough = kMinKept * static_cast<double>(memory_.points.size());
+  if (static_cast<double>(observations.size()) < enough) return;  // a jump of exposure, or a gap
+  Memory memory{.frame = frame.index,
+                .time = frame.time,
+                .motion = motion,
+                .points = {},
+                .inverse_depth = {},
+                .trust = {}};
   for (std::size_t i = 0; i < observations.size(); ++i) {
     const Observation& o = observations[i];
     if (o.from.kind == Surface::Kind::kEdge || o.to.kind == Surface::Kind::kEdge) continue;

@@ -46,9 +46,10 @@ class RgbdChecker final : public MovingChecker {
     double trust = 0.5;           // 0 moving … 1 static so far
     bool is_predictable = false;  // accurately enough to classify it
   };
-  // State after the last call, of its current frame.
+  // What was known of the last frame with enough matches.
   struct Memory {
     std::uint32_t frame = 0;
+    double time = 0;  // seconds
     Pose motion = Pose::Identity();
     std::vector<cv::Point2f> points;
     std::vector<double> inverse_depth;  // 1/m, 0 = not measured
@@ -66,7 +67,7 @@ class RgbdChecker final : public MovingChecker {
   void search_from_prediction(std::vector<Observation>& observations, const Pose& motion,
                               const Frame& current, MovingPoints& result) const;
   void remember(const std::vector<Observation>& observations, const MovingPoints& result,
-                const Pose& motion, std::uint32_t frame);
+                const Pose& motion, const Frame& frame);
 
   Options options_;
   std::uint64_t seed_;

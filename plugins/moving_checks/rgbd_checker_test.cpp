@@ -136,6 +136,34 @@ TEST_F(RgbdCheckerTest, BoardThatFillsMoreThanHalfOfThePictureIsWhatMoves) {
   }
 }
 
+// When the exposure jumps, hardly any point is found again: what moved before is still known.
+TEST_F(RgbdCheckerTest, AJumpOfExposureIsNotForgetting) {
+  scene_.boards.push_back({{-3.4, 0, 1.8}, 2.4, 3.0, 0.012, 9});
+  const auto frame = [&](std::uint32_t i) { return scene_.render(camera_at(0.004 * i, 0, 0), i); };
+  constexpr std::uint32_t kBright = 32;
+  Frame previous = frame(0);
+  int reliable = 0;
+  for (std::uint32_t i = 1; i < 42; ++i) {
+    const Board board = scene_.boards.back();
+    scene_.boards.back().centre.x() += 0.07;
+    Frame current = frame(i);
+    if (i == kBright) current.gray = current.gray + 70;
+    const MovingPoints result = checker_.check(previous, current, {});
+    if (i == kBright) {
+      EXPECT_FALSE(result.reliable);
+    }
+    if (i > kBright + 1 && result.reliable) {
+      const Counts counts =
+          count(result, board, scene_.camera(), camera_at(0.004 * (i - 1), 0, 0), 40);
+      EXPECT_LE(counts.wrong, 0.1 * counts.elsewhere) << "frame " << i;
+      EXPECT_GE(counts.found, 0.7 * counts.on_board - 2) << "frame " << i;
+      ++reliable;
+    }
+    previous = current;
+  }
+  EXPECT_GT(reliable, 5);
+}
+
 // As when a person passes close by: what is static is seen on one side only, and places the points
 // of the other side less well, but well enough.
 TEST_F(RgbdCheckerTest, FindsWhatMovesBesideAllThatIsStatic) {

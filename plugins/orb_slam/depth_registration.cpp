@@ -49,6 +49,7 @@ Matrix6d DepthRegistration::information_of_view() {
 
 bool DepthRegistration::refine(ObservedFrame& frame, const SparseMap& map,
                                const QuadraticCost& motion, const Solve& solve) {
+  registration_.reset();
   const ReferenceViews::Neighbours around =
       references_.around(view(), frame.world_from_camera, map);
   if (around.views.empty()) return false;

@@ -5,14 +5,15 @@
 #include <cmath>
 
 #include "orb_slam/observed_frame.hpp"
+#include "stillpoint/support/pixel_scale.hpp"
 
 namespace stillpoint::orb_slam {
 namespace {
 
-constexpr int kCell = DepthView::kCell;
-constexpr int kStep = 2;   // px between the samples of a cell
-constexpr int kReach = 2;  // cells around a patch's own that its plane is fitted to
-constexpr int kSamplesPerCell = (kCell / kStep) * (kCell / kStep);
+constexpr double kStep = 2;       // px of 640 x 480, between the samples of a cell
+constexpr int kSamplesAlong = 4;  // of a cell, in each direction
+constexpr int kReach = 2;         // cells around a patch's own that its plane is fitted to
+constexpr int kSamplesPerCell = kSamplesAlong * kSamplesAlong;
 // Sensors leave holes: so many samples of a cell, and cells of a patch, must be measured.
 constexpr int kMinSamples = kSamplesPerCell / 2;
 constexpr int kCells = (2 * kReach + 1) * (2 * kReach + 1);
@@ -25,21 +26,22 @@ struct Cell {
   float weight = 0.0F;
 };
 
-Cell cell_at(const cv::Mat& depth, const cv::Mat& weights, int left, int top) {
+// `step`: px between the samples.
+Cell cell_at(const cv::Mat& depth, const cv::Mat& weights, int left, int top, int step) {
+  const int right = left + kSamplesAlong * step, bottom = top + kSamplesAlong * step;
   float sum = 0.0F;
   int measured = 0;
   std::uint8_t least_weight = 255;
-  for (int y = top; y < top + kCell; y += kStep) {
+  for (int y = top; y < bottom; y += step) {
     const float* row = depth.ptr<float>(y);
-    for (int x = left; x < left + kCell; x += kStep) {
+    for (int x = left; x < right; x += step) {
       const bool is_measured = row[x] > 0;  // some sources have NaN
       sum += is_measured ? 1.0F / row[x] : 0.0F;
       measured += is_measured;
     }
     if (weights.empty()) continue;
     const std::uint8_t* weight = weights.ptr<std::uint8_t>(y);
-    for (int x = left; x < left + kCell; x += kStep)
-      least_weight = std::min(least_weight, weight[x]);
+    for (int x = left; x < right; x += step) least_weight = std::min(least_weight, weight[x]);
   }
   if (least_weight < ObservedFrame::kMinWeight) return {};
   return {measured < kMinSamples ? 0.0F : sum / static_cast<float>(measured),
@@ -95,8 +97,11 @@ InversePlane fit(const std::vector<Cell>& cells, int columns, int column, int ro
 
 }  // namespace
 
-DepthView::DepthView(const Frame& frame, const StaticWeights& weights)
-    : columns_(frame.depth.cols / kCell), rows_(frame.depth.rows / kCell) {
+DepthView::DepthView(const Frame& frame, const StaticWeights& weights) {
+  const int step = std::max(1, cvRound(kStep * pixel_scale(frame.depth.size())));
+  cell_ = kSamplesAlong * step;
+  columns_ = frame.depth.cols / cell_;
+  rows_ = frame.depth.rows / cell_;
   const Camera& camera = *frame.camera;
   noise_ = static_cast<float>(camera.surface_noise);
   focal_ = Eigen::Vector2d(camera.fx, camera.fy).cast<float>();
@@ -105,22 +110,23 @@ DepthView::DepthView(const Frame& frame, const StaticWeights& weights)
   for (int row = 0; row < rows_; ++row)
     for (int column = 0; column < columns_; ++column)
       cells[static_cast<std::size_t>(row * columns_ + column)] =
-          cell_at(frame.depth, weights.track, column * kCell, row * kCell);
+          cell_at(frame.depth, weights.track, column * cell_, row * cell_, step);
 
   patches_.resize(cells.size());
   const float misfit = max_misfit(noise_);
-  // Mean of a cell's sample positions, which are the even pixels.
-  constexpr float kMiddle = (kCell - kStep) / 2.0F;
+  // Mean of a cell's sample positions.
+  const float middle = static_cast<float>(cell_ - step) / 2.0F;
   for (int row = kReach; row < rows_ - kReach; ++row) {
     for (int column = kReach; column < columns_ - kReach; ++column) {
       const InversePlane plane = fit(cells, columns_, column, row, misfit);
       if (plane.weight <= 0 || plane.middle <= 0) continue;
-      const Eigen::Vector2f pixel(static_cast<float>(column * kCell) + kMiddle,
-                                  static_cast<float>(row * kCell) + kMiddle);
+      const Eigen::Vector2f pixel(static_cast<float>(column * cell_) + middle,
+                                  static_cast<float>(row * cell_) + middle);
       const Eigen::Vector2f ray = (pixel - centre_).cwiseQuotient(focal_);
       // On a plane n·x = d, 1/z = (n_x ray_x + n_y ray_y + n_z) / d.
       const Eigen::Vector2f slope =
-          Eigen::Vector2f(plane.by_column, plane.by_row).cwiseProduct(focal_) / kCell;
+          Eigen::Vector2f(plane.by_column, plane.by_row).cwiseProduct(focal_) /
+          static_cast<float>(cell_);
       const Eigen::Vector3f normal(-slope.x(), -slope.y(), slope.dot(ray) - plane.middle);
       patches_[static_cast<std::size_t>(row * columns_ + column)] = {
           .point = Eigen::Vector3f(ray.x(), ray.y(), 1.0F) / plane.middle,
@@ -134,8 +140,8 @@ const PlanePatch* DepthView::at(const Eigen::Vector3f& point) const {
   if (point.z() <= 0) return nullptr;
   const Eigen::Vector2f pixel =
       point.head<2>().cwiseProduct(focal_) / point.z() + centre_ + Eigen::Vector2f(0.5F, 0.5F);
-  const int column = static_cast<int>(std::floor(pixel.x() / kCell));
-  const int row = static_cast<int>(std::floor(pixel.y() / kCell));
+  const int column = static_cast<int>(std::floor(pixel.x() / static_cast<float>(cell_)));
+  const int row = static_cast<int>(std::floor(pixel.y() / static_cast<float>(cell_)));
   if (column < 0 || column >= columns_ || row < 0 || row >= rows_) return nullptr;
   const PlanePatch& found = patch(column, row);
   return found.weight > 0 ? &found : nullptr;
@@ -147,7 +153,8 @@ float DepthView::distance_sigma(const PlanePatch& patch) const {
 
 float DepthView::normal_sigma(const PlanePatch& patch) const {
   const float cell_sigma = noise_ / std::sqrt(static_cast<float>(kSamplesPerCell));
-  return cell_sigma / std::sqrt(kSumOfSquares) * focal_.x() / kCell * patch.point.z();
+  return cell_sigma / std::sqrt(kSumOfSquares) * focal_.x() / static_cast<float>(cell_) *
+         patch.point.z();
 }
 
 }  // namespace stillpoint::orb_slam

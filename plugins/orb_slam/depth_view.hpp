@@ -16,15 +16,15 @@ struct PlanePatch {
   float weight = 0.0F;  ///< probability that it is static, 0 … 1; 0: no plane was found here
 };
 
-/// Every patch is the plane that fits best to 40 × 40 px around its middle; the middles are 8 px
-/// apart. Depth discontinuities, curved surfaces and regions of low static weight have none.
+/// Every patch is the plane that fits best to five by five cells around its middle. A cell has 8 ×
+/// 8 px in images of 640 × 480, in others about as many that there are as many cells. Depth
+/// discontinuities, curved surfaces and regions of low static weight have no patch.
 class DepthView {
  public:
-  static constexpr int kCell = 8;  ///< px between patches
-
   DepthView() = default;
   DepthView(const Frame& frame, const StaticWeights& weights);
 
+  int cell() const { return cell_; }  ///< px between patches
   int columns() const { return columns_; }
   int rows() const { return rows_; }
   const PlanePatch& patch(int column, int row) const {
@@ -42,6 +42,7 @@ class DepthView {
   float normal_sigma(const PlanePatch& patch) const;
 
  private:
+  int cell_ = 1;  // px
   int columns_ = 0;
   int rows_ = 0;
   float noise_ = 0.0F;            // 1/m, of the inverse depth of one pixel

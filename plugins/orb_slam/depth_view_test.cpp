@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <limits>
+#include <opencv2/imgproc.hpp>
 
 #include "orb_slam/test_surfaces.hpp"
 
@@ -22,7 +23,7 @@ int patches_in(const DepthView& view, const cv::Rect& area) {
   int count = 0;
   for (int row = 0; row < view.rows(); ++row)
     for (int column = 0; column < view.columns(); ++column)
-      count += area.contains({column * DepthView::kCell + 4, row * DepthView::kCell + 4}) &&
+      count += area.contains({column * view.cell() + 4, row * view.cell() + 4}) &&
                view.patch(column, row).weight > 0;
   return count;
 }
@@ -63,6 +64,24 @@ TEST(DepthView, OfANoisySensorHasPatchesWhenItsNoiseIsKnown) {
   const FramePtr frame = render_planes({kAhead}, Pose::Identity(), 0, kNoise);
   EXPECT_LT(patches_of(DepthView(*frame, {})), 100) << "taken for discontinuities";
   EXPECT_GT(patches_of(DepthView(*with_surface_noise(frame, kNoise), {})), 0.99 * 76 * 56);
+}
+
+// As many patches in images of any size.
+TEST(DepthView, CellsGrowWithTheImage) {
+  const FramePtr large = render_planes({kAhead}, Pose::Identity());
+  const auto scaled = [&](double factor) {
+    auto camera = std::make_shared<Camera>(*large->camera);
+    camera->width = cvRound(factor * camera->width),
+    camera->height = cvRound(factor * camera->height);
+    for (double* value : {&camera->fx, &camera->fy, &camera->cx, &camera->cy}) *value *= factor;
+    Frame frame = *large;
+    cv::resize(large->depth, frame.depth, {camera->width, camera->height}, 0, 0, cv::INTER_NEAREST);
+    frame.camera = std::move(camera);
+    return patches_of(DepthView(frame, {}));
+  };
+  EXPECT_EQ(scaled(1), 76 * 56);
+  EXPECT_EQ(scaled(0.5), 76 * 56);
+  EXPECT_EQ(scaled(2), 76 * 56);
 }
 
 TEST(DepthView, EdgesHaveNone) {

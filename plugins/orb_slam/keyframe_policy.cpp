@@ -1,8 +1,11 @@
 #include "orb_slam/keyframe_policy.hpp"
 
 #include <algorithm>
+#include <iterator>
+#include <utility>
 
 #include "orb_slam/landmark_geometry.hpp"
+#include "stillpoint/support/median.hpp"
 
 namespace stillpoint::orb_slam {
 namespace {
@@ -13,6 +16,9 @@ constexpr double kUrgentRatio = 0.25;
 // Frames between two key frames where depth gives the pose: unstable corners would ask for one
 // every time.
 constexpr int kMinFramesBetweenByDepth = 5;
+// Likewise while another one waits: in a fast turn near points run out every time, and the queue
+// would fill and hold up tracking.
+constexpr int kMinFramesBetweenWhileWaiting = 3;
 
 // Landmarks of the reference key frame that others observe as well; in a young map, all of them.
 int established_landmarks(const KeyFrame& keyframe, const SparseMap& map) {
@@ -27,10 +33,7 @@ int established_landmarks(const KeyFrame& keyframe, const SparseMap& map) {
 double median_depth(const Features& features) {
   std::vector<float> depths;
   std::ranges::copy_if(features.depth, std::back_inserter(depths), [](float z) { return z > 0; });
-  if (depths.empty()) return 0;
-  const auto middle = depths.begin() + static_cast<std::ptrdiff_t>(depths.size() / 2);
-  std::ranges::nth_element(depths, middle);
-  return *middle;
+  return median(std::move(depths));
 }
 
 // Approximate image motion, in focal lengths.
@@ -61,7 +64,10 @@ void KeyFrameOptions::visit(OptionVisitor& v) {
   v("keyframe_moved_ratio", moved_tracked_ratio,
     {.min = 0, .max = 1, .help = "the same share once the camera has moved, see keyframe_moved"});
   v("keyframe_min_inliers", min_inliers,
-    {.min = 6, .help = "a frame with fewer landmark inliers becomes no key frame"});
+    {.min = 6,
+     .help =
+         "a frame with fewer landmark inliers becomes no key frame, unless it shows surfaces that "
+         "the map does not have"});
   v("close_depth", close_depth,
     {.min = 0.1,
      .unit = "m",
@@ -106,7 +112,9 @@ bool needs_keyframe(const TrackingQuality& q, TrackHints hints, const KeyFrameOp
       q.motion < options.moved ? options.min_tracked_ratio : options.moved_tracked_ratio;
   const bool view_changed = q.inliers < least * q.reference_matches;
   if (!needs_close && !view_changed) return false;
-  const bool urgent = needs_close || q.inliers < kUrgentRatio * q.reference_matches;
+  const bool nearly_lost = q.inliers < kUrgentRatio * q.reference_matches;
+  const bool urgent =
+      nearly_lost || (needs_close && q.frames_since_last >= kMinFramesBetweenWhileWaiting);
   return urgent || q.frames_since_last >= options.max_frames_between || !hints.mapping_waiting;
 }
 

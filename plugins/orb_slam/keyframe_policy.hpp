@@ -10,10 +10,10 @@ namespace stillpoint::orb_slam {
 struct KeyFrameOptions {
   int max_frames_between = 30;
   double min_tracked_ratio = 0.8;
-  double moved = 0.02;
+  double moved = 0.02;  // as TrackingQuality::motion
   double moved_tracked_ratio = 0.9;
   int min_inliers = 15;
-  double close_depth = 3.0;
+  double close_depth = 3.0;  // metres
   int min_close = 100;
   int max_close_untracked = 70;
 

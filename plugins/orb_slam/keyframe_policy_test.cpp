@@ -54,6 +54,9 @@ TEST(NeedsKeyFrame, WhenNearPointsRunOut) {
   quality.close_untracked = options.max_close_untracked + 1;
   EXPECT_TRUE(needs_keyframe(quality, kIdle, options));
   EXPECT_TRUE(needs_keyframe(quality, kBusy, options)) << "it is urgent";
+  quality.frames_since_last = 2;
+  EXPECT_TRUE(needs_keyframe(quality, kIdle, options));
+  EXPECT_FALSE(needs_keyframe(quality, kBusy, options)) << "or the queue would fill";
 }
 
 TEST(NeedsKeyFrame, NeverFromAPoorPose) {

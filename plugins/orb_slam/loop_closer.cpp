@@ -1,30 +1,46 @@
 #include "orb_slam/loop_closer.hpp"
 
+#include <cmath>
 #include <utility>
 
 namespace stillpoint::orb_slam {
 namespace {
 
-double path_length(const SparseMap& map, KeyFrameId from, KeyFrameId to) {
+// Dynamic objects may have caused drift on a short path; rooms that look alike are farther apart.
+constexpr double kSlackMetres = 0.5;
+constexpr double kSlackRadians = 0.5;
+constexpr double kRadiansPerMetre = 0.02;
+constexpr double kSigmas = 3;  // of poses that landmarks did not constrain
+
+// Between two key frames.
+struct Path {
   double metres = 0;
+  Matrix6d covariance = Matrix6d::Zero();  // sum of those of the key frames, as in PoseUncertainty
+};
+
+Path path_between(const SparseMap& map, KeyFrameId from, KeyFrameId to) {
+  Path path;
   Eigen::Vector3d last = map.world_from_keyframe(from).translation();
   for (KeyFrameId id = from + 1; id <= to; ++id) {
     const KeyFrame* keyframe = map.keyframe(id);
     if (!keyframe) continue;
-    metres += (keyframe->world_from_camera.translation() - last).norm();
+    path.metres += (keyframe->world_from_camera.translation() - last).norm();
+    path.covariance += keyframe->covariance;
     last = keyframe->world_from_camera.translation();
   }
-  return metres;
+  return path;
 }
 
 // Perceptual aliasing: rejects loops whose correction exceeds the drift that is possible.
 bool is_within_drift(const SparseMap& map, const LoopMatch& loop, double max_drift) {
-  // Metres; dynamic objects may have caused drift on a short path, and rooms that look alike are
-  // farther apart than that.
-  constexpr double kSlack = 0.5;
-  const Eigen::Vector3d before = map.keyframe(loop.keyframe)->world_from_camera.translation();
-  return (loop.world_from_camera.translation() - before).norm() <=
-         kSlack + max_drift * path_length(map, loop.place, loop.keyframe);
+  const Path path = path_between(map, loop.place, loop.keyframe);
+  const Pose drift =
+      map.keyframe(loop.keyframe)->world_from_camera.inverse() * loop.world_from_camera;
+  const double metres = std::sqrt(path.covariance.topLeftCorner<3, 3>().trace());
+  const double radians = std::sqrt(path.covariance.bottomRightCorner<3, 3>().trace());
+  return drift.translation().norm() <= kSlackMetres + max_drift * path.metres + kSigmas * metres &&
+         rotation_angle(drift) <=
+             kSlackRadians + kRadiansPerMetre * path.metres + kSigmas * radians;
 }
 
 }  // namespace
@@ -34,8 +50,10 @@ void OrbLoopCloser::Options::visit(OptionVisitor& v) {
     {.min = 0, .help = "least number of key frames between two loop closures"});
   v("max_drift", max_drift,
     {.min = 0,
-     .help = "a loop that moves the camera by more than this share of the path travelled since, "
-             "plus 0.5 m, is rejected as two places that look alike"});
+     .help =
+         "a loop that moves the camera by more than this share of the path travelled since, "
+         "plus 0.5 m and what key frames say that depth left open, is rejected as two places that "
+         "look alike; so is one that turns it by more than 29 degrees, plus 1.1 per metre"});
   v("adjust_iterations", adjust_iterations,
     {.min = 0,
      .help = "iterations of the bundle adjustment of the whole map after a loop; 0: none"});

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "orb_slam/test_round_trip.hpp"
 
 namespace stillpoint::orb_slam {
@@ -66,6 +68,34 @@ TEST_F(LoopCloserTest, APlaceOutOfReachIsNone) {
     return false;
   };
   EXPECT_FALSE(closes(0.01));
+  EXPECT_TRUE(closes(0.1));
+}
+
+// As where opposite sides of a room look the same, seen from its middle.
+TEST_F(LoopCloserTest, APlaceThatTurnsTheCameraRoundIsNone) {
+  for (last_ = 0; last_ < RoundTrip::kKeyFrames; ++last_) {
+    MapEdit edit(trip_.map(last_ + 1));
+    const auto id = static_cast<KeyFrameId>(last_);
+    if (last_ > RoundTrip::kPerTurn / 2)
+      edit.keyframe(id).world_from_camera.rotate(Eigen::AngleAxisd(0.8, Eigen::Vector3d::UnitY()));
+    EXPECT_FALSE(closer_.close(std::move(edit).finish(), id, {})) << last_;
+  }
+}
+
+// Along a blank corridor, where tracking had only depth.
+TEST_F(LoopCloserTest, UncertainKeyFramesAllowLargerCorrections) {
+  const RoundTrip far_off(0.02);  // 0.8 m at the end of a way of 6.3 m
+  const auto closes = [&](double sigma) {
+    OrbLoopCloser closer({.max_drift = 0}, StageContext{});
+    for (int i = 0; i < RoundTrip::kKeyFrames; ++i) {
+      MapEdit edit(far_off.map(i + 1));
+      for (KeyFrameId id = 10; id < static_cast<KeyFrameId>(std::min(i, 20)); ++id)
+        edit.keyframe(id).covariance.diagonal().setConstant(sigma * sigma);
+      if (closer.close(std::move(edit).finish(), static_cast<KeyFrameId>(i), {})) return true;
+    }
+    return false;
+  };
+  EXPECT_FALSE(closes(0.001));
   EXPECT_TRUE(closes(0.1));
 }
 

@@ -10,12 +10,15 @@ constexpr float kInlierLogOdds = 0.2F;  // log-odds of being static per inlier m
 constexpr float kViolationLogOdds = 0.5F;  // log-odds against it per violation
 constexpr double kFreeSpaceMargin = 0.2;   // relative: measured depth beyond the landmark
 constexpr double kOcclusionMargin = 0.1;   // relative: measured depth before the landmark
+constexpr double kRate = 30;               // Hz, that the log-odds of a frame are meant for
+constexpr double kLeastShare = 0.5, kMostShare = 3;  // of them, at other rates and after gaps
 constexpr int kEdgeRadius = 2;  // px; free space beside a depth discontinuity proves nothing
 
 enum class Visibility { kOpen, kOccluded, kFreeSpace };
 
 /// kFreeSpace: all depth around the landmark's projection is farther than the landmark.
 Visibility visibility(const Frame& frame, const Eigen::Vector3d& in_camera) {
+  if (in_camera.z() <= 0) return Visibility::kOccluded;  // behind the camera, at its latest pose
   const Eigen::Vector2d at = frame.camera->project(in_camera);
   const cv::Point pixel(cvRound(at.x()), cvRound(at.y()));
   const cv::Mat& depth = frame.depth;
@@ -42,7 +45,9 @@ void add(float log_odds, const Landmark& landmark, LandmarkEvidence& evidence) {
 }  // namespace
 
 void add_static_evidence(const ObservedFrame& frame, const SparseMap& map,
-                         std::span<const LandmarkId> visible, EvidenceByLandmark& evidence) {
+                         std::span<const LandmarkId> visible, double seconds,
+                         EvidenceByLandmark& evidence) {
+  const auto share = static_cast<float>(std::clamp(kRate * seconds, kLeastShare, kMostShare));
   std::vector<bool> matched(map.landmark_id_end());
   for (std::size_t i = 0; i < frame.landmarks.size(); ++i) {
     const LandmarkId id = frame.landmarks[i];
@@ -50,7 +55,8 @@ void add_static_evidence(const ObservedFrame& frame, const SparseMap& map,
     matched[id] = true;
     LandmarkEvidence& e = evidence[id];
     ++e.found;
-    add(kInlierLogOdds * static_cast<float>(frame.track_weights[i]) / 255, *map.landmark(id), e);
+    add(share * kInlierLogOdds * static_cast<float>(frame.track_weights[i]) / 255,
+        *map.landmark(id), e);
   }
   const Pose camera_from_world = frame.world_from_camera.inverse();
   for (const LandmarkId id : visible) {
@@ -61,8 +67,17 @@ void add_static_evidence(const ObservedFrame& frame, const SparseMap& map,
     if (seen == Visibility::kOccluded) continue;
     LandmarkEvidence& e = evidence[id];
     ++e.visible;
-    if (seen == Visibility::kFreeSpace) add(-kViolationLogOdds, landmark, e);
+    if (seen == Visibility::kFreeSpace) add(-share * kViolationLogOdds, landmark, e);
   }
+}
+
+int count_unoccluded(const ObservedFrame& frame, const SparseMap& map,
+                     std::span<const LandmarkId> visible) {
+  const Pose camera_from_world = frame.world_from_camera.inverse();
+  return static_cast<int>(std::ranges::count_if(visible, [&](LandmarkId id) {
+    return visibility(*frame.frame, camera_from_world * map.landmark(id)->position_in_world) !=
+           Visibility::kOccluded;
+  }));
 }
 
 }  // namespace stillpoint::orb_slam

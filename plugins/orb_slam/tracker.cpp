@@ -19,6 +19,14 @@ constexpr double kMinMotionShare = 0.5;
 // place; unless the last frame, which was registered by depth, had no texture.
 constexpr int kManyFeatures = 500;
 constexpr double kMinMatchedShare = 0.1;
+constexpr double kRecentSeconds = 1.0;  // seconds; afterwards the camera may be anywhere
+// A lost camera is found where so large a share of the landmarks that it should see are inliers:
+// objects that have been moved would be found with less. Out of reach of the last pose, where
+// somebody may have carried it, more are needed.
+constexpr double kMinSupportNear = 0.1, kMinSupportFarAway = 0.2;
+constexpr double kReachMetres = 1.0;
+constexpr double kReachSpeed = 2.0;  // m/s
+constexpr double kSettled = 0.2;     // seconds without a key frame after relocalisation
 
 std::vector<TrackedFeature> describe(const ObservedFrame& frame) {
   std::vector<TrackedFeature> tracked(frame.features->size());
@@ -62,7 +70,6 @@ TrackResult OrbTracker::track(PreparedFramePtr prepared, const StaticWeights& we
   current_.set_weights(weights);
   moving_area_.update(weights, current_.frame->time);
   if (!first_keyframe_) begin_with(map);
-  visible_.clear();
   depth_registration_.begin(current_.frame, weights);
   prediction_.reset();
   if (map.empty())
@@ -70,12 +77,12 @@ TrackResult OrbTracker::track(PreparedFramePtr prepared, const StaticWeights& we
                                            : not_tracked(TrackState::kWaiting);
 
   follow_map(map);
-  bool found = false;
   const bool following = state_ == TrackState::kTracking;
-  if (following) found = track_with_motion(map) || track_by_appearance(map);
-  if (found) found = track_local_map(map);
-  if (!found && following) found = track_with_depth(map);
-  if (!found) found = relocaliser_.find(current_, map) && track_local_map(map);
+  bool found =
+      following && (track_with_motion(map) || track_by_appearance(map)) && track_local_map(map);
+  if (!found && !following) found = relocalise(map);
+  if (!found && is_recent()) found = track_with_depth(map);
+  if (!found && following) found = relocalise(map);
   return found ? tracked(map, hints) : not_tracked(TrackState::kLost);
 }
 
@@ -89,7 +96,8 @@ void OrbTracker::begin_with(const SparseMap& map) {
 bool OrbTracker::start() {
   int points = 0;
   for (std::uint32_t i = 0; i < current_.features->size(); ++i)
-    points += current_.features->depth[i] > 0 && current_.usable(i);
+    points += current_.features->depth[i] > 0 && current_.track_weights[i] >= kMinMapWeight &&
+              current_.map_weights[i] >= kMinMapWeight;
   current_.world_from_camera = Pose::Identity();
   current_.reference = kNoId;
   return points >= options_.min_start_points || surfaces_suffice();
@@ -122,6 +130,8 @@ void OrbTracker::predict_pose() {
 
 double OrbTracker::seconds_since_last() const { return current_.frame->time - last_.frame->time; }
 
+bool OrbTracker::is_recent() const { return last_.frame && seconds_since_last() <= kRecentSeconds; }
+
 int OrbTracker::match_last_frame(const SparseMap& map) {
   const Pose prediction = current_.world_from_camera.inverse();
   const std::vector<Target> targets = targets_of(last_, map);
@@ -150,6 +160,24 @@ bool OrbTracker::track_by_appearance(const SparseMap& map) {
          locate_by_appearance(current_, targets_of(*reference, map), map) >= options_.min_inliers;
 }
 
+bool OrbTracker::relocalise(const SparseMap& map) {
+  const bool located =
+      (is_recent() && track_by_appearance(map)) || relocaliser_.find(current_, map);
+  if (!located || !track_local_map(map) || !is_supported(map)) return false;
+  relocalised_at_ = current_.frame->time;
+  return true;
+}
+
+// A thing that has been moved looks as it did, and matches where it was.
+bool OrbTracker::is_supported(const SparseMap& map) const {
+  const Eigen::Vector3d way =
+      current_.world_from_camera.translation() - last_.world_from_camera.translation();
+  const bool in_reach =
+      !last_.frame || way.norm() <= kReachMetres + kReachSpeed * seconds_since_last();
+  return inliers_ >= (in_reach ? kMinSupportNear : kMinSupportFarAway) *
+                         count_unoccluded(current_, map, visible_);
+}
+
 bool OrbTracker::track_local_map(const SparseMap& map) {
   search_local_map(map);
   const Pose prior = current_.world_from_camera;
@@ -171,8 +199,9 @@ bool OrbTracker::track_local_map(const SparseMap& map) {
 // Where neither the last frame nor the map gives enough inliers: starts from the prediction and
 // uses surfaces and whatever landmarks match.
 bool OrbTracker::track_with_depth(const SparseMap& map) {
-  if (!options_.register_depth || !last_.frame) return false;
+  if (!options_.register_depth) return false;
   predict_pose();
+  if (state_ == TrackState::kLost) prediction_ = last_.world_from_camera;
   const int matches = match_last_frame(map);
   const auto usable = std::ranges::count_if(
       current_.track_weights, [](auto weight) { return weight >= ObservedFrame::kMinWeight; });
@@ -213,6 +242,7 @@ void OrbTracker::search_local_map(const SparseMap& map) {
   if (local.reference == kNoId && map.keyframe(last_.reference))
     current_.reference = last_.reference;
 
+  visible_.clear();
   search(current_, local, map, options_.local_window, visible_);
 }
 
@@ -233,9 +263,13 @@ TrackResult OrbTracker::tracked(const SparseMap& map, TrackHints hints) {
   quality.depth_registered = depth_registration_.refined();
   const bool unknown_view = (bridged_ || depth_registration_.shows_new_surfaces()) &&
                             last_keyframe_ == kNoId;  // the last one is in the map
-  const bool keep = !hints.localise_only && (map.empty() || unknown_view ||
-                                             needs_keyframe(quality, hints, options_.keyframe));
-  add_static_evidence(current_, map, visible_, evidence_);
+  const bool settled = !relocalised_at_ || current_.frame->time - *relocalised_at_ >= kSettled;
+  const bool keep =
+      !hints.localise_only && settled &&
+      (map.empty() || unknown_view || needs_keyframe(quality, hints, options_.keyframe));
+  // A doubtful pose is no witness against the map.
+  if (settled && !bridged_ && !result.uncertainty->poorly_constrained())
+    add_static_evidence(current_, map, visible_, last_.frame ? seconds_since_last() : 0, evidence_);
   current_.drop_outliers();
   current_.drop_temporary();
   last_keyframe_ = kNoId;

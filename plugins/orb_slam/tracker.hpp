@@ -34,9 +34,12 @@ class OrbTracker final : public Tracker {
   void follow_map(const SparseMap& map);
   void predict_pose();
   double seconds_since_last() const;
+  bool is_recent() const;
   int match_last_frame(const SparseMap& map);
   bool track_with_motion(const SparseMap& map);
   bool track_by_appearance(const SparseMap& map);
+  bool relocalise(const SparseMap& map);
+  bool is_supported(const SparseMap& map) const;
   bool track_local_map(const SparseMap& map);
   void search_local_map(const SparseMap& map);
   bool track_with_depth(const SparseMap& map);
@@ -66,6 +69,7 @@ class OrbTracker final : public Tracker {
   bool last_used_depth_ = false;
   PoseUncertainty last_uncertainty_;  // of this frame, once it is tracked; before, of `last_`
 
+  std::optional<double> relocalised_at_;      // seconds, the last time; none: never lost
   std::optional<KeyFrameId> first_keyframe_;  // of this recording: others came with the map
   std::uint32_t last_keyframe_index_ = 0;     // frame index of the newest key frame
   std::vector<LandmarkId> visible_;           // landmarks that should be seen in this frame

@@ -14,9 +14,9 @@ struct TrackerOptions {
   int min_inliers = 30;
   int min_bridge_points = 50;
   int local_keyframes = 80;
-  double motion_window = 15.0;
-  double local_window = 3.0;
-  double probation = 0.0;
+  double motion_window = 15.0;  // px
+  double local_window = 3.0;    // px
+  double probation = 0.0;       // seconds
   double max_feature_factor = 1.0;
   bool register_depth = true;
 

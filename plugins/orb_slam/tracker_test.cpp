@@ -133,6 +133,25 @@ TEST_F(TrackerTest, DepthGivesThePoseInAPlainCorner) {
   }
 }
 
+// A lens that is covered for a moment.
+TEST_F(TrackerTest, DepthTracksOnAfterAMomentWithoutIt) {
+  const auto truth = [](int i) { return pose_at({-0.01 * i, 0.003 * i, 0.006 * i}); };
+  const auto see = [&](int i, bool covered) {
+    auto frame = std::make_shared<Frame>(
+        *render_planes({kAhead, kRight, kFloor}, truth(i), static_cast<std::uint32_t>(i), 0.002));
+    if (covered) frame->depth.setTo(0);
+    return step(frame);
+  };
+  for (int i = 0; i < 10; ++i) expect_at(see(i, false), truth(i));
+  for (int i = 10; i < 13; ++i) EXPECT_EQ(see(i, true).state, TrackState::kLost);
+  for (int i = 13; i < 20; ++i) {
+    SCOPED_TRACE(i);
+    expect_at(see(i, false), truth(i));
+  }
+  for (int i = 20; i < 55; ++i) see(i, true);
+  EXPECT_EQ(see(55, false).state, TrackState::kLost) << "after a second it may be anywhere";
+}
+
 TEST_F(TrackerTest, ASlideAlongAWallIsReported) {
   scene_ = TestScene({{-4, -3, 8, 6, 3.0}});
   for (int i = 0; i < 6; ++i) expect_at(step(pose_at({0.01 * i, 0, 0})), pose_at({0.01 * i, 0, 0}));
@@ -198,6 +217,33 @@ TEST_F(TrackerTest, LostFarAwayIsFoundWhereTheMapIsKnown) {
   for (int i = 0; i < 20 && result.state != TrackState::kTracking; ++i)
     result = step(pose_at({0.03, 0.02, 0}));
   expect_at(result, pose_at({0.03, 0.02, 0}));
+}
+
+TEST_F(TrackerTest, AThingThatHasBeenMovedIsNoPlace) {
+  for (int i = 0; i < 8; ++i) step(pose_at({0.02 * i, 0, 0}));
+  step(scene_.black(next_++));
+  // Only the nearer of the two things is left, half a metre farther to the right.
+  const Panel nowhere{100, 100, 1, 1, 3};
+  const TestScene moved({nowhere, nowhere, {0.9, -0.2, 0.9, 1.2, 1.8}});
+  for (int i = 0; i < 5; ++i)
+    EXPECT_EQ(step(moved.render(pose_at({0.5, 0, 0}), next_++)).state, TrackState::kLost) << i;
+  expect_at(step(pose_at({0.1, 0, 0})), pose_at({0.1, 0, 0}));
+}
+
+TEST_F(TrackerTest, RelocalisationMustHoldBeforeTheMapGrows) {
+  for (int i = 0; i < 8; ++i) step(pose_at({0.02 * i, 0, 0}));
+  step(scene_.black(next_++));
+  const Pose aside = pose_at({0.9, 0, 0});  // half of what is in view is not in the map yet
+  const std::uint32_t found = next_;
+  bool has_keyframe = false;
+  for (int i = 0; i < 12; ++i) {
+    const bool early = next_ - found < 6;  // 0.2 s at 30 Hz
+    const TrackResult result = step(aside);
+    expect_at(result, aside);
+    EXPECT_FALSE(early && result.keyframe) << i;
+    has_keyframe |= result.keyframe.has_value();
+  }
+  EXPECT_TRUE(has_keyframe);
 }
 
 TEST_F(TrackerTest, UnknownViewIsLost) {
@@ -282,6 +328,14 @@ TEST_F(TrackerTest, EverythingMovingAtTheStartWaits) {
   StaticWeights weights;
   weights.track = cv::Mat::zeros(480, 640, CV_8UC1);
   EXPECT_EQ(step(Pose::Identity(), weights).state, TrackState::kWaiting);
+}
+
+// Landmarks could not be made of them.
+TEST_F(TrackerTest, WhatMustNotBeMappedDoesNotBeginTheMap) {
+  StaticWeights weights;
+  weights.map = cv::Mat(480, 640, CV_8UC1, cv::Scalar(0));
+  EXPECT_EQ(step(Pose::Identity(), weights).state, TrackState::kWaiting);
+  EXPECT_EQ(step(Pose::Identity()).state, TrackState::kTracking);
 }
 
 TEST_F(TrackerTest, FollowsWhenMappingMovesTheMap) {
