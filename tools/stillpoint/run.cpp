@@ -129,10 +129,10 @@ void warn_of_labels(const PipelineConfig& config, const RunFolder& folder) {
         LogLevel::kWarning,
         "schedule 'latest' without a propagator: labels of earlier frames are used where they "
         "were in those; 'propagator: {type: flow_depth}' moves them to the current frame");
-  if (!latest && config.segmentation.interval > 1)
-    folder.log(
-        LogLevel::kWarning,
-        "segmentation.interval means nothing with schedule 'wait': every frame is segmented");
+  if (!latest && config.segmentation.interval_seconds > 0)
+    folder.log(LogLevel::kWarning,
+               "segmentation.interval_seconds means nothing with schedule 'wait': every frame is "
+               "segmented");
 }
 
 /// Between what the run reads, what it writes elsewhere, and the files of its folder.

@@ -228,16 +228,17 @@ void RuntimeOptions::visit(OptionVisitor& v) {
 void SegmentationOptions::visit(OptionVisitor& v) {
   v.choice("schedule", schedule, {{"wait", Schedule::kWait}, {"latest", Schedule::kLatest}},
            {.help = "wait for each frame's labels (the paper), or take the latest there are"});
-  v("interval", interval,
-    {.min = 1,
-     .max = 1000,
-     .unit = "frames",
-     .help =
-         "with 'latest', the network takes at most every n-th frame; a larger n costs less time"});
-  v("latency", latency,
+  v("interval_seconds", interval_seconds,
     {.min = 0,
-     .max = 1000,
-     .unit = "frames",
+     .max = 60,
+     .unit = "s",
+     .help =
+         "with 'latest', the least time between two frames that the network takes; a longer one "
+         "costs less processor time"});
+  v("latency_seconds", latency_seconds,
+    {.min = 0,
+     .max = 60,
+     .unit = "s",
      .help = "simulated delay of labels with 'latest' in mode inline"});
   v("max_labelled", max_labelled,
     {.min = 0,

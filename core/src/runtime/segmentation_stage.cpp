@@ -11,6 +11,7 @@
 namespace stillpoint {
 namespace {
 
+constexpr double kJitter = 0.01;     // seconds, of the times of frames
 constexpr int kMinObjectPixels = 1;  // segmenters that name no objects have all of them named
 
 /// The share of the image that one class has, at most.
@@ -44,17 +45,17 @@ SegmentationStage::SegmentationStage(Stage<Segmenter> segmenter, Stage<Propagato
       times_(times),
       segmenter_(std::move(segmenter), "segmentation", times),
       propagator_(std::move(propagator), "propagation", times),
-      classes_(segmenter_.call_unmeasured({}, &Segmenter::classes).size()),
+      classes_(segmenter_.call_unmeasured({}, &Segmenter::classes)),
       network_(
           segmenter_.present() ? mode : Mode::kInline, 1, stop,
-          [this](FramePtr frame) { segment(taken(std::move(frame))); },
+          [this](FramePtr frame) { segment(take(std::move(frame))); },
           options.schedule == Schedule::kLatest ? ThreadPriority::kNetwork
                                                 : ThreadPriority::kTracking) {}
 
 void SegmentationStage::offer(const FramePtr& frame) {
   if (options_.schedule == Schedule::kWait)
     network_.push(frame);
-  else if (frame->index < next_)
+  else if (frame->time < next_)
     return;
   else if (network_.threaded())
     network_.push_or_drop_oldest(frame);
@@ -62,18 +63,19 @@ void SegmentationStage::offer(const FramePtr& frame) {
     waiting_ = frame;
 }
 
-SegmentationPtr SegmentationStage::at(const FramePtr& frame) {
+SegmentationPtr SegmentationStage::labels_for(const FramePtr& frame) {
   if (options_.schedule == Schedule::kLatest && !network_.threaded()) imitate_latency(frame);
   const Labelled newest = wait_for(frame);
   if (!newest.frame) return nullptr;
-  auto labels = std::make_shared<const Segmentation>(propagator_.call(
-      "propagate", frame->index, propagate, *newest.labels, *newest.frame, *frame, classes_));
+  auto labels = std::make_shared<const Segmentation>(
+      propagator_.call("propagate", frame->index, propagate, *newest.labels, *newest.frame, *frame,
+                       classes_.size()));
   unlabelled_ += segmenter_.present() && !labels->known() ? 1 : 0;
   return labels;
 }
 
-FramePtr SegmentationStage::taken(FramePtr frame) {
-  if (frame) next_ = frame->index + static_cast<std::uint32_t>(options_.interval);
+FramePtr SegmentationStage::take(FramePtr frame) {
+  if (frame) next_ = frame->time + options_.interval_seconds - kJitter;
   return frame;
 }
 
@@ -89,7 +91,7 @@ void SegmentationStage::segment(FramePtr frame) {
 Segmentation SegmentationStage::labels_of(const Frame& frame) {
   try {
     Segmentation labels =
-        segmenter_.call("segmentation", frame.index, stillpoint::segment, frame, classes_);
+        segmenter_.call("segmentation", frame.index, stillpoint::segment, frame, classes_.size());
     if (!labels.known()) return labels;
     if (labels.instances.empty()) find_objects(labels, kMinObjectPixels);
     // Too little would be left to track, and such labels are hardly ever right.
@@ -105,11 +107,10 @@ Segmentation SegmentationStage::labels_of(const Frame& frame) {
 }
 
 void SegmentationStage::imitate_latency(const FramePtr& now) {
-  const auto latency = static_cast<std::uint32_t>(options_.latency);
-  if (!newest_.frame) return segment(taken(std::exchange(waiting_, nullptr)));
-  if (!running_) running_ = taken(std::exchange(waiting_, nullptr));
-  if (!running_ || now->index - running_->index < latency) return;
-  segment(std::exchange(running_, taken(std::exchange(waiting_, nullptr))));
+  if (!newest_.frame) return segment(take(std::exchange(waiting_, nullptr)));
+  if (!running_) running_ = take(std::exchange(waiting_, nullptr));
+  if (!running_ || now->time - running_->time < options_.latency_seconds - kJitter) return;
+  segment(std::exchange(running_, take(std::exchange(waiting_, nullptr))));
 }
 
 SegmentationStage::Labelled SegmentationStage::wait_for(const FramePtr& frame) {

@@ -22,9 +22,9 @@ struct SegmentationFixture {
 
   using OnFailure = SegmentationOptions::OnFailure;
 
-  std::unique_ptr<SegmentationStage> make(Schedule schedule, Mode mode, int latency = 3,
+  std::unique_ptr<SegmentationStage> make(Schedule schedule, Mode mode, double latency = 0.3,
                                           OnFailure on_failure = OnFailure::kStop) {
-    return make({.schedule = schedule, .latency = latency, .on_failure = on_failure}, mode);
+    return make({.schedule = schedule, .latency_seconds = latency, .on_failure = on_failure}, mode);
   }
   std::unique_ptr<SegmentationStage> make(const SegmentationOptions& options, Mode mode) {
     return std::make_unique<SegmentationStage>(
@@ -37,7 +37,7 @@ struct SegmentationFixture {
 SegmentationPtr process(SegmentationStage& stage, std::uint32_t index) {
   const auto frame = std::make_shared<const Frame>(testing::make_frame(index));
   stage.offer(frame);
-  return stage.at(frame);
+  return stage.labels_for(frame);
 }
 
 TEST(SegmentationStage, WaitGivesEveryFrameItsOwnLabels) {
@@ -55,7 +55,7 @@ TEST(SegmentationStage, WaitGivesEveryFrameItsOwnLabels) {
 
 TEST(SegmentationStage, LatestInlineImitatesABusyNetwork) {
   SegmentationFixture f;
-  const auto stage = f.make(Schedule::kLatest, Mode::kInline, 3);
+  const auto stage = f.make(Schedule::kLatest, Mode::kInline, 0.3);
   for (std::uint32_t i = 0; i <= 8; ++i) EXPECT_TRUE(process(*stage, i)->known());
   // The first labels are waited for. Frame 1 takes until 4; of those that came meanwhile, the
   // newest is next and takes until 7.
@@ -77,7 +77,8 @@ TEST(SegmentationStage, LatestInlineWithoutLatencyIsWait) {
 TEST(SegmentationStage, LatestInlineTakesAFrameEveryInterval) {
   SegmentationFixture f;
   const auto stage =
-      f.make({.schedule = Schedule::kLatest, .interval = 3, .latency = 1}, Mode::kInline);
+      f.make({.schedule = Schedule::kLatest, .interval_seconds = 0.3, .latency_seconds = 0.1},
+             Mode::kInline);
   for (std::uint32_t i = 0; i <= 7; ++i) process(*stage, i);
   EXPECT_EQ(f.calls.entries("propagate"),
             (Strings{"propagate 0 0", "propagate 0 1", "propagate 0 2", "propagate 0 3",
@@ -87,14 +88,16 @@ TEST(SegmentationStage, LatestInlineTakesAFrameEveryInterval) {
 TEST(SegmentationStage, AnIntervalShorterThanTheNetworkTakesChangesNothing) {
   SegmentationFixture f;
   const auto stage =
-      f.make({.schedule = Schedule::kLatest, .interval = 2, .latency = 3}, Mode::kInline);
+      f.make({.schedule = Schedule::kLatest, .interval_seconds = 0.2, .latency_seconds = 0.3},
+             Mode::kInline);
   for (std::uint32_t i = 0; i <= 8; ++i) process(*stage, i);
   EXPECT_EQ(f.calls.entries("segment"), (Strings{"segment 0", "segment 2", "segment 5"}));
 }
 
 TEST(SegmentationStage, LatestThreadedTakesAFrameEveryInterval) {
   SegmentationFixture f;
-  const auto stage = f.make({.schedule = Schedule::kLatest, .interval = 3}, Mode::kThreaded);
+  const auto stage =
+      f.make({.schedule = Schedule::kLatest, .interval_seconds = 0.3}, Mode::kThreaded);
   for (std::uint32_t i = 0; i <= 8; ++i) {
     process(*stage, i);
     if (i % 3 == 0) f.calls.wait_for("segment " + std::to_string(i));
@@ -109,7 +112,8 @@ TEST(SegmentationStage, LatestThreadedABusyNetworkGoesOnWithTheNewest) {
   f.calls.hook = [&](const std::string& entry) {
     if (entry == "segment 2") release.wait();
   };
-  const auto stage = f.make({.schedule = Schedule::kLatest, .interval = 2}, Mode::kThreaded);
+  const auto stage =
+      f.make({.schedule = Schedule::kLatest, .interval_seconds = 0.2}, Mode::kThreaded);
   for (std::uint32_t i = 0; i <= 2; ++i) process(*stage, i);
   f.calls.wait_for("segment 2");
   for (std::uint32_t i = 3; i <= 7; ++i) process(*stage, i);
@@ -120,7 +124,8 @@ TEST(SegmentationStage, LatestThreadedABusyNetworkGoesOnWithTheNewest) {
 
 TEST(SegmentationStage, WaitGivesEveryFrameItsLabelsWhateverTheInterval) {
   SegmentationFixture f;
-  const auto stage = f.make({.schedule = Schedule::kWait, .interval = 3}, Mode::kThreaded);
+  const auto stage =
+      f.make({.schedule = Schedule::kWait, .interval_seconds = 0.3}, Mode::kThreaded);
   for (std::uint32_t i = 0; i < 4; ++i) EXPECT_EQ(process(*stage, i)->frame, i);
 }
 
@@ -135,7 +140,7 @@ TEST(SegmentationStage, LatestThreadedNeverWaitsForABusyNetwork) {
   const auto first = std::make_shared<const Frame>(testing::make_frame(1));
   stage->offer(first);
   f.calls.wait_for("segment 1");
-  stage->at(first);
+  stage->labels_for(first);
   for (std::uint32_t i = 2; i < 6; ++i) EXPECT_TRUE(process(*stage, i)->known());
   EXPECT_TRUE(f.calls.contains("propagate 0 5"));
   release.count_down();
@@ -202,7 +207,7 @@ TEST(SegmentationStage, OneClassOnNearlyTheWholeImageIsNotUsed) {
     frame.gray = cv::Mat::zeros(10, 1, CV_8UC1);
     const auto shared = std::make_shared<const Frame>(std::move(frame));
     stage.offer(shared);
-    return stage.at(shared)->known();
+    return stage.labels_for(shared)->known();
   };
   EXPECT_TRUE(used(9));
   EXPECT_FALSE(used(10));
@@ -230,7 +235,8 @@ TEST(SegmentationStage, LabelsThatDoNotFitTheFrameAreTheSegmentersFault) {
               ::testing::HasSubstr("the instances"));
   EXPECT_THAT(message({.labels = pixel, .instances = pixel}),
               ::testing::HasSubstr("belongs to object 1 of 0"));
-  EXPECT_EQ(message({.labels = pixel, .instances = pixel, .objects = {{.label = 1}}}), "");
+  EXPECT_EQ(message({.labels = pixel, .instances = pixel, .objects = {{.label = 1, .pixels = 1}}}),
+            "");
 }
 
 TEST(SegmentationStage, TimesNameTheirFrame) {

@@ -25,8 +25,8 @@ class STILLPOINT_EXPORT ConfigError final : public Error {
 /// A pipeline file and what is changed of it.
 struct PipelineRequest {
   std::string pipeline;  ///< a file, or a name from configs/pipelines
-  /// Replaces source.path, and `tum_rgbd` by `bag` where it is one, or the other way round;
-  /// relative to the working folder.
+  /// The recording to read, relative to the working folder: replaces source.path, and exchanges the
+  /// source types `tum_rgbd` and `bag` so that they fit it.
   std::filesystem::path dataset;
   std::string camera;                    ///< a file, or a name from configs/cameras
   std::vector<std::string> assignments;  ///< `key.sub=value`
@@ -54,9 +54,9 @@ struct STILLPOINT_EXPORT RuntimeOptions {
 /// The `segmentation:` section, and `segmenter.on_failure`: which labels each frame gets.
 struct STILLPOINT_EXPORT SegmentationOptions {
   enum class Schedule { kWait, kLatest } schedule = Schedule::kWait;
-  int interval = 1;           ///< with `latest`, the network takes at most every interval-th frame
-  int latency = 3;            ///< frames; simulated delay of labels with `latest` in mode inline
-  double max_labelled = 0.9;  ///< largest share of the image that one class may cover
+  double interval_seconds = 0;   ///< with `latest`, between two frames that the network takes
+  double latency_seconds = 0.1;  ///< with `latest` in mode inline, the simulated delay of labels
+  double max_labelled = 0.9;     ///< largest share of the image that one class may cover
   enum class OnFailure { kStop, kContinue } on_failure = OnFailure::kStop;
 
   void visit(OptionVisitor& visitor);

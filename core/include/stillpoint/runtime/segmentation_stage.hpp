@@ -3,7 +3,7 @@
 
 #include <atomic>
 #include <condition_variable>
-#include <cstdint>
+#include <limits>
 #include <mutex>
 #include <string>
 
@@ -13,22 +13,25 @@
 namespace stillpoint {
 
 /// Schedule `wait`: every frame has its own labels, as in the paper. `latest`: the newest finished
-/// labels are brought to the current frame by the propagator; the network takes at most every
-/// `interval`-th frame, and of those that come while it is busy only the newest waits. The first
-/// labels are always waited for, because the map begins with them.
+/// labels are brought to the current frame by the propagator; between two frames that the network
+/// takes lie `interval_seconds` at least, and of those that come while it is busy only the newest
+/// waits. The first labels are always waited for, because the map begins with them.
 ///
-/// `latest` inline imitates a network that takes `latency` frames per image, so that its effect can
-/// be studied without the clock.
+/// `latest` inline imitates a network that takes `latency_seconds` per image, by the times of the
+/// frames, so that its effect can be studied without the clock.
 class SegmentationStage {
  public:
   SegmentationStage(Stage<Segmenter> segmenter, Stage<Propagator> propagator,
                     const SegmentationOptions& options, Mode mode, StopSignal& stop,
                     TimeLog& times);
 
+  /// Of the segmenter; none without one.
+  const ClassNames& classes() const { return classes_; }
+
   /// Gives a frame to the network.
   void offer(const FramePtr& frame);
   /// Labels for the frame offered last, or null when the run was stopped meanwhile.
-  SegmentationPtr at(const FramePtr& frame);
+  SegmentationPtr labels_for(const FramePtr& frame);
   /// Ends the thread.
   void end() { network_.end(); }
 
@@ -45,7 +48,7 @@ class SegmentationStage {
     SegmentationPtr labels;
   };
 
-  FramePtr taken(FramePtr frame);
+  FramePtr take(FramePtr frame);
   void segment(FramePtr frame);
   Segmentation labels_of(const Frame& frame);
   void imitate_latency(const FramePtr& now);
@@ -56,15 +59,16 @@ class SegmentationStage {
   TimeLog& times_;
   StageCaller<Segmenter> segmenter_;
   StageCaller<Propagator> propagator_;
-  const std::size_t classes_;  // of the segmenter
+  const ClassNames classes_;  // of the segmenter
 
   std::mutex mutex_;
   std::condition_variable_any changed_;
   Labelled newest_;  // guarded by mutex_
 
-  std::atomic<std::uint32_t> next_ = 0;  // of `latest`: the network takes no frame before it
+  // Of `latest`, in seconds: the network takes no older frame.
+  std::atomic<double> next_ = std::numeric_limits<double>::lowest();
 
-  int unlabelled_ = 0;  // of the thread that calls at()
+  int unlabelled_ = 0;  // of the thread that calls labels_for()
   int failures_ = 0;    // both of the thread that segments
   std::string first_failure_;
 
