@@ -63,8 +63,23 @@ TEST_F(Compare, ReadsTheFormatsOfOthersBesideEachOther) {
   outcome = call({"compare", "--reference", reference, "a=" + ours, "b=" + theirs, "--align",
                   "none", "--json"});
   const nlohmann::json json = nlohmann::json::parse(outcome.out);
-  EXPECT_EQ(json[1]["name"], "b");
-  EXPECT_NEAR(json[1]["aligned"]["position_m"]["max"], 0.02, 1e-9);
+  EXPECT_EQ(json["runs"][1]["name"], "b");
+  EXPECT_NEAR(json["runs"][1]["aligned"]["position_m"]["max"], 0.02, 1e-9);
+  EXPECT_THAT(json["made_by"]["command"].get<std::string>(),
+              ::testing::StartsWith("stillpoint compare --reference "));
+}
+
+TEST_F(Compare, EvaluateTakesTheFoldersOfRecordingAndRun) {
+  write("recording/groundtruth.txt", "tum", 0.0);
+  write("run/trajectory.txt", "tum", 0.02);
+  const Outcome outcome = call({"evaluate", "--reference", (folder_.path() / "recording").string(),
+                                "--estimate", (folder_.path() / "run").string(), "--json"});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  const nlohmann::json json = nlohmann::json::parse(outcome.out);
+  EXPECT_NEAR(json["ate"]["se3_m"]["rmse"], 0.01, 1e-4);
+  EXPECT_THAT(json["made_by"]["command"].get<std::string>(),
+              ::testing::StartsWith("stillpoint evaluate --reference "));
+  for (const char* key : {"version", "machine", "date"}) EXPECT_NE(json["made_by"][key], "") << key;
 }
 
 TEST_F(Compare, KittiIsComparedWithKitti) {
@@ -72,7 +87,8 @@ TEST_F(Compare, KittiIsComparedWithKitti) {
   const Outcome outcome =
       call({"compare", "--reference", truth, run, "--align", "origin", "--json"});
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
-  EXPECT_NEAR(nlohmann::json::parse(outcome.out)[0]["aligned"]["position_m"]["max"], 0.02, 1e-9);
+  EXPECT_NEAR(nlohmann::json::parse(outcome.out)["runs"][0]["aligned"]["position_m"]["max"], 0.02,
+              1e-9);
 }
 
 // A monocular system knows no scale.
@@ -88,7 +104,7 @@ TEST_F(Compare, WithSim3TheRelativeErrorIsInMetresOfTheReference) {
   const std::string run = folder_.write("small.txt", small).string();
   const Outcome outcome = call({"compare", "--reference", truth, run, "--align", "sim3", "--json"});
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
-  const nlohmann::json json = nlohmann::json::parse(outcome.out)[0];
+  const nlohmann::json json = nlohmann::json::parse(outcome.out)["runs"][0];
   EXPECT_NEAR(json["aligned"]["scale"], 10.0, 1e-3);
   EXPECT_LT(json["rpe"]["translation_m"]["rmse"], 0.001) << outcome.out;
 }

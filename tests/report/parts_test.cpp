@@ -211,7 +211,8 @@ std::vector<std::string> texts_of(const RunData& run) {
 TEST(PictureChoice, HasEvenOnesAndThoseBesideTheWorstMoments) {
   const TemporaryFolder folder;
   RunData run = run_with_pictures(folder);
-  choose_pictures(run, folder.path() / "none");
+  run.dataset = folder.path() / "none";
+  choose_pictures(run);
   // 0 and 10 are the next ones with the fewest inliers: at least a second apart.
   EXPECT_THAT(texts_of(run),
               ElementsAre("0 few inliers: 80", "10 few inliers: 80", "20 fewest inliers: 40", "30 ",
@@ -227,7 +228,8 @@ TEST(PictureChoice, AWorstFrameThatWasNotDrawnIsShownAsRecorded) {
   folder.write("recording/rgb.txt", list);
   folder.write("recording/depth.txt", list);
   RunData run = run_with_pictures(folder);
-  choose_pictures(run, folder.path() / "recording");
+  run.dataset = folder.path() / "recording";
+  choose_pictures(run);
   const auto worst = std::ranges::find(run.pictures, 52U, &Picture::frame);
   ASSERT_NE(worst, run.pictures.end());
   EXPECT_EQ(worst->file, folder.path() / "recording/image52.png");

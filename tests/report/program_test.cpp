@@ -19,6 +19,7 @@ namespace fs = std::filesystem;
 using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
+using ::testing::Not;
 
 TEST(RunReader, HasAllThatARunHasLeft) {
   const report::RunData run = report::read_run(finished_run(), "name");
@@ -91,15 +92,15 @@ TEST(ReportProgram, SeveralRunsAreComparedWithTheFirst) {
   const fs::path other = folder.path() / "other";
   fs::copy(finished_run(), other, fs::copy_options::recursive);
   std::string yaml = text_of(other / "pipeline.yaml");
-  const std::string option = "  interval: 3";
-  yaml.replace(yaml.find(option), option.size(), "  interval: 5");
+  const std::string option = "  interval_seconds: 0.1";
+  yaml.replace(yaml.find(option), option.size(), "  interval_seconds: 0.2");
   folder.write("other/pipeline.yaml", yaml);
   const report::ReportData data = report::read_runs({finished_run(), other});
   ASSERT_EQ(data.runs.size(), 2u);
   EXPECT_THAT(data.runs[0].changes, IsEmpty());
   ASSERT_EQ(data.runs[1].changes.size(), 1u);
-  EXPECT_EQ(data.runs[1].changes[0].key, "segmentation.interval");
-  EXPECT_EQ(data.runs[1].changes[0].base, "3");
+  EXPECT_EQ(data.runs[1].changes[0].key, "segmentation.interval_seconds");
+  EXPECT_EQ(data.runs[1].changes[0].base, "0.1");
   EXPECT_EQ(data.runs[1].base, "a run");
 }
 
@@ -112,6 +113,29 @@ TEST(ReportProgram, SeveralRunsAreReportedInTheWorkingFolder) {
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_THAT(text_of(folder.path() / "report.html"), HasSubstr("id=\"run-1\">"));
   EXPECT_TRUE(fs::exists(folder.path() / "report.tex"));
+}
+
+// As after a run on a bag, which has no ground truth beside it.
+TEST(ReportProgram, TheTruthMayBeNamed) {
+  SKIP_WITHOUT_PAGE();
+  const TemporaryFolder folder;
+  const fs::path run = folder.path() / "run", truth = recording_with_people();
+  fs::copy(finished_run(), run, fs::copy_options::recursive);
+  std::string yaml = text_of(run / "pipeline.yaml");
+  const std::string path = "path: " + truth.string();
+  ASSERT_NE(yaml.find(path), std::string::npos) << yaml;
+  folder.write("run/pipeline.yaml", yaml.replace(yaml.find(path), path.size(), "path: room.bag"));
+  EXPECT_FALSE(report::read_run(run, "name").evaluation);
+  EXPECT_TRUE(report::read_run(run, "name", {.truth = truth / "groundtruth.txt"}).evaluation);
+
+  Outcome outcome = call({"report", run.string(), "--reference", truth.string()});
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_THAT(outcome.err, Not(HasSubstr("no errors")));
+  EXPECT_THAT(text_of(run / "report.csv"), HasSubstr("ATE"));
+
+  outcome = call({"report", run.string(), "--reference", "nowhere.txt"});
+  EXPECT_NE(outcome.exit_code, 0);
+  EXPECT_THAT(outcome.err, HasSubstr("nowhere.txt"));
 }
 
 TEST(ReportProgram, DamagedRunsAreShownAsFarAsTheyGo) {
@@ -142,6 +166,16 @@ TEST(RunReader, ASummaryWithValuesOfOtherTypesIsANote) {
   folder.write("summary.json", R"({"complete": "maybe", "coverage": "all"})");
   EXPECT_THAT(report::read_run(folder.path(), "name").notes,
               ::testing::Contains(HasSubstr("type must be boolean")));
+}
+
+TEST(ReportProgram, TheRecordingsOfAStudyHaveTheirOwnTruth) {
+  const TemporaryFolder folder;
+  folder.write("study.yaml",
+               "version: 1\nsequences: [{name: a, dataset: a}]\n"
+               "variants: [{name: v, pipeline: orb_baseline}]\n");
+  const Outcome outcome = call({"report", folder.path().string(), "--reference", "truth.txt"});
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_THAT(outcome.err, HasSubstr("leave out --reference"));
 }
 
 TEST(ReportProgram, OnAFullDiskTheEarlierReportStays) {

@@ -6,6 +6,7 @@
 #include "report/run_tables.hpp"
 #include "report/table_files.hpp"
 #include "study/fixtures.hpp"
+#include "support/latex.hpp"
 
 namespace stillpoint::report {
 namespace {
@@ -28,6 +29,18 @@ TEST(LatexTables, AreBooktabsWithTheBestInBoldAndNothingThatLatexTakesForAComman
   EXPECT_THAT(text, HasSubstr("run & plain $^\\dagger$ \\\\\n    \\midrule"));
   EXPECT_THAT(text, HasSubstr("fr3\\_walking & \\textbf{1--2} \\\\"));
   EXPECT_THAT(text, HasSubstr("x & $<$ 0.01$^\\dagger$ \\\\\n    \\bottomrule"));
+}
+
+TEST(LatexTables, LatexTakesThem) {
+  SKIP_WITHOUT_LATEX();
+  std::string all;
+  for (char c = ' '; c <= '~'; ++c) all += c;
+  const Table table{.title = all,
+                    .note = all,
+                    .header = {"run", "plain †"},
+                    .rows = {{{.text = all}, {.text = "−1–2 × 3", .value = 1.0, .best = true}},
+                             {{.text = "[größer]"}, {.text = "< 0.01", .significant = true}}}};
+  EXPECT_EQ(testing::latex_complaints(latex_tables({&table, 1}, {{all}})), "");
 }
 
 TEST(CsvTables, HaveALinePerFigure) {

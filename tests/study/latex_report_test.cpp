@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "report_fixture.hpp"
+#include "support/latex.hpp"
 
 namespace stillpoint::study {
 namespace {
@@ -44,6 +45,11 @@ TEST_F(PublishedReport, AsLatex) {
   for (const char* label : {"ate", "ate_m", "comparison", "improvement", "times"})
     EXPECT_THAT(tables, ::testing::HasSubstr("\\label{tab:demo-" + std::string(label) + "}"));
   EXPECT_THAT(tables, ::testing::Not(::testing::HasSubstr("rpe")));
+}
+
+TEST_F(PublishedReport, LatexTakesIt) {
+  SKIP_WITHOUT_LATEX();
+  EXPECT_EQ(testing::latex_complaints(latex_report(results_, "demo")), "");
 }
 
 TEST_F(PublishedReport, AsLatexWhatHasFailedIsSaid) {

@@ -10,12 +10,16 @@
 #include <vector>
 
 #include "semantic_octree/octree_reader.hpp"
+#include "stillpoint/error.hpp"
+#include "stillpoint/support/input_file.hpp"
 
 namespace stillpoint::report {
 namespace {
 
 using semantic_octree::SavedOctree;
 using semantic_octree::SemanticVoxel;
+
+constexpr std::uintmax_t kLargestCostMap = 1 << 16;  // bytes, of its description
 
 struct Cube {
   std::uint64_t key = 0;  // 16 bits each: x, y, z in voxels of the map
@@ -56,13 +60,14 @@ Eigen::Vector3d up_beside(const std::filesystem::path& octree) {
   const Eigen::Vector3d camera_up(0, -1, 0);
   try {
     const std::filesystem::path cost_map = octree.parent_path() / "map.yaml";
-    std::error_code none;
-    if (!std::filesystem::is_regular_file(cost_map, none)) return camera_up;
-    const auto pose = YAML::LoadFile(cost_map.string())["world_from_map"].as<std::vector<double>>();
+    const std::string text = read_input_file(cost_map, kLargestCostMap);
+    const auto pose = YAML::Load(text)["world_from_map"].as<std::vector<double>>();
     if (pose.size() != 7) return camera_up;
     const Eigen::Quaterniond world_from_map(pose[6], pose[3], pose[4], pose[5]);
     return world_from_map.normalized() * Eigen::Vector3d::UnitZ();
   } catch (const YAML::Exception&) {
+    return camera_up;
+  } catch (const Error&) {  // there is none
     return camera_up;
   }
 }

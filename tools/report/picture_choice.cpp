@@ -77,8 +77,8 @@ fs::path image_at(const std::vector<tum_recording::StampedImage>& images, double
 /// Chosen pictures, by frame.
 class Choice {
  public:
-  Choice(const RunData& run, Pictures drawn, const fs::path& recording)
-      : run_(run), drawn_(std::move(drawn)), recorded_(recorded_images(recording)) {}
+  Choice(const RunData& run, Pictures drawn)
+      : run_(run), drawn_(std::move(drawn)), recorded_(recorded_images(run.dataset)) {}
 
   void add_even_ones() {
     const std::size_t count = std::min(kEven, drawn_.size());
@@ -133,8 +133,8 @@ class Choice {
 
 }  // namespace
 
-void choose_pictures(RunData& run, const fs::path& recording) {
-  Choice choice(run, pictures_in(run.folder / "images"), recording);
+void choose_pictures(RunData& run) {
+  Choice choice(run, pictures_in(run.folder / "images"));
   choice.add_even_ones();
   for (const WorstMoment& moment : worst_moments(run)) choice.add(moment);
   run.pictures = std::move(choice).pictures();

@@ -9,8 +9,9 @@ namespace stillpoint::report {
 
 /// Of the folder `images`: some at even distances. Then the frames at which the run was worst
 /// (lost, largest error, most excluded, fewest inliers), with the reason: as `images` shows them,
-/// or else as they lie in `recording`, a folder of the TUM format, or else the nearest one of
-/// `images`. Second and third worst ones only where `images` has them. By rising frame.
-void choose_pictures(RunData& run, const std::filesystem::path& recording);
+/// or else as they lie in the recording, where it is a folder of the TUM format, or else the
+/// nearest one of `images`. Second and third worst ones only where `images` has them. By rising
+/// frame.
+void choose_pictures(RunData& run);
 
 }  // namespace stillpoint::report

@@ -75,7 +75,8 @@ struct RunData {
   std::string variant;    ///< of a study, which may have run it several times; else as `name`
   std::string recording;  ///< name of its sequence, or of the recording's folder
   std::filesystem::path folder;
-  std::filesystem::path truth;     ///< groundtruth.txt; empty: none found
+  std::filesystem::path dataset;   ///< the recording, folder or bag; empty: none found
+  std::filesystem::path truth;     ///< true trajectory; empty: none found
   std::filesystem::path pipeline;  ///< the file that was run; empty: not known
   std::string made_by;  ///< "Stillpoint 0.1.0, commit …; machine; date", as far as known
   bool complete = false;

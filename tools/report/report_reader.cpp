@@ -62,7 +62,7 @@ RunData run_of_cell(const fs::path& folder, const StudyResults& results, std::si
   const Cell& cell = results.cells[i];
   const fs::path run_path = run_folder(folder, study, cell);
   RunData run = read_run(run_path, name_of(study, cell),
-                         recording_of(folder, study, cell.sequence, cell.repeat));
+                         {.dataset = recording_of(folder, study, cell.sequence, cell.repeat)});
   run.variant = study.variants[cell.variant].name;
   run.recording = study.sequences[cell.sequence].name;
   if (const std::string note = state_note(run_path, results.results[i].has_value()); !note.empty())
@@ -133,7 +133,7 @@ std::vector<std::string> notes_of(const StudyResults& results, const std::vector
 
 }  // namespace
 
-ReportData read_runs(const std::vector<fs::path>& folders) {
+ReportData read_runs(const std::vector<fs::path>& folders, const fs::path& truth) {
   ReportData data;
   const std::vector<std::string> names = names_of(folders);
   std::set<std::string> builds;
@@ -141,7 +141,7 @@ ReportData read_runs(const std::vector<fs::path>& folders) {
     if (!is_run(folders[i]))
       throw Error(Fault::kUsage, "holds neither a run nor a study", folders[i].string(),
                   "name a folder that 'stillpoint run' or 'stillpoint ablate' has written");
-    data.runs.push_back(read_run(folders[i], names[i]));
+    data.runs.push_back(read_run(folders[i], names[i], {.truth = truth}));
     RunData& run = data.runs.back();
     if (!run.made_by.empty()) builds.insert(run.made_by);
     for (const std::string& note : run.notes)

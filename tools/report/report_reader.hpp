@@ -9,9 +9,10 @@
 
 namespace stillpoint::report {
 
-/// Of one or more run folders; the caller adds the command. Throws Error(kUsage) for one that holds
-/// no run.
-ReportData read_runs(const std::vector<std::filesystem::path>& folders);
+/// Of one or more run folders; the caller adds the command. `truth` is the true trajectory of all;
+/// empty: each recording's own. Throws Error(kUsage) for a folder that holds no run.
+ReportData read_runs(const std::vector<std::filesystem::path>& folders,
+                     const std::filesystem::path& truth = {});
 
 /// Of a study's folder, whose runs may be missing, unfinished or made by another version: notes say
 /// so. Every run that has left something is in it; the pipeline of each is compared with that of

@@ -4,6 +4,7 @@
 #include <array>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <sstream>
 #include <utility>
 
 #include "evaluation/coverage.hpp"
@@ -73,9 +74,12 @@ void read_summary(RunData& run) {
 /// The pipeline's file and the build, from the first two lines of log.txt: "DATE TIME  info  …".
 void read_log(RunData& run) {
   constexpr std::string_view kLevel = "  info  ";
+  constexpr std::streamsize kLogBeginning = 4096;  // bytes: longer lines than a log has
   std::error_code none;
   if (!std::filesystem::is_regular_file(run.folder / "log.txt", none)) return;
-  std::ifstream log(run.folder / "log.txt");
+  std::string beginning(kLogBeginning, '\0');
+  std::ifstream(run.folder / "log.txt").read(beginning.data(), kLogBeginning);
+  std::istringstream log(beginning);
   const auto next = [&] {
     std::string line;
     std::getline(log, line);
@@ -98,17 +102,19 @@ void try_to(RunData& run, Read&& read) {
   }
 }
 
-void read_pipeline(RunData& run, fs::path& recording) {
+void read_pipeline(RunData& run) {
   run.yaml = study::read_text(run.folder / "pipeline.yaml");
   if (run.yaml.empty()) run.notes.emplace_back("pipeline.yaml is missing.");
-  if (recording.empty()) recording = recording_of_pipeline(run.yaml);
-  if (recording.empty()) {
-    run.recording = "without a folder";  // of a live source, or one that simulates
-    return;
-  }
-  if (run.recording.empty()) run.recording = recording.filename().string();
+  if (run.dataset.empty()) run.dataset = recording_of_pipeline(run.yaml);
+  // The source may be live, or simulate.
+  run.recording = run.dataset.empty() ? "without a folder" : run.dataset.filename().string();
+}
+
+/// Looks for the true trajectory beside the images, where none was given.
+void find_truth(RunData& run) {
+  if (!run.truth.empty() || run.dataset.empty()) return;
   std::error_code unreadable;
-  if (const fs::path truth = recording / "groundtruth.txt"; fs::exists(truth, unreadable))
+  if (const fs::path truth = run.dataset / "groundtruth.txt"; fs::exists(truth, unreadable))
     run.truth = truth;
 }
 
@@ -187,7 +193,7 @@ std::string without_truth(const fs::path& recording) {
   return "There is no groundtruth.txt in " + recording.string() + ": no errors.";
 }
 
-void read_trajectory(RunData& run, const fs::path& recording) {
+void read_trajectory(RunData& run) {
   const fs::path file = run.folder / "trajectory.txt";
   if (!fs::exists(file)) {
     run.notes.emplace_back("trajectory.txt is missing.");
@@ -196,7 +202,7 @@ void read_trajectory(RunData& run, const fs::path& recording) {
   Trajectory trajectory = evaluation::read_trajectory(file);
   run.path = trajectory.poses;
   if (run.truth.empty()) {
-    run.notes.push_back(without_truth(recording));
+    run.notes.push_back(without_truth(run.dataset));
     return;
   }
   run.evaluation =
@@ -213,16 +219,21 @@ bool is_run(const fs::path& folder) {
       kFiles, [&](const char* file) { return fs::exists(folder / file, unreadable); });
 }
 
-RunData read_run(const fs::path& folder, const std::string& name, fs::path recording) {
-  RunData run{.name = name, .variant = name, .folder = folder};
+RunData read_run(const fs::path& folder, const std::string& name, const RunInputs& inputs) {
+  RunData run{.name = name,
+              .variant = name,
+              .folder = folder,
+              .dataset = inputs.dataset,
+              .truth = inputs.truth};
   try_to(run, [&] { read_summary(run); });
   read_log(run);
-  read_pipeline(run, recording);
-  try_to(run, [&] { read_trajectory(run, recording); });
+  try_to(run, [&] { read_pipeline(run); });
+  find_truth(run);
+  try_to(run, [&] { read_trajectory(run); });
   try_to(run, [&] { run.frame_rows = read_frames(folder / "frames.csv"); });
   try_to(run, [&] { run.stages = read_stage_times(folder / "timings.csv"); });
   take_events(run);
-  choose_pictures(run, recording);
+  choose_pictures(run);
   std::error_code unreadable;
   if (const fs::path map = folder / "map/map.ot"; fs::exists(map, unreadable)) run.octree = map;
   const fs::path live_view = fs::path(live_view_of_pipeline(run.yaml)).filename();

@@ -11,10 +11,15 @@ namespace stillpoint::report {
 /// Whether something of a run lies there.
 bool is_run(const std::filesystem::path& folder);
 
-/// What is missing, incomplete or unreadable becomes a note; nothing is thrown for it. `recording`
-/// has the truth; empty: the one that the pipeline names.
+/// Where a run's recording and true trajectory lie.
+struct RunInputs {
+  std::filesystem::path dataset;  ///< empty: what the pipeline names
+  std::filesystem::path truth;    ///< empty: groundtruth.txt of the recording
+};
+
+/// What is missing, incomplete or unreadable becomes a note; nothing is thrown for it.
 RunData read_run(const std::filesystem::path& folder, const std::string& name,
-                 std::filesystem::path recording = {});
+                 const RunInputs& inputs = {});
 
 /// Says in what `run` differs from a pipeline, as YAML; `base` names it.
 void compare_options(RunData& run, const std::string& base, const std::string& base_yaml);

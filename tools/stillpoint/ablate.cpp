@@ -211,7 +211,7 @@ class Ablation {
 
   /// Throws Error(kUsage) when runs that have ended would have to make room.
   void refuse_to_replace(const std::vector<PlannedCell>& plan) const {
-    const auto count = std::ranges::count_if(plan, is_of_something_else);
+    const auto count = std::ranges::count_if(plan, has_outdated_result);
     if (count == 0) return;
     throw Error(Fault::kUsage,
                 std::to_string(count) + " of " + std::to_string(plan.size()) +

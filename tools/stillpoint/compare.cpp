@@ -12,6 +12,7 @@
 #include "evaluation/comparison.hpp"
 #include "figures/evaluation_figure.hpp"
 #include "figures/figure_file.hpp"
+#include "in_folder.hpp"
 #include "stillpoint/error.hpp"
 #include "typed_command.hpp"
 
@@ -39,11 +40,6 @@ struct NamedFile {
   std::string name;
   fs::path file;
 };
-
-/// A folder stands for the file of that name in it.
-fs::path in_folder(const fs::path& path, const char* file) {
-  return fs::is_directory(path) ? path / file : path;
-}
 
 /// "NAME=PATH", or PATH, which is then named after its folder or file.
 NamedFile parse_run(const std::string& text) {
@@ -102,7 +98,10 @@ void print_comparison(const CompareArguments& arguments) {
   if (!arguments.plot.empty()) figures::format_of(arguments.plot);  // before the work
   const Comparison comparison = compare(arguments);
   if (arguments.json)
-    std::cout << comparison_json(comparison).dump(2) << '\n';
+    std::cout << nlohmann::ordered_json(
+                     {{"made_by", made_by_json()}, {"runs", comparison_json(comparison)}})
+                     .dump(2)
+              << '\n';
   else
     std::cout << comparison_table(comparison) << '\n' << made_by();
   if (!arguments.plot.empty())

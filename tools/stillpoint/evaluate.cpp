@@ -12,11 +12,14 @@
 #include "evaluation/report.hpp"
 #include "figures/evaluation_figure.hpp"
 #include "figures/figure_file.hpp"
+#include "in_folder.hpp"
 #include "stillpoint/error.hpp"
 #include "typed_command.hpp"
 
 namespace stillpoint {
 namespace {
+
+namespace fs = std::filesystem;
 
 struct EvaluateArguments {
   std::string reference, estimate, frames, plot, aligned, delta_unit = "s";
@@ -24,11 +27,20 @@ struct EvaluateArguments {
   bool json = false;
 };
 
+fs::path reference_file(const EvaluateArguments& arguments) {
+  return in_folder(arguments.reference, "groundtruth.txt");
+}
+
+fs::path estimate_file(const EvaluateArguments& arguments) {
+  return in_folder(arguments.estimate, "trajectory.txt");
+}
+
 /// Throws Error(kUsage) where the aligned trajectory would replace what it is made from.
 void require_no_input(const EvaluateArguments& arguments) {
   std::error_code none;
-  for (const std::string& input : {arguments.reference, arguments.estimate, arguments.frames})
-    if (std::filesystem::equivalent(arguments.aligned, input, none))
+  for (const fs::path& input :
+       {reference_file(arguments), estimate_file(arguments), fs::path(arguments.frames)})
+    if (fs::equivalent(arguments.aligned, input, none))
       throw Error(Fault::kUsage, "is read by this command, and would be replaced",
                   arguments.aligned, "choose another file for --aligned");
 }
@@ -40,20 +52,23 @@ void print_evaluation(const EvaluateArguments& arguments) {
   if (!arguments.plot.empty()) figures::format_of(arguments.plot);  // before the work
   require_no_input(arguments);
   options.delta.unit = delta_unit_of(arguments.delta_unit);
-  Trajectory reference = read_trajectory(arguments.reference);
-  Trajectory estimate = read_trajectory(arguments.estimate);
+  Trajectory reference = read_trajectory(reference_file(arguments));
+  Trajectory estimate = read_trajectory(estimate_file(arguments));
   const std::vector<double> frames =
       arguments.frames.empty() ? std::vector<double>() : read_stamps(arguments.frames);
   const Evaluation result = evaluate(std::move(reference), std::move(estimate), frames, options);
-  if (arguments.json)
-    std::cout << report_json(result).dump(2) << '\n';
-  else
+  if (arguments.json) {
+    nlohmann::ordered_json json = report_json(result);
+    json["made_by"] = made_by_json();
+    std::cout << json.dump(2) << '\n';
+  } else {
     std::cout << report_table(result) << '\n' << made_by();
+  }
   if (!arguments.aligned.empty())
     write_trajectory(arguments.aligned,
                      aligned(result.rigid.reference_from_estimate, result.estimate));
   if (arguments.plot.empty()) return;
-  const std::string name = std::filesystem::path(arguments.estimate).filename().string();
+  const std::string name = fs::path(arguments.estimate).filename().string();
   const std::vector<Contestant> runs = {{name, result, result.rigid}};
   figures::write_figure(figures::evaluation_figure(runs), arguments.plot);
 }
@@ -73,8 +88,9 @@ void add_evaluate(CLI::App& app) {
   auto arguments = std::make_shared<EvaluateArguments>();
   CLI::App* command =
       app.add_subcommand("evaluate", "Compare a trajectory with ground truth: ATE, RPE, coverage");
-  const auto file = [&](const char* name, std::string& path, const char* help) {
-    return command->add_option(name, path, help)->type_name("FILE");
+  const auto file = [&](const char* name, std::string& path, const char* help,
+                        const char* type = "FILE") {
+    return command->add_option(name, path, help)->type_name(type);
   };
   const auto number = [&](const char* name, double& value, const char* help, double min,
                           double max) {
@@ -83,9 +99,13 @@ void add_evaluate(CLI::App& app) {
         ->check(CLI::Range(min, max))
         ->type_name("NUMBER");
   };
-  file("--reference", arguments->reference, "True trajectory, format of TUM, EuRoC or KITTI")
+  file("--reference", arguments->reference,
+       "True trajectory, format of TUM, EuRoC or KITTI; or folder of a recording with "
+       "groundtruth.txt",
+       "PATH")
       ->required();
-  file("--estimate", arguments->estimate, "Estimated trajectory, in any of these formats")
+  file("--estimate", arguments->estimate,
+       "Estimated trajectory, in any of these formats; or folder of a run", "PATH")
       ->required();
   file("--frames", arguments->frames,
        "List of all frames of the recording (rgb.txt, associations.txt), to tell how many of them "

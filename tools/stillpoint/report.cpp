@@ -11,6 +11,8 @@
 #include "commit.hpp"
 #include "evaluation/format.hpp"
 #include "evaluation/origin.hpp"
+#include "evaluation/trajectory.hpp"
+#include "in_folder.hpp"
 #include "report/figures.hpp"
 #include "report/page.hpp"
 #include "report/report_reader.hpp"
@@ -29,7 +31,7 @@ namespace fs = std::filesystem;
 
 struct ReportArguments {
   std::vector<fs::path> folders;
-  fs::path output, figures;
+  fs::path output, figures, reference;
   std::string base;
 };
 
@@ -49,9 +51,17 @@ void compare_with_its_file(report::RunData& run) {
   if (run.pipeline.empty()) return;
   try {
     compare_options(run, run.pipeline.stem().string(),
-                    effective_yaml(run.pipeline.string(), run.truth.parent_path()));
+                    effective_yaml(run.pipeline.string(), run.dataset));
   } catch (const Error&) {  // the file is gone, or no longer fits: nothing to compare with
   }
+}
+
+/// Empty: none was named. Throws Error where it cannot be read, for all runs need it.
+fs::path true_trajectory(const ReportArguments& arguments) {
+  if (arguments.reference.empty()) return {};
+  const fs::path file = in_folder(arguments.reference, "groundtruth.txt");
+  evaluation::read_trajectory(file);
+  return file;
 }
 
 report::ReportData read(const ReportArguments& arguments) {
@@ -61,14 +71,18 @@ report::ReportData read(const ReportArguments& arguments) {
   if (is_study && arguments.folders.size() > 1)
     throw Error(Fault::kUsage, "a report is of one study, or of runs", study->string(),
                 "give it alone");
-  report::ReportData data = is_study ? report::read_study(*study, read_study(*study / "study.yaml"))
-                                     : report::read_runs(arguments.folders);
+  if (is_study && !arguments.reference.empty())
+    throw Error(Fault::kUsage, "the recordings of a study have their own truth", study->string(),
+                "leave out --reference");
+  report::ReportData data = is_study
+                                ? report::read_study(*study, read_study(*study / "study.yaml"))
+                                : report::read_runs(arguments.folders, true_trajectory(arguments));
   if (!is_study) data.command = typed_command();
   if (!arguments.base.empty()) {
     std::map<fs::path, std::string> yaml;  // by recording: loading a pipeline takes a while
     for (report::RunData& run : data.runs) {
-      std::string& base = yaml[run.truth.parent_path()];
-      if (base.empty()) base = effective_yaml(arguments.base, run.truth.parent_path());
+      std::string& base = yaml[run.dataset];
+      if (base.empty()) base = effective_yaml(arguments.base, run.dataset);
       compare_options(run, arguments.base, base);
     }
   } else if (data.runs.size() == 1) {
@@ -135,6 +149,11 @@ void add_report(CLI::App& app) {
           "The page; beside it lie its tables, as .tex and .csv. Default: report.html in the "
           "folder, or here when there are several")
       ->type_name("FILE");
+  command
+      ->add_option("--reference", arguments->reference,
+                   "True trajectory of all runs, or folder of a recording with groundtruth.txt. "
+                   "Default: groundtruth.txt of each run's recording")
+      ->type_name("PATH");
   command
       ->add_option("--figures", arguments->figures,
                    "Folder for every figure as SVG and PDF, for papers")

@@ -1,6 +1,7 @@
 #include "typed_command.hpp"
 
 #include <fstream>
+#include <nlohmann/json.hpp>
 
 #include "commit.hpp"
 #include "evaluation/origin.hpp"
@@ -16,10 +17,19 @@ std::string typed_command() {
   return command;
 }
 
-std::string made_by() {
-  const evaluation::Origin here =
-      evaluation::origin_of({.version = STILLPOINT_VERSION, .commit = built_from_commit()});
-  return typed_command() + '\n' + origin_text(here) + '\n';
+evaluation::Origin origin_here() {
+  return evaluation::origin_of({.version = STILLPOINT_VERSION, .commit = built_from_commit()});
+}
+
+std::string made_by() { return typed_command() + '\n' + origin_text(origin_here()) + '\n'; }
+
+nlohmann::ordered_json made_by_json() {
+  const evaluation::Origin here = origin_here();
+  return {{"command", typed_command()},
+          {"version", here.version},
+          {"commit", here.commit},
+          {"machine", here.machine},
+          {"date", here.date}};
 }
 
 }  // namespace stillpoint

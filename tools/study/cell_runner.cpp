@@ -100,7 +100,7 @@ std::optional<CellResult> valid_result(const PlannedCell& cell) {
   return result;
 }
 
-bool is_of_something_else(const PlannedCell& cell) {
+bool has_outdated_result(const PlannedCell& cell) {
   const std::optional<CellResult> result = read_result(cell.run);
   if (!result) return has_foreign_result(cell.run);
   return !result->failed() && result->fingerprint != cell.fingerprint;

@@ -36,9 +36,9 @@ using CellFinished =
 /// The result that a cell already has: nothing when it failed or was made from something else.
 std::optional<CellResult> valid_result(const PlannedCell& cell);
 
-/// Whether a run has ended well there that was made from something else, or by a version with
+/// Whether there is the good result of another pipeline, recording or seed, or of a version with
 /// other results: running the cell replaces it.
-bool is_of_something_else(const PlannedCell& cell);
+bool has_outdated_result(const PlannedCell& cell);
 
 /// The cells without a result, first repeats first: a study that is stopped half-way has something
 /// to say about everything.

@@ -5,6 +5,7 @@
 namespace stillpoint::study {
 namespace {
 
+// After the end of a row, [ and * would belong to its `\\`.
 constexpr std::pair<std::string_view, std::string_view> kSpecial[] = {{"\\", "\\textbackslash{}"},
                                                                       {"_", "\\_"},
                                                                       {"&", "\\&"},
@@ -17,6 +18,8 @@ constexpr std::pair<std::string_view, std::string_view> kSpecial[] = {{"\\", "\\
                                                                       {"^", "\\^{}"},
                                                                       {"<", "$<$"},
                                                                       {">", "$>$"},
+                                                                      {"[", "{[}"},
+                                                                      {"*", "{*}"},
                                                                       {"†", "$^\\dagger$"},
                                                                       {"–", "--"},
                                                                       {"−", "$-$"},

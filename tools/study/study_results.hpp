@@ -48,9 +48,9 @@ struct StudyResults {
   bool all_failed(std::size_t sequence, std::size_t variant) const;
 };
 
-/// The sequence of the study that is the same without anything that moves; nothing without one.
+/// The sequence that shows the same scene without anything that moves; nothing without one.
 std::optional<std::size_t> twin_without_motion(const Study& study, std::size_t sequence);
-/// Whether the sequence is that of another one.
+/// Whether another sequence of the study names this one as the same scene without motion.
 bool is_twin_without_motion(const Study& study, std::size_t sequence);
 
 /// ATE on a sequence ÷ ATE on the sequence without anything that moves, in the same study, with the

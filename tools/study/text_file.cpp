@@ -1,10 +1,8 @@
 #include "study/text_file.hpp"
 
-#include <fstream>
-#include <iterator>
-
 #include "stillpoint/error.hpp"
 #include "stillpoint/support/atomic_file.hpp"
+#include "stillpoint/support/input_file.hpp"
 
 namespace stillpoint::study {
 namespace {
@@ -21,8 +19,7 @@ namespace fs = std::filesystem;
 std::string read_text(const fs::path& file) {
   std::error_code none;
   if (!fs::is_regular_file(file, none)) return {};  // a pipe would be waited for
-  std::ifstream stream(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(stream), {}};
+  return read_input_file(file);
 }
 
 void write_text(const fs::path& file, const std::string& text) {

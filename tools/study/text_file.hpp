@@ -6,7 +6,7 @@
 
 namespace stillpoint::study {
 
-/// Empty when there is no such file.
+/// Empty when there is no such file. Throws Error(kData) as read_input_file() does.
 std::string read_text(const std::filesystem::path& file);
 
 /// The file is either complete or as it was before. Makes missing folders. Throws Error(kUsage).
