@@ -21,7 +21,7 @@ def texts_of_program(root: Path):
 
 # In messages: numbers, types, states, and what several messages are about.
 INSERTED = re.compile(r"\d+(?:\.\d+)?(?: x \d+)?|CV_\w+|kNoId|LOST|MapEdit: |; |is wrong: |key frame (?=\d)|landmark (?=\d)|"
-                      r"\bthe (?:weights|labels|evidence|depth image)(?= (?:have|are|is) )")
+                      r"\bthe (?:weights|labels|evidence|depth image|key frame)(?= (?:have|are|is|has|sees) )")
 
 
 def unknown_messages(page: Path, program: str):

@@ -1,6 +1,7 @@
 // Wrong usage, configuration and plugins that cannot be used, through the program.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <filesystem>
 #include <string>
@@ -48,6 +49,36 @@ TEST_F(BadSetup, FaultsOfThePipelineFileAreReportedTogether) {
   EXPECT_THAT(outcome.err,
               HasSubstr(file.string() + ":5:1: error: key 'local_mapper' is given twice"));
   EXPECT_FALSE(fs::exists(out())) << "a run folder, though nothing has run";
+}
+
+// A pipe that nobody writes to would be waited for without end.
+TEST_F(BadSetup, PipesInPlaceOfFilesAreRefused) {
+  const std::string pipe = (folder_.path() / "pipe").string(), out = this->out().string();
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  const std::string recording = simulated_recording().string();
+  const std::vector<std::vector<std::string>> commands = {
+      {"run", pipe, "--dataset", recording, "-o", out},
+      {"run", "orb_baseline", "--dataset", recording, "--camera", pipe, "-o", out},
+      {"run", "orb_baseline", "--dataset", recording, "--load-map", pipe, "-o", out},
+      {"run", "orb_baseline", "--dataset", pipe, "-o", out},
+      {"run", "orb_baseline", "--dataset", recording, "--set", "segmenter.type=segnet", "--set",
+       "segmenter.prototxt=" + pipe, "--set", "segmenter.model=" + pipe, "-o", out},
+      {"run", "stillpoint", "--dataset", recording, "--set", "segmenter.model=" + pipe, "-o", out},
+      {"simulate", pipe, "-o", out},
+      {"ablate", pipe, "-o", out},
+      {"inspect", pipe},
+      {"import", pipe, "-o", out},
+      {"map", "info", pipe},
+      {"evaluate", "--reference", pipe, "--estimate", pipe},
+      {"plugins", "check", pipe}};
+  for (const std::vector<std::string>& command : commands) {
+    const Outcome outcome = call(command);
+    SCOPED_TRACE(::testing::PrintToString(command));
+    EXPECT_TRUE(outcome.exit_code == 2 || outcome.exit_code == 3) << outcome.signal;
+    EXPECT_THAT(outcome.err, HasSubstr("error: "));
+    EXPECT_THAT(outcome.err, HasSubstr(pipe));
+    EXPECT_FALSE(fs::exists(out + "/trajectory.txt"));
+  }
 }
 
 TEST_F(BadSetup, UnreadableYaml) {

@@ -75,8 +75,8 @@ std::vector<std::string> prefixes_of(const fs::path& parent) {
 TEST(DependencyRule, OptionsKnowNothingAndContractsOnlyThem) {
   expect_none_begins(kPublic / "options.hpp", {"stillpoint/contracts", "stillpoint/plugin"});
   for (const fs::path& folder : {kPublic / "contracts", kRoot / "core/src/contracts"})
-    expect_none_begins(folder, {"stillpoint/plugin", "stillpoint/support", "stillpoint/engine",
-                                "stillpoint/runtime", "stillpoint/testing"});
+    expect_none_begins(folder, {"stillpoint/plugin", "stillpoint/sdk", "stillpoint/support",
+                                "stillpoint/engine", "stillpoint/runtime", "stillpoint/testing"});
 }
 
 TEST(DependencyRule, WhatIsPromisedDoesWithoutHelpers) {

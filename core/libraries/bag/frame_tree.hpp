@@ -1,4 +1,4 @@
-// How the frames of tf lie to each other.
+// Transforms between the coordinate frames of tf.
 #pragma once
 
 #include <map>

@@ -14,8 +14,8 @@ namespace stillpoint::bag {
 
 inline constexpr std::string_view kMcapMagic = "\x89MCAP0\r\n";
 
-/// Goes from record to record. What messages a chunk holds say the index records behind it, and
-/// where there are none the chunk itself.
+/// Goes from record to record. The index records behind a chunk list its messages; where there are
+/// none, the chunk itself is read.
 class McapFile final : public BagReader {
  public:
   explicit McapFile(const std::filesystem::path& file);

@@ -14,8 +14,8 @@ namespace stillpoint::bag {
 
 inline constexpr std::string_view kRos1Magic = "#ROSBAG V2.0\n";
 
-/// Goes from record to record. What messages a chunk holds say the index records behind it, and
-/// where there are none, because the recording was cut off, the chunk itself.
+/// Goes from record to record. The index records behind a chunk list its messages; where there are
+/// none, because the recording was cut off, the chunk itself is read.
 class Ros1Bag final : public BagReader {
  public:
   explicit Ros1Bag(const std::filesystem::path& file);

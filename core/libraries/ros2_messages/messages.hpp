@@ -112,7 +112,7 @@ struct Octree {
   Bytes nodes;            ///< what follows the header of a .bt file
 };
 
-/// How a part of a robot does.
+/// Health of one component.
 struct Diagnosis {
   static constexpr const char* kType = "diagnostic_msgs/DiagnosticStatus";
   enum class Level : std::uint8_t { kOk = 0, kWarning = 1, kError = 2 } level = Level::kOk;

@@ -11,7 +11,7 @@ namespace stillpoint::ros2_messages {
 
 std::optional<Octree> read_octree_message(const std::filesystem::path& folder) {
   const std::filesystem::path file = folder / "map.bt";
-  if (folder.empty() || !std::filesystem::exists(file)) return std::nullopt;
+  if (folder.empty() || !std::filesystem::is_regular_file(file)) return std::nullopt;
   std::ifstream in(file, std::ios::binary);
   Octree octree;
   std::string line;

@@ -1,7 +1,18 @@
 // What the contracts define. The destructors anchor each interface's type information in this
 // library, so that every plugin and the program agree on it. Products of poses are not in headers:
 // each file that includes them would take half a second longer to compile.
-#include "stillpoint/sdk.hpp"
+#include "stillpoint/contracts/decision.hpp"
+#include "stillpoint/contracts/live_run.hpp"
+#include "stillpoint/contracts/local_mapper.hpp"
+#include "stillpoint/contracts/loop_closer.hpp"
+#include "stillpoint/contracts/map_backend.hpp"
+#include "stillpoint/contracts/map_checker.hpp"
+#include "stillpoint/contracts/moving_checker.hpp"
+#include "stillpoint/contracts/output.hpp"
+#include "stillpoint/contracts/propagator.hpp"
+#include "stillpoint/contracts/segmenter.hpp"
+#include "stillpoint/contracts/source.hpp"
+#include "stillpoint/contracts/tracker.hpp"
 
 namespace stillpoint {
 

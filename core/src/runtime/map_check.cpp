@@ -18,7 +18,7 @@ MapEvidence compare(MapChecker& checker, const Frame& frame, std::span<const Pos
 
 }  // namespace
 
-MapEvidence MapCheck::at(const Frame& frame, const MovingPoints& moving, const SparseMap& map) {
+MapEvidence MapCheck::check(const Frame& frame, const MovingPoints& moving, const SparseMap& map) {
   if (!checker_.present()) return {};
   // Here, not in tracked(): that would be on the thread of tracking.
   if (const auto tracked = std::exchange(to_remember_, std::nullopt))

@@ -25,10 +25,23 @@ void require(bool condition, const std::string& what) {
 template <class T>
 std::vector<T> values_of(std::span<const std::byte> bytes, std::size_t count,
                          const std::string& what) {
-  require(bytes.size() == count * sizeof(T), what + " has another length");
+  require(bytes.size() % sizeof(T) == 0 && bytes.size() / sizeof(T) == count,
+          what + " has another length");
   std::vector<T> values(count);
   if (count > 0) std::memcpy(values.data(), bytes.data(), bytes.size());
   return values;
+}
+
+/// A number of the file as one of the program's, which may be smaller.
+template <class T>
+T integer_of(std::int64_t number) {
+  require(std::in_range<T>(number), "a number is out of range");
+  return static_cast<T>(number);
+}
+
+/// Of a key frame; negative: none.
+KeyFrameId id_of(std::int64_t number) {
+  return number < 0 ? kNoId : integer_of<KeyFrameId>(number);
 }
 
 // The rows of a table in order, verified.
@@ -112,8 +125,8 @@ class MapReader {
     RowReader row(database_, "camera");
     while (row.step()) {
       auto camera = std::make_shared<Camera>();
-      camera->width = static_cast<int>(row->integer(1));
-      camera->height = static_cast<int>(row->integer(2));
+      camera->width = integer_of<int>(row->integer(1));
+      camera->height = integer_of<int>(row->integer(2));
       camera->fx = row->real(3);
       camera->fy = row->real(4);
       camera->cx = row->real(5);
@@ -129,14 +142,14 @@ class MapReader {
     RowReader row(database_, "landmark");
     while (row.step()) {
       Landmark landmark;
-      references_.push_back(static_cast<KeyFrameId>(row->integer(1)));
-      landmark.created_by = static_cast<KeyFrameId>(row->integer(2));
+      references_.push_back(id_of(row->integer(1)));
+      landmark.created_by = id_of(row->integer(2));
       for (int i = 0; i < 3; ++i) landmark.position_in_world[i] = row->real(3 + i);
       for (int i = 0; i < 3; ++i) landmark.mean_view[i] = row->real(6 + i);
       landmark.min_distance = static_cast<float>(row->real(9));
       landmark.max_distance = static_cast<float>(row->real(10));
-      landmark.visible = static_cast<std::uint32_t>(row->integer(11));
-      landmark.found = static_cast<std::uint32_t>(row->integer(12));
+      landmark.visible = integer_of<std::uint32_t>(row->integer(11));
+      landmark.found = integer_of<std::uint32_t>(row->integer(12));
       landmark.static_log_odds = static_cast<float>(row->real(13));
       const auto words = values_of<std::uint64_t>(row->bytes(14), 4, "a descriptor");
       std::ranges::copy(words, landmark.descriptor.begin());
@@ -151,13 +164,12 @@ class MapReader {
   }
 
   KeyFrame keyframe(const RowReader& row) const {
-    require(row->integer(6) >= 0, "a key frame has impossible values");
-    const auto count = static_cast<std::size_t>(row->integer(6));
-    const auto camera = static_cast<std::size_t>(row->integer(3));
+    const auto count = integer_of<std::size_t>(row->integer(6));
+    const auto camera = integer_of<std::size_t>(row->integer(3));
     require(camera < cameras_.size(), "a camera is missing");
     auto features = std::make_shared<Features>();
     features->scale_factor = row->real(4);
-    features->levels = static_cast<int>(row->integer(5));
+    features->levels = integer_of<int>(row->integer(5));
     for (const auto& k : values_of<StoredKeypoint>(row->bytes(8), count, "keypoints"))
       features->keypoints.emplace_back(k.x, k.y, k.size, k.angle, k.response, k.octave);
     if (!row->bytes(9).empty())
@@ -165,8 +177,8 @@ class MapReader {
     features->depth = values_of<float>(row->bytes(10), count, "depth");
 
     KeyFrame keyframe;
-    keyframe.id = static_cast<KeyFrameId>(row->integer(0));
-    keyframe.frame = static_cast<std::uint32_t>(row->integer(1));
+    keyframe.id = integer_of<KeyFrameId>(row->integer(0));
+    keyframe.frame = integer_of<std::uint32_t>(row->integer(1));
     keyframe.time = row->real(2);
     keyframe.camera = cameras_[camera];
     const auto pose = values_of<double>(row->bytes(7), 16, "a pose");

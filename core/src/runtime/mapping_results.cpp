@@ -1,6 +1,7 @@
 #include "stillpoint/runtime/mapping_results.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 
 #include "stillpoint/runtime/map_values.hpp"
@@ -22,6 +23,46 @@ void check_id(std::uint32_t id, std::size_t end, const std::string& what) {
                    "use ids of the map that it was computed on");
 }
 
+bool same(const Camera& a, const Camera& b) {
+  return a.width == b.width && a.height == b.height && a.fx == b.fx && a.fy == b.fy &&
+         a.cx == b.cx && a.cy == b.cy;
+}
+
+/// Camera, features, and one of everything per keypoint. `what`: "the key frame" or "key frame 7".
+void check_parts(const KeyFrame& keyframe, const std::string& what, const SparseMap& map) {
+  require_of_stage(keyframe.camera != nullptr, what + " has no camera",
+                   "give it that of the frame");
+  require_of_stage(keyframe.features != nullptr, what + " has no features",
+                   "a tracker without point features gives an empty Features");
+  const Features& features = *keyframe.features;
+  const std::size_t count = features.size();
+  const auto require_count = [&](std::size_t size, const std::string& of) {
+    require_of_stage(size == count,
+                     what + " has " + std::to_string(count) + " keypoints, but " +
+                         std::to_string(size) + " " + of,
+                     "give one of each per keypoint");
+  };
+  if (!features.descriptors.empty()) require_count(features.descriptors.size(), "descriptors");
+  require_count(features.depth.size(), "depths");
+  require_count(keyframe.track_weights.size(), "track weights");
+  require_count(keyframe.map_weights.size(), "map weights");
+  require_count(keyframe.landmarks.size(), "landmarks");
+  require_of_stage(
+      std::ranges::all_of(keyframe.landmarks,
+                          [&](LandmarkId id) { return id == kNoId || id < map.landmark_id_end(); }),
+      what + " sees a landmark that is not in the map", "use ids of the map that was given");
+}
+
+void check_evidence(std::span<const LandmarkEvidence> all, const SparseMap& map) {
+  for (const LandmarkEvidence& evidence : all) {
+    require_of_stage(evidence.landmark < map.landmark_id_end(),
+                     "the key frame has evidence of a landmark that is not in the map",
+                     "use ids of the map that track() was given");
+    require_of_stage(std::isfinite(evidence.static_log_odds),
+                     "the evidence of a landmark is not finite", "leave out what is not known");
+  }
+}
+
 void check_keyframe(const KeyFrame& keyframe, const Frame& frame, const SparseMap& map,
                     KeyFrameId next) {
   require_of_stage(keyframe.id == next,
@@ -34,34 +75,15 @@ void check_keyframe(const KeyFrame& keyframe, const Frame& frame, const SparseMa
   require_of_stage(keyframe.time == frame.time,
                    "the time of the key frame is not that of its frame",
                    "set KeyFrame::time to Frame::time");
-  require_of_stage(keyframe.camera != nullptr, "the key frame has no camera",
-                   "give it that of the frame");
-  require_of_stage(possible(*keyframe.camera), "the camera of the key frame has impossible values",
-                   "give it that of the frame");
-  require_of_stage(keyframe.features != nullptr, "the key frame has no features",
-                   "a tracker without point features gives an empty Features");
+  check_parts(keyframe, "the key frame", map);
+  require_of_stage(possible(*keyframe.camera) && same(*keyframe.camera, *frame.camera),
+                   "the camera of the key frame is not that of its frame",
+                   "set KeyFrame::camera to Frame::camera");
   require_of_stage(is_rigid_motion(keyframe.world_from_camera),
                    "the pose of the key frame is no rigid motion",
                    "it must be finite, with an orthonormal rotation");
-  const Features& features = *keyframe.features;
-  const std::size_t count = features.size();
-  const auto require_count = [count](std::size_t size, const std::string& what) {
-    require_of_stage(size == count,
-                     "the key frame has " + std::to_string(count) + " keypoints, but " +
-                         std::to_string(size) + " " + what,
-                     "give one of each per keypoint");
-  };
-  if (!features.descriptors.empty()) require_count(features.descriptors.size(), "descriptors");
-  require_count(features.depth.size(), "depths");
-  require_count(keyframe.track_weights.size(), "track weights");
-  require_count(keyframe.map_weights.size(), "map weights");
-  require_count(keyframe.landmarks.size(), "landmarks");
-  require_of_stage(
-      std::ranges::all_of(keyframe.landmarks,
-                          [&](LandmarkId id) { return id == kNoId || id < map.landmark_id_end(); }),
-      "the key frame sees a landmark that is not in the map",
-      "use ids of the map that track() was given");
-  const std::string fault = fault_of(features, *keyframe.camera);
+  check_evidence(keyframe.evidence, map);
+  const std::string fault = fault_of(*keyframe.features, *keyframe.camera);
   require_of_stage(fault.empty(), "the key frame has wrong features: " + fault,
                    "positions are in pixels of the frame, octaves count from 0 to "
                    "Features::levels - 1, a depth of 0 stands for no measurement");
@@ -78,19 +100,33 @@ void check_reference(const TrackResult& result, const Pose& world_from_reference
                    "reference_from_camera");
 }
 
+/// That both sides of each link agree is looked at by check_thoroughly().
+void check_observations(const Landmark& landmark, const SparseMap& map) {
+  for (const Observation& seen : landmark.observations) {
+    const KeyFrame* keyframe = map.keyframe(seen.keyframe);
+    require_of_stage(
+        keyframe && seen.feature < keyframe->landmarks.size(),
+        "landmark " + std::to_string(landmark.id) + " is seen as a feature that is not in the map",
+        "change observations with MapEdit::add_observation() and "
+        "remove_observation()");
+  }
+}
+
 /// Key frames and landmarks that `before` does not have, or not as they are now.
 void check_changes(const SparseMap& map, const SparseMap& before) {
   for (KeyFrameId id = 0; id < map.keyframe_id_end(); ++id) {
     const KeyFrame* keyframe = map.keyframe(id);
-    if (!keyframe || keyframe == before.keyframe(id) ||
-        is_rigid_motion(keyframe->world_from_camera))
-      continue;
-    require_of_stage(false, "the pose of key frame " + std::to_string(id) + " is no rigid motion",
+    if (!keyframe || keyframe == before.keyframe(id)) continue;
+    const std::string name = "key frame " + std::to_string(id);
+    require_of_stage(is_rigid_motion(keyframe->world_from_camera),
+                     "the pose of " + name + " is no rigid motion",
                      "it must be finite, with an orthonormal rotation");
+    check_parts(*keyframe, name, map);
   }
   for (LandmarkId id = 0; id < map.landmark_id_end(); ++id) {
     const Landmark* landmark = map.landmark(id);
     if (!landmark || landmark == before.landmark(id)) continue;
+    check_observations(*landmark, map);
     const std::string fault = fault_of(*landmark);
     require_of_stage(fault.empty(), "landmark " + std::to_string(id) + " is wrong: " + fault,
                      "remove landmarks whose position is not known");
@@ -116,6 +152,14 @@ void check_tracking(const TrackResult& result, const Frame& frame, const SparseM
                      "a key frame needs a pose: make it with kTracking only");
     check_keyframe(*result.keyframe, frame, map, hints.next_keyframe);
   }
+  require_of_stage(result.features >= 0 && result.matches >= 0 && result.inliers >= 0,
+                   "a number of features, matches or inliers is negative",
+                   "leave them 0 where there are none");
+  require_of_stage(std::ranges::all_of(result.tracked,
+                                       [](const TrackedFeature& feature) {
+                                         return std::isfinite(feature.pixel.x + feature.pixel.y);
+                                       }),
+                   "the pixel of a tracked feature is not finite", "leave out such features");
   if (result.state != TrackState::kTracking) return;
   require_of_stage(
       is_rigid_motion(result.world_from_camera) && is_rigid_motion(result.reference_from_camera),

@@ -1,12 +1,16 @@
 #include "stillpoint/runtime/moving_check.hpp"
 
+#include <string>
 #include <utility>
 
 #include "stillpoint/runtime/perception_results.hpp"
+#include "stillpoint/runtime/stage_requirement.hpp"
 #include "stillpoint/runtime/thorough_checks.hpp"
 
 namespace stillpoint {
 namespace {
+
+constexpr std::size_t kMostKeyFrames = 400;  // a gigabyte of images of 640 x 480
 
 MovingPoints check_motion(MovingChecker& checker, const Frame& previous, const Frame& frame,
                           const TrackingHistory& history, bool thorough) {
@@ -16,9 +20,24 @@ MovingPoints check_motion(MovingChecker& checker, const Frame& previous, const F
   return found;
 }
 
+std::size_t wanted_keyframes_of(MovingChecker& checker) {
+  const std::size_t wanted = checker.wanted_keyframes();
+  require_of_stage(wanted <= kMostKeyFrames,
+                   "wanted_keyframes() gives " + std::to_string(wanted) + ", above " +
+                       std::to_string(kMostKeyFrames),
+                   "the images of that many key frames stay in memory: ask for fewer");
+  return wanted;
+}
+
 }  // namespace
 
-MovingPoints MovingCheck::at(const FramePtr& frame, const SparseMap& map) {
+MovingCheck::MovingCheck(Stage<MovingChecker> checker, const RuntimeOptions& options,
+                         TimeLog& times)
+    : checker_(std::move(checker), "moving check", times),
+      thorough_(options.validates_fully()),
+      wanted_keyframes_(checker_.call_unmeasured({}, wanted_keyframes_of)) {}
+
+MovingPoints MovingCheck::check(const FramePtr& frame, const SparseMap& map) {
   const FramePtr previous = std::exchange(previous_, frame);
   if (!previous) return {};
   return checker_.call("moving_check", frame->index, check_motion, *previous, *frame, history(map),

@@ -2,16 +2,17 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
 #include <cstdlib>
 #include <opencv2/core.hpp>
 #include <optional>
 #include <sstream>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "stillpoint/runtime/map_values.hpp"
 #include "stillpoint/runtime/stage_requirement.hpp"
+#include "stillpoint/support/median.hpp"
 #include "stillpoint/support/size_text.hpp"
 
 namespace stillpoint {
@@ -72,10 +73,7 @@ float median_depth(const cv::Mat& depth) {
   for (int y = 0; y < depth.rows; y += kStep)
     for (int x = 0; x < depth.cols; x += kStep)
       if (const float z = depth.at<float>(y, x); z > 0) measured.push_back(z);
-  if (measured.empty()) return 0;
-  const auto middle = measured.begin() + static_cast<std::ptrdiff_t>(measured.size() / 2);
-  std::ranges::nth_element(measured, middle);
-  return *middle;
+  return median(std::move(measured));
 }
 
 void check_objects(const Segmentation& segmentation, std::size_t classes) {
@@ -85,6 +83,10 @@ void check_objects(const Segmentation& segmentation, std::size_t classes) {
                      "an object has label " + std::to_string(object.label) + " of " +
                          std::to_string(classes) + " classes",
                      "labels of objects count from 1 to classes() - 1");
+    require_of_stage(object.pixels >= 0 && object.score >= 0 && object.score <= 1,
+                     "an object has " + std::to_string(object.pixels) + " pixels and a score of " +
+                         std::to_string(object.score),
+                     "pixels are the size of its mask, the score lies from 0 to 1");
     require_of_stage(object.box.empty() || (object.box & image) == object.box,
                      "the box of an object is not in the image",
                      "boxes are in pixels of the frame");
@@ -152,6 +154,10 @@ void check_segmentation(const Segmentation& segmentation, const Frame& of, std::
                    "a pixel belongs to object " + std::to_string(instance) + " of " +
                        std::to_string(segmentation.objects.size()),
                    "number instances from 1, as in the list of objects");
+  const auto has_pixels = [](const SegmentedObject& object) { return object.pixels > 0; };
+  require_of_stage(instance == 0 || std::ranges::any_of(segmentation.objects, has_pixels),
+                   "all objects have 0 pixels, but there are instances",
+                   "set SegmentedObject::pixels to the size of the mask; find_objects() does it");
 }
 
 void check_moving_points(const MovingPoints& moving, cv::Size frame) {

@@ -68,12 +68,6 @@ NewKeyFrame new_keyframe(const KeyFrame& keyframe, const FramePtr& frame,
   return {keyframe, {keyframe.id, frame, labels, weights, keyframe.world_from_camera}};
 }
 
-ClassNames classes_of(const Stage<Segmenter>& segmenter) {
-  if (!segmenter.object) return {};
-  return in_stage("segmentation (" + segmenter.type + ")", {},
-                  [&] { return segmenter.object->classes(); });
-}
-
 std::optional<TrackedFrame> tracked_frame(const FramePtr& frame,
                                           const std::shared_ptr<const StaticWeights>& weights,
                                           const TrackResult& result) {
@@ -91,7 +85,6 @@ Pipeline::Pipeline(Stages stages, const RuntimeOptions& runtime,
       localise_only_(stages.localise_only),
       before_outputs_(stages.before_outputs ? std::move(stages.before_outputs) : [] {}),
       map_saved_(std::move(stages.map_saved)),
-      classes_(classes_of(stages.segmenter)),
       clock_(clock ? std::move(clock) : std::make_shared<SteadyClock>()),
       wall_start_(SteadyClock().now()),
       cpu_start_(process_cpu_seconds()),
@@ -108,8 +101,8 @@ Pipeline::Pipeline(Stages stages, const RuntimeOptions& runtime,
                     runtime.mode, stop_, times_),
       moving_check_(std::move(stages.moving_checker), runtime, times_),
       map_check_(std::move(stages.map_checker), runtime, times_),
-      beside_(moving_check_.present() || map_check_.present() ? runtime.mode : Mode::kInline, stop_,
-              times_),
+      perception_(moving_check_.present() || map_check_.present() ? runtime.mode : Mode::kInline,
+                  stop_, times_),
       mapping_(std::move(stages.local_mapper), std::move(stages.loop_closer),
                std::move(stages.map_backend), std::move(stages.known_map), runtime, stop_, times_) {
   add_outputs(std::move(stages.outputs));
@@ -182,11 +175,12 @@ FrameReportPtr Pipeline::process(const FramePtr& frame) {
   const ScopedTime time(times_, "track_thread", index);
   segmentation_.offer(frame);  // thread 2
   const auto map = mapping_.snapshot();
-  const auto moving = beside_.start([=, this] { return moving_check_.at(frame, *map); });
-  const auto evidence = beside_.start([=, this] { return map_check_.at(*frame, *moving, *map); });
-  const auto labels = beside_.start([=, this] { return segmentation_.at(frame); });
+  const auto moving = perception_.start([=, this] { return moving_check_.check(frame, *map); });
+  const auto evidence =
+      perception_.start([=, this] { return map_check_.check(*frame, *moving, *map); });
+  const auto labels = perception_.start([=, this] { return segmentation_.labels_for(frame); });
   auto prepared = tracker_.call("prepare", index, prepare, frame);  // meanwhile
-  if (!beside_.wait(index) || !*labels) return nullptr;             // stopped
+  if (!perception_.wait(index) || !*labels) return nullptr;         // stopped
   const auto weights = std::make_shared<const StaticWeights>(
       decision_.call("decision", index, decide, *frame, **labels, *moving, *evidence));
   TrackResult result =
@@ -228,7 +222,7 @@ void Pipeline::record(const FrameReportPtr& report) {
 }
 
 void Pipeline::end_threads() {
-  beside_.end();
+  perception_.end();
   segmentation_.end();
   mapping_.end();
   if (feed_) feed_->end();

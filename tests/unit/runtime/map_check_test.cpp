@@ -20,7 +20,7 @@ struct MapCheckFixture {
 
   MapEvidence at(std::uint32_t index) {
     frame = std::make_shared<const Frame>(testing::make_frame(index));
-    return check.at(*frame, {}, map);
+    return check.check(*frame, {}, map);
   }
   /// The camera is one metre farther along x in every frame.
   void tracked() {
@@ -74,7 +74,7 @@ TEST(MapCheck, WithoutACheckerNothingIsKnown) {
   TimeLog times;
   MapCheck check({}, RuntimeOptions(), times);
   EXPECT_FALSE(check.present());
-  EXPECT_TRUE(check.at(testing::make_frame(0), {}, {}).log_odds.empty());
+  EXPECT_TRUE(check.check(testing::make_frame(0), {}, {}).log_odds.empty());
   EXPECT_TRUE(times.take().empty());
 }
 

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
+#include <boost/crc.hpp>
 #include <functional>
 #include <string>
 
@@ -60,6 +61,19 @@ TEST_F(MapFile, ImpossibleValuesAreRefused) {
     camera->fx = 1e308;
     edit.keyframe(0).camera = camera;
   });
+}
+
+// 2^32 + 640 is 640 for who takes the lower half.
+TEST_F(MapFile, NumbersBeyondThoseOfTheProgramAreRefused) {
+  save_map(small_map(), file_);
+  constexpr double kWidth = 4294967936;
+  const Camera camera;
+  boost::crc_32_type crc;
+  for (const double value :
+       {0.0, kWidth, double{480}, camera.fx, camera.fy, camera.cx, camera.cy, camera.depth_noise})
+    crc.process_bytes(&value, sizeof value);
+  execute("UPDATE camera SET width = 4294967936, crc = " + std::to_string(crc.checksum()));
+  expect_refused("a number is out of range");
 }
 
 TEST_F(MapFile, AKeyFrameWithoutCameraIsNotSaved) {

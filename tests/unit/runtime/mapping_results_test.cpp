@@ -117,7 +117,20 @@ INSTANTIATE_TEST_SUITE_P(
                      r.keyframe->camera = std::make_shared<const Camera>(
                          Camera{.width = 4, .height = 3, .fx = kNan});
                    },
-                   "the camera of the key frame has impossible values"},
+                   "the camera of the key frame is not that of its frame"},
+        TrackFault{"OtherCamera",
+                   [](TrackResult& r) {
+                     r.keyframe->camera = std::make_shared<const Camera>(
+                         Camera{.width = 4, .height = 3, .fx = 100});
+                   },
+                   "the camera of the key frame is not that of its frame"},
+        TrackFault{"EvidenceOfNoLandmark",
+                   [](TrackResult& r) { r.keyframe->evidence = {{.landmark = 3}}; },
+                   "has evidence of a landmark that is not in the map"},
+        TrackFault{"NegativeInliers", [](TrackResult& r) { r.inliers = -1; },
+                   "a number of features, matches or inliers is negative"},
+        TrackFault{"NanOfTracked", [](TrackResult& r) { r.tracked = {{.pixel = {kFloatNan, 0}}}; },
+                   "the pixel of a tracked feature is not finite"},
         TrackFault{"LostKeyFrame", [](TrackResult& r) { r.state = TrackState::kLost; },
                    "it made a key frame, but is LOST"}),
     [](const auto& test) { return test.param.name; });
@@ -166,7 +179,7 @@ TEST(MappingResults, WhatIsPreparedIsTheFrame) {
 SparseMap map_with_keyframes(KeyFrameId count) {
   MapEdit map{SparseMap()};
   for (KeyFrameId id = 0; id < count; ++id) {
-    KeyFrame keyframe{.id = id};
+    KeyFrame keyframe{.id = id, .camera = std::make_shared<const Camera>()};
     keyframe.features = std::make_shared<const Features>();
     map.add_keyframe(std::move(keyframe));
   }
@@ -184,19 +197,55 @@ TEST(MappingResults, AMapThatIsNoNextVersionIsRefused) {
   EXPECT_THAT(message_of([&] { check_inserted({}, before); }), HasSubstr("key frame 2"));
 }
 
-TEST(MappingResults, WhatIsNewInAMapIsFinite) {
-  const auto message = [](const std::function<void(MapEdit&)>& spoil) {
-    MapEdit before(map_with_keyframes(2));
-    KeyFrame seeing{.id = 2};
-    seeing.features = std::make_shared<const Features>(
-        Features{.keypoints = {{}}, .descriptors = {{}}, .depth = {1}});
-    seeing.landmarks = {kNoId};
-    before.add_keyframe(std::move(seeing));
-    before.add_observation(before.add_landmark({.reference = 2}), {.keyframe = 2, .feature = 0});
-    MapEdit after(before.map());
-    spoil(after);
-    return message_of([&] { check_refined(after.map(), before.map()); });
+/// Of a change to a map of three key frames, the last of which sees landmark 0.
+std::string message_of_change(const std::function<void(MapEdit&)>& spoil) {
+  MapEdit before(map_with_keyframes(2));
+  KeyFrame seeing{.id = 2, .camera = std::make_shared<const Camera>()};
+  seeing.features = std::make_shared<const Features>(
+      Features{.keypoints = {{}}, .descriptors = {{}}, .depth = {1}});
+  seeing.track_weights = seeing.map_weights = {255};
+  seeing.landmarks = {kNoId};
+  before.add_keyframe(std::move(seeing));
+  before.add_observation(before.add_landmark({.reference = 2}), {.keyframe = 2, .feature = 0});
+  MapEdit after(before.map());
+  spoil(after);
+  return message_of([&] { check_refined(after.map(), before.map()); });
+}
+
+// What a stage that reads the map would crash on.
+TEST(MappingResults, KeyFramesInTheMapKeepTheirParts) {
+  const auto message = message_of_change;
+  EXPECT_EQ(message([](MapEdit& map) { map.keyframe(2).time = 1; }), "");
+  EXPECT_THAT(message([](MapEdit& map) { map.keyframe(2).features = nullptr; }),
+              HasSubstr("key frame 2 has no features"));
+  EXPECT_THAT(message([](MapEdit& map) { map.keyframe(1).camera = nullptr; }),
+              HasSubstr("key frame 1 has no camera"));
+  EXPECT_THAT(message([](MapEdit& map) { map.keyframe(2).landmarks.clear(); }),
+              HasSubstr("key frame 2 has 1 keypoints, but 0 landmarks"));
+  EXPECT_THAT(message([](MapEdit& map) { map.keyframe(2).landmarks[0] = 1; }),
+              HasSubstr("key frame 2 sees a landmark that is not in the map"));
+  EXPECT_THAT(message([](MapEdit& map) { map.landmark(0).observations[0].feature = 1; }),
+              HasSubstr("landmark 0 is seen as a feature that is not in the map"));
+  EXPECT_THAT(message([](MapEdit& map) { map.landmark(0).observations[0].keyframe = 7; }),
+              HasSubstr("landmark 0 is seen as a feature that is not in the map"));
+}
+
+TEST(MappingResults, EvidenceOfLandmarksIsFinite) {
+  const Frame frame = right_frame(7);
+  MapEdit map(map_with_keyframes(3));
+  map.add_landmark({});
+  TrackResult result = right_result(frame);
+  result.keyframe->evidence = {{.landmark = 0, .static_log_odds = 1}};
+  const auto message = [&] {
+    return message_of([&] { check_tracking(result, frame, map.map(), {.next_keyframe = 3}); });
   };
+  EXPECT_EQ(message(), "");
+  result.keyframe->evidence[0].static_log_odds = kFloatNan;
+  EXPECT_THAT(message(), HasSubstr("the evidence of a landmark is not finite"));
+}
+
+TEST(MappingResults, WhatIsNewInAMapIsFinite) {
+  const auto message = message_of_change;
   EXPECT_EQ(message([](MapEdit&) {}), "");
   EXPECT_THAT(message([](MapEdit& map) { map.keyframe(1).world_from_camera(0, 3) = kNan; }),
               HasSubstr("the pose of key frame 1 is no rigid motion"));

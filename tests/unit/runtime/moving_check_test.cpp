@@ -1,5 +1,6 @@
 #include "stillpoint/runtime/moving_check.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "doubles.hpp"
@@ -11,7 +12,7 @@ using testing::CallLog;
 using Strings = std::vector<std::string>;
 
 MovingPoints check(MovingCheck& stage, std::uint32_t index) {
-  return stage.at(std::make_shared<const Frame>(testing::make_frame(index)), SparseMap());
+  return stage.check(std::make_shared<const Frame>(testing::make_frame(index)), SparseMap());
 }
 
 TEST(MovingCheck, ComparesEachFrameWithTheOneBefore) {
@@ -34,6 +35,19 @@ DenseKeyFrame make_keyframe(KeyFrameId id) {
           .world_from_camera = at_x(id)};
 }
 
+TEST(MovingCheck, DoesNotKeepAllKeyFramesOfALongRun) {
+  CallLog calls;
+  TimeLog times;
+  const auto checker = std::make_shared<testing::FakeChecker>(calls);
+  checker->wanted = 401;
+  try {
+    MovingCheck({checker, "lk"}, RuntimeOptions(), times);
+    FAIL() << "401 key frames are a gigabyte of images";
+  } catch (const StageError& error) {
+    EXPECT_THAT(error.what(), ::testing::HasSubstr("wanted_keyframes() gives 401, above 400"));
+  }
+}
+
 TEST(MovingCheck, ShowsWhatWasTrackedAtThePosesOfTheMap) {
   CallLog calls;
   TimeLog times;
@@ -54,7 +68,7 @@ TEST(MovingCheck, ShowsWhatWasTrackedAtThePosesOfTheMap) {
     map.add_keyframe(std::move(keyframe));
   }
   const auto frame = std::make_shared<const Frame>(testing::make_frame(1));
-  stage.at(frame, map.map());
+  stage.check(frame, map.map());
   const TrackingHistory& history = checker->history;
   ASSERT_TRUE(history.world_from_previous);
   EXPECT_EQ(history.world_from_previous->translation().x(), 102.5);
@@ -65,7 +79,7 @@ TEST(MovingCheck, ShowsWhatWasTrackedAtThePosesOfTheMap) {
   EXPECT_EQ(history.keyframes[1].frame->index, 20u);
   EXPECT_TRUE(history.keyframes[1].weights);
   stage.tracked(std::nullopt);
-  stage.at(std::make_shared<const Frame>(testing::make_frame(2)), map.map());
+  stage.check(std::make_shared<const Frame>(testing::make_frame(2)), map.map());
   EXPECT_FALSE(checker->history.world_from_previous) << "lost";
 }
 

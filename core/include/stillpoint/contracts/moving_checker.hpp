@@ -35,7 +35,7 @@ class STILLPOINT_EXPORT MovingChecker {
                              const TrackingHistory& history) = 0;
 
   /// How many key frames of the history check() looks at, at most; asked once, before the first
-  /// frame. Without an own one: none. Their images stay in memory, 2.5 MB each of 640 × 480 pixels.
+  /// frame; 400 at most. Default: 0. Their images stay in memory, 2.5 MB each of 640 × 480 pixels.
   virtual std::size_t wanted_keyframes() const;
 };
 

@@ -92,8 +92,8 @@ class STILLPOINT_EXPORT Output {
   static constexpr std::uint32_t kApi = 8;  ///< see kPluginApi
   virtual ~Output();
 
-  /// Before the first frame of a run that its source drives; a program that gives the frames itself
-  /// steers itself. On thread 1. What has come may be kept.
+  /// Before the first frame of Engine::run(), on thread 1; not called when frames are pushed. The
+  /// pointer may be kept.
   virtual void begin(const std::shared_ptr<LiveRun>&) {}
   /// For viewers: frames may be left out when this output is too slow, instead of tracking waiting
   /// for it. `when_full` in the pipeline file has the last word.
@@ -105,8 +105,8 @@ class STILLPOINT_EXPORT Output {
   /// itself crashed or hung. After the last frame(), on thread 1; references are valid during the
   /// call only.
   virtual void finish(const RunSummary&) {}
-  /// Instead of finish(), when a run has failed or was stopped before its first frame: for outputs
-  /// that show or tell it. Files of an earlier run are to stay as they are.
+  /// Instead of finish(), when the run failed or was stopped before its first frame. Leave the
+  /// files of an earlier run as they are.
   virtual void ended_before_first_frame(const RunSummary&) {}
 };
 

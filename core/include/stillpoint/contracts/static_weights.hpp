@@ -13,6 +13,7 @@ struct StaticWeights {
   cv::Mat map;                     ///< CV_8UC1: 255 static … 0 do not use
   std::vector<bool> object_moves;  ///< per object of the frame's Segmentation; may be empty
 
+  /// Of the pixel that (u, v) lies in, which must be one of the image.
   static std::uint8_t at(const cv::Mat& weights, float u, float v) {
     return weights.empty() ? std::uint8_t{255} : weights.at<std::uint8_t>(cvRound(v), cvRound(u));
   }

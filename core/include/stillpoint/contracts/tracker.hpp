@@ -22,7 +22,7 @@ STILLPOINT_EXPORT const char* name_of(TrackState state);
 
 /// A feature as tracking used it, for pictures and statistics.
 struct TrackedFeature {
-  cv::Point2f pixel;
+  cv::Point2f pixel;  ///< px
   enum class Use { kUnmatched, kInlier, kOutlier, kMoving } use = Use::kUnmatched;
 };
 

@@ -7,7 +7,8 @@
 
 namespace stillpoint {
 
-/// Why it ended: the number of the signal that ended it, or one of the two beyond all signals.
+/// What ended it: the number of a signal (`kGivenUp`: by the guard), or one of two values above
+/// those of all signals.
 inline constexpr int kGivenUp = SIGUSR2;
 inline constexpr int kExited = 1000;
 inline constexpr int kWroteToImage = 1001;

@@ -18,7 +18,8 @@
 namespace stillpoint {
 
 /// `inline` and `pace: free`: next() asks the source. Otherwise the source has a thread of its own:
-/// * `free`: it decodes up to two frames ahead, and every frame is used;
+/// * `free`: it decodes up to three frames ahead (two wait, one is in its hand), and every frame is
+///   used;
 /// * `sensor`: it delivers frames at the rate at which they were recorded. Two may wait; when a
 ///   third comes, the oldest is dropped and counted. While the run is paused, it waits instead. The
 ///   second frame is read when the first one has been processed, with which network and memory are

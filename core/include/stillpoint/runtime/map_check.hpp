@@ -1,7 +1,6 @@
 // The map check of each frame, at the poses that the camera may have before it is tracked.
 #pragma once
 
-#include <memory>
 #include <optional>
 
 #include "stillpoint/engine/pipeline_config.hpp"
@@ -17,9 +16,9 @@ class MapCheck {
 
   bool present() const { return checker_.present(); }
   /// Once per frame, in order. Nothing is known while nothing has been tracked.
-  MapEvidence at(const Frame& frame, const MovingPoints& moving, const SparseMap& map);
-  /// The frame that at() was called for last, once it has been tracked; nothing: it was not. Before
-  /// at() is called for the next one.
+  MapEvidence check(const Frame& frame, const MovingPoints& moving, const SparseMap& map);
+  /// The frame that check() was called for last, once it has been tracked; nothing: it was not.
+  /// Before check() is called for the next one.
   void tracked(const std::optional<TrackedFrame>& frame, const SparseMap& map);
 
  private:

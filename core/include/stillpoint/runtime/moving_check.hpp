@@ -3,7 +3,6 @@
 
 #include <cstddef>
 #include <deque>
-#include <memory>
 #include <optional>
 
 #include "stillpoint/engine/pipeline_config.hpp"
@@ -13,16 +12,13 @@ namespace stillpoint {
 
 class MovingCheck {
  public:
-  MovingCheck(Stage<MovingChecker> checker, const RuntimeOptions& options, TimeLog& times)
-      : checker_(std::move(checker), "moving check", times),
-        thorough_(options.validates_fully()),
-        wanted_keyframes_(checker_.call_unmeasured({}, &MovingChecker::wanted_keyframes)) {}
+  MovingCheck(Stage<MovingChecker> checker, const RuntimeOptions& options, TimeLog& times);
 
   bool present() const { return checker_.present(); }
   /// Once per frame, in order. Nothing is known of the first, which has none before it.
-  MovingPoints at(const FramePtr& frame, const SparseMap& map);
-  /// The frame that at() was called for last, once it has been tracked; nothing: it was not. Before
-  /// at() is called for the next one.
+  MovingPoints check(const FramePtr& frame, const SparseMap& map);
+  /// The frame that check() was called for last, once it has been tracked; nothing: it was not.
+  /// Before check() is called for the next one.
   void tracked(const std::optional<TrackedFrame>& frame) { previous_tracked_ = frame; }
   /// The same frame, when it became a key frame.
   void keyframe(const DenseKeyFrame& keyframe);

@@ -21,8 +21,8 @@ struct OptionRow {
 class STILLPOINT_EXPORT OptionDescriber final : public OptionVisitor {
  public:
   const std::vector<OptionRow>& rows() const { return rows_; }
-  /// Mistakes of the plugin's author: names used twice, the name 'type', which is the pipeline
-  /// file's own, defaults outside their range.
+  /// Mistakes of the plugin's author: names used twice, names that the runtime reads itself
+  /// (`type`, `on_failure`, `when_full`), defaults outside their range.
   std::vector<std::string> faults() const;
 
  protected:

@@ -38,7 +38,7 @@ class Pipeline {
   MapStore::Snapshot map() const { return mapping_.snapshot(); }
   std::vector<LabelledPoint> dense_map() { return mapping_.dense_points(); }
   bool save_dense_map(const std::filesystem::path& directory) { return mapping_.save(directory); }
-  const ClassNames& classes() const { return classes_; }
+  const ClassNames& classes() const { return segmentation_.classes(); }
   const std::vector<TrackedPose>& poses() const { return poses_; }
 
  private:
@@ -60,7 +60,6 @@ class Pipeline {
   const bool localise_only_;
   const std::function<void()> before_outputs_;
   const std::function<void(const std::vector<std::filesystem::path>&)> map_saved_;
-  const ClassNames classes_;
   const std::shared_ptr<PaceClock> clock_;
   const double wall_start_;
   const double cpu_start_;
@@ -86,7 +85,7 @@ class Pipeline {
   SegmentationStage segmentation_;
   MovingCheck moving_check_;
   MapCheck map_check_;
-  BesideTracking beside_;
+  BesideTracking perception_;
   MappingSystem mapping_;
   std::deque<OutputStage> outputs_;  // a deque: they cannot be moved
 };

@@ -28,7 +28,7 @@ struct RigidNoise {
 
 struct RigidMotion {
   Pose target_from_source = Pose::Identity();
-  Matrix6d covariance = Matrix6d::Zero();  ///< of the pose's tangent
+  Matrix6d covariance = Matrix6d::Zero();  ///< as in PoseUncertainty
   std::vector<bool> inlier;                ///< per match
   int inliers = 0;
   double agreement = 0;  ///< share of the matches that are inliers, by weight
@@ -37,7 +37,7 @@ struct RigidMotion {
 /// 3-D/3-D RANSAC: samples of three matches are aligned, refined, and compared by how many matches
 /// they explain in the image and in depth, by weight; `guesses` compete with them. The best one is
 /// refined with all its inliers. Nothing when there are fewer than three matches or no sample
-/// determines a motion.
+/// determines a motion. `samples`: how many are drawn; `seed`: of the draws.
 STILLPOINT_EXPORT std::optional<RigidMotion> find_rigid_motion(std::span<const RigidMatch> matches,
                                                                const Camera& camera,
                                                                const RigidNoise& noise,
