@@ -16,8 +16,8 @@ class ObjectVote final : public Decision {
     std::vector<std::string> labels = {"person"};
     int min_moving_points = 3;
     double min_moving_share = 0.1;
-    int reach = 0;
-    int margin = 5;
+    int reach = 0;   // px
+    int margin = 5;  // px
     Unsure unsure = Unsure::kMoves;
 
     void visit(OptionVisitor& visitor);

@@ -28,7 +28,7 @@ struct View {
   Pose world_from_camera = Pose::Identity();  ///< of the depth image, at present
 };
 
-/// On its tracked pose.
+/// `world_from_camera` is the pose that was tracked.
 View make_view(const TrackedFrame& tracked);
 
 struct MemoryOptions {

@@ -16,7 +16,7 @@ using VoxelsPtr = std::shared_ptr<const Voxels>;
 
 VoxelsPtr sorted_voxels(std::vector<LabelledPoint> points);
 
-/// Writes what makes `after` of `before`, but `limit` changes at most. Gives what a viewer has
+/// Writes at most `limit` of the changes that turn `before` into `after`. Gives what the viewer has
 /// then.
 VoxelsPtr write_voxel_changes(const VoxelsPtr& before, const VoxelsPtr& after, std::size_t limit,
                               MessageWriter& writer);

@@ -1,4 +1,4 @@
-// How the frames of a robot lay to each other in the last seconds.
+// Transforms between the coordinate frames of tf in the last seconds.
 #pragma once
 
 #include <deque>
