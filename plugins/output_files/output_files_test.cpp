@@ -239,6 +239,7 @@ TEST_F(OutputFiles, FramesThatAreAskedForAndTheWorstHavePicturesToo) {
   report.weights.track = cv::Mat(120, 160, CV_8UC1, cv::Scalar(255));
   for (std::uint32_t i = 0; i < 400; ++i) {
     report.frame.index = i;
+    report.frame.time = i / 30.0;
     const bool lost = i == 250 || i == 251;
     report.result = {
         .state = lost ? TrackState::kLost : TrackState::kTracking,
@@ -261,6 +262,7 @@ TEST_F(OutputFiles, APictureStaysAsLongAsItIsTheWorstOfAnyKind) {
   Report report;
   for (const std::uint32_t i : {10U, 50U}) {
     report.frame.index = i;
+    report.frame.time = i / 30.0;
     report.result = {.state = TrackState::kTracking, .matches = 90, .inliers = i == 10 ? 20 : 80};
     report.weights.track = cv::Mat(120, 160, CV_8UC1, cv::Scalar(i == 10 ? 200 : 100));
     output.frame(report());

@@ -1,16 +1,12 @@
 #include "output_files/worst_frames.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "output_files/excluded.hpp"
 
 namespace stillpoint::output_files {
-namespace {
-
-constexpr std::uint32_t kFramesPerSecond = 30;
-
-}  // namespace
 
 std::optional<double> exclusion(const FrameReport& report) {
   const double share = excluded_share(report.weights.get());
@@ -33,7 +29,7 @@ Badness loss() {
 
 WorstFrames::Change WorstFrames::add(const FrameReport& report) {
   Change change;
-  const std::uint32_t second = report.frame->index / kFramesPerSecond;
+  const double second = std::floor(report.frame->time);
   if (second != std::exchange(second_, second)) change = finish();
   const std::optional<double> badness = badness_(report);
   if (badness && (!worst_of_second_ || *badness > badness_of_second_)) {

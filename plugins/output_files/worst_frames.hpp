@@ -19,8 +19,8 @@ std::optional<double> lack_of_inliers(const FrameReport& report);
 /// Tracking is lost, the earlier the worse.
 Badness loss();
 
-/// Keeps the worst frames, of each second of a recording of 30 Hz at most one: neighbours look
-/// alike. Frames come in order.
+/// Keeps the worst frames, of each second of a recording at most one: neighbours look alike. Frames
+/// come in order.
 class WorstFrames {
  public:
   /// At most `count` frames.
@@ -43,7 +43,7 @@ class WorstFrames {
 
   std::size_t count_;
   Badness badness_;
-  std::uint32_t second_ = 0;
+  double second_ = 0;  // of the frame added last
   std::optional<FrameReport> worst_of_second_;
   double badness_of_second_ = 0.0;
   std::vector<Bad> kept_;  // the worst first

@@ -2,7 +2,6 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "tum_recording/stamp_list.hpp"
@@ -64,7 +63,7 @@ std::optional<TruthFit> fit_truth(const std::vector<Eigen::Vector3d>& truth,
   if (truth.size() < 3) return std::nullopt;
   const Eigen::Matrix3Xd from = matrix_of(truth), to = matrix_of(estimate);
   TruthFit fit{.pairs = truth.size()};
-  fit.world_from_truth.matrix() = Eigen::umeyama(from, to, false);
+  fit.world_from_truth = align_points(from, to, false).target_from_source;
   fit.rmse_m = std::sqrt(((fit.world_from_truth * from) - to).colwise().squaredNorm().mean());
   return fit;
 }
