@@ -29,6 +29,9 @@ class DepthRegistration {
   bool refine(ObservedFrame& frame, const SparseMap& map, const QuadraticCost& motion,
               const Solve& solve);
 
+  /// Forgets how the frame was refined: its pose is another one.
+  void discard() { registration_.reset(); }
+
   bool refined() const { return registration_.has_value(); }
   /// The depth has refined the pose, but key frames cover too few of the surfaces in view.
   bool shows_new_surfaces() const;

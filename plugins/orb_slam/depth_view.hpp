@@ -17,8 +17,8 @@ struct PlanePatch {
 };
 
 /// Every patch is the plane that fits best to five by five cells around its middle. A cell has 8 ×
-/// 8 px in images of 640 × 480, in others about as many that there are as many cells. Depth
-/// discontinuities, curved surfaces and regions of low static weight have no patch.
+/// 8 px in images of 640 × 480, and scales with the image, in steps of 4 px. Depth discontinuities,
+/// curved surfaces and regions of low static weight have no patch.
 class DepthView {
  public:
   DepthView() = default;

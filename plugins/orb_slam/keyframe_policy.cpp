@@ -65,9 +65,8 @@ void KeyFrameOptions::visit(OptionVisitor& v) {
     {.min = 0, .max = 1, .help = "the same share once the camera has moved, see keyframe_moved"});
   v("keyframe_min_inliers", min_inliers,
     {.min = 6,
-     .help =
-         "a frame with fewer landmark inliers becomes no key frame, unless it shows surfaces that "
-         "the map does not have"});
+     .help = "a frame with fewer landmark inliers becomes no key frame, unless temporary points or "
+             "depth give its pose"});
   v("close_depth", close_depth,
     {.min = 0.1,
      .unit = "m",

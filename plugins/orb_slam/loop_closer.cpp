@@ -1,5 +1,6 @@
 #include "orb_slam/loop_closer.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -10,7 +11,10 @@ namespace {
 constexpr double kSlackMetres = 0.5;
 constexpr double kSlackRadians = 0.5;
 constexpr double kRadiansPerMetre = 0.02;
-constexpr double kSigmas = 3;  // of poses that landmarks did not constrain
+// Standard deviations of poses that landmarks did not constrain; no more than the path and a
+// radian.
+constexpr double kSigmas = 3;
+constexpr double kMostSlackByDepth = 1;  // rad
 
 // Between two key frames.
 struct Path {
@@ -36,11 +40,13 @@ bool is_within_drift(const SparseMap& map, const LoopMatch& loop, double max_dri
   const Path path = path_between(map, loop.place, loop.keyframe);
   const Pose drift =
       map.keyframe(loop.keyframe)->world_from_camera.inverse() * loop.world_from_camera;
-  const double metres = std::sqrt(path.covariance.topLeftCorner<3, 3>().trace());
-  const double radians = std::sqrt(path.covariance.bottomRightCorner<3, 3>().trace());
-  return drift.translation().norm() <= kSlackMetres + max_drift * path.metres + kSigmas * metres &&
-         rotation_angle(drift) <=
-             kSlackRadians + kRadiansPerMetre * path.metres + kSigmas * radians;
+  const auto sigmas = [&](int first) {
+    return kSigmas * std::sqrt(std::max(0.0, path.covariance.diagonal().segment<3>(first).sum()));
+  };
+  return drift.translation().norm() <=
+             kSlackMetres + max_drift * path.metres + std::min(sigmas(0), path.metres) &&
+         rotation_angle(drift) <= kSlackRadians + kRadiansPerMetre * path.metres +
+                                      std::min(sigmas(3), kMostSlackByDepth);
 }
 
 }  // namespace

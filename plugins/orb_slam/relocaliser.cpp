@@ -28,13 +28,13 @@ std::vector<KeyFrameId> Relocaliser::candidates(const ObservedFrame& frame, cons
   return result;
 }
 
-bool Relocaliser::find(ObservedFrame& frame, const SparseMap& map) {
+bool Relocaliser::find(ObservedFrame& frame, const SparseMap& map, const Accept& accept) {
   for (const KeyFrameId id : candidates(frame, map)) {
     if (locate_by_appearance(frame, targets_of(*map.keyframe(id), map), map) <
         kMinRelocalisationInliers)
       continue;
     frame.reference = id;
-    return true;
+    if (accept()) return true;
   }
   frame.clear_matches();
   return false;

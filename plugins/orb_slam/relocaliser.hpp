@@ -1,6 +1,7 @@
 // Relocalisation of a lost camera at earlier key frames.
 #pragma once
 
+#include <functional>
 #include <vector>
 
 #include "orb_slam/observed_frame.hpp"
@@ -15,9 +16,12 @@ class Relocaliser {
   /// Starts anew at the key frame where tracking was lost.
   void begin(KeyFrameId lost_at) { last_place_ = lost_at; }
 
-  /// On success the frame has its pose, reference and matched landmarks. Needs a map with key
-  /// frames.
-  bool find(ObservedFrame& frame, const SparseMap& map);
+  /// Whether the frame, with the pose, reference and matched landmarks of a candidate, is accepted;
+  /// it may refine them.
+  using Accept = std::function<bool()>;
+
+  /// On success the frame is as `accept` has left it. Needs a map with key frames.
+  bool find(ObservedFrame& frame, const SparseMap& map, const Accept& accept);
 
  private:
   std::vector<KeyFrameId> candidates(const ObservedFrame& frame, const SparseMap& map);

@@ -37,7 +37,7 @@ class RelocaliserTest : public testing::Test {
   int calls_to_find(KeyFrameId room, int limit = kRooms) {
     for (int calls = 1; calls <= limit; ++calls) {
       ObservedFrame frame = seen_in(room);
-      if (!relocaliser_.find(frame, map_)) continue;
+      if (!relocaliser_.find(frame, map_, [] { return true; })) continue;
       EXPECT_EQ(frame.reference, room);
       EXPECT_LT(std::abs(frame.world_from_camera.translation().x() - (10.0 * room + 0.1)), 0.01);
       EXPECT_GT(frame.matched(), 30);
@@ -71,10 +71,24 @@ TEST_F(RelocaliserTest, LastPlaceMayBeGone) {
   EXPECT_EQ(calls_to_find(10), 0) << "nobody knows it any more";
 }
 
+// A thing that has been moved may look like the last place.
+TEST_F(RelocaliserTest, AfterAPlaceThatIsNotAcceptedTheNextOneIsTried) {
+  relocaliser_.begin(3);
+  ObservedFrame frame = seen_in(3);
+  std::vector<KeyFrameId> tried;
+  EXPECT_FALSE(relocaliser_.find(frame, map_, [&] {
+    tried.push_back(frame.reference);
+    return false;
+  }));
+  EXPECT_EQ(tried, std::vector<KeyFrameId>{3}) << "nothing else looks like it";
+  EXPECT_EQ(frame.matched(), 0);
+}
+
 TEST_F(RelocaliserTest, UnknownPlaceIsNeverFound) {
   TestWorld unknown(400, 999);
   ObservedFrame frame = observed(unknown.render(Pose::Identity()));
-  for (int i = 0; i < kRooms; ++i) EXPECT_FALSE(relocaliser_.find(frame, map_));
+  for (int i = 0; i < kRooms; ++i)
+    EXPECT_FALSE(relocaliser_.find(frame, map_, [] { return true; }));
   EXPECT_EQ(frame.matched(), 0);
 }
 

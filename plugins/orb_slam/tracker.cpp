@@ -19,7 +19,7 @@ constexpr double kMinMotionShare = 0.5;
 // place; unless the last frame, which was registered by depth, had no texture.
 constexpr int kManyFeatures = 500;
 constexpr double kMinMatchedShare = 0.1;
-constexpr double kRecentSeconds = 1.0;  // seconds; afterwards the camera may be anywhere
+constexpr double kRecentSeconds = 1.0;  // afterwards the camera may be anywhere
 // A lost camera is found where so large a share of the landmarks that it should see are inliers:
 // objects that have been moved would be found with less. Out of reach of the last pose, where
 // somebody may have carried it, more are needed.
@@ -81,7 +81,7 @@ TrackResult OrbTracker::track(PreparedFramePtr prepared, const StaticWeights& we
   bool found =
       following && (track_with_motion(map) || track_by_appearance(map)) && track_local_map(map);
   if (!found && !following) found = relocalise(map);
-  if (!found && is_recent()) found = track_with_depth(map);
+  if (!found && (following || is_recent())) found = track_with_depth(map);
   if (!found && following) found = relocalise(map);
   return found ? tracked(map, hints) : not_tracked(TrackState::kLost);
 }
@@ -161,9 +161,14 @@ bool OrbTracker::track_by_appearance(const SparseMap& map) {
 }
 
 bool OrbTracker::relocalise(const SparseMap& map) {
-  const bool located =
-      (is_recent() && track_by_appearance(map)) || relocaliser_.find(current_, map);
-  if (!located || !track_local_map(map) || !is_supported(map)) return false;
+  prediction_.reset();
+  const auto holds = [&] {
+    depth_registration_.discard();
+    return track_local_map(map) && is_supported(map);
+  };
+  if (!(is_recent() && track_by_appearance(map) && holds()) &&
+      !relocaliser_.find(current_, map, holds))
+    return false;
   relocalised_at_ = current_.frame->time;
   return true;
 }
@@ -201,7 +206,10 @@ bool OrbTracker::track_local_map(const SparseMap& map) {
 bool OrbTracker::track_with_depth(const SparseMap& map) {
   if (!options_.register_depth) return false;
   predict_pose();
-  if (state_ == TrackState::kLost) prediction_ = last_.world_from_camera;
+  if (state_ == TrackState::kLost) {
+    prediction_ = last_.world_from_camera;
+    current_.reference = kNoId;  // of a place that was not accepted
+  }
   const int matches = match_last_frame(map);
   const auto usable = std::ranges::count_if(
       current_.track_weights, [](auto weight) { return weight >= ObservedFrame::kMinWeight; });
@@ -263,6 +271,7 @@ TrackResult OrbTracker::tracked(const SparseMap& map, TrackHints hints) {
   quality.depth_registered = depth_registration_.refined();
   const bool unknown_view = (bridged_ || depth_registration_.shows_new_surfaces()) &&
                             last_keyframe_ == kNoId;  // the last one is in the map
+  if (state_ == TrackState::kLost) relocalised_at_ = current_.frame->time;
   const bool settled = !relocalised_at_ || current_.frame->time - *relocalised_at_ >= kSettled;
   const bool keep =
       !hints.localise_only && settled &&

@@ -69,7 +69,7 @@ class OrbTracker final : public Tracker {
   bool last_used_depth_ = false;
   PoseUncertainty last_uncertainty_;  // of this frame, once it is tracked; before, of `last_`
 
-  std::optional<double> relocalised_at_;      // seconds, the last time; none: never lost
+  std::optional<double> relocalised_at_;      // seconds, the last time; none: never
   std::optional<KeyFrameId> first_keyframe_;  // of this recording: others came with the map
   std::uint32_t last_keyframe_index_ = 0;     // frame index of the newest key frame
   std::vector<LandmarkId> visible_;           // landmarks that should be seen in this frame

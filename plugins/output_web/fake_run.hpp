@@ -13,6 +13,7 @@ namespace stillpoint::output_web {
 /// Writes down what it is told.
 class FakeRun final : public LiveRun {
  public:
+  bool steerable() const override { return steers; }
   Pause pause() override {
     write("pause");
     return {this, [this](const void*) { write("go on"); }};
@@ -33,6 +34,7 @@ class FakeRun final : public LiveRun {
   }
   // Set before the run.
   bool disk_is_full = false;
+  bool steers = true;
   std::optional<std::vector<LabelledPoint>> dense;
 
  private:

@@ -9,7 +9,7 @@ namespace stillpoint::output_web {
 
 bool Steering::execute(const void* viewer, Command command) {
   if (!allowed_) return false;
-  if (!run_) return true;
+  if (!run_ || (command != Command::kSaveMap && !run_->steerable())) return true;
   switch (command) {
     case Command::kPause:
       if (!pause_) pause_ = run_->pause();
@@ -41,6 +41,7 @@ bool Steering::leave(const void* viewer) {
 
 std::string Steering::state() const {
   return text_of({{"allowed", allowed_ && run_},
+                  {"steerable", run_ && run_->steerable()},
                   {"paused", pause_ != nullptr},
                   {"ending", ending_},
                   {"map_file", run_ ? run_->map_file().filename().string() : ""},

@@ -23,8 +23,9 @@ class Steering {
   /// A pause ends with the last viewer that has asked for it. Whether that was so.
   bool leave(const void* viewer);
 
-  /// JSON: `allowed`; `paused`, `ending`; `map_file`, where the map would be saved, without its
-  /// folder; `notes`, how many there have been, and `note`, the last of them.
+  /// JSON: `allowed`; `steerable`, as of LiveRun; `paused`, `ending`; `map_file`, where the map
+  /// would be saved, without its folder; `notes`, how many there have been, and `note`, the last of
+  /// them.
   std::string state() const;
 
  private:

@@ -40,6 +40,7 @@ TEST_F(Steered, PausesStepsAndGoesOn) {
   TestViewer viewer(port(*output));
   const Json before = state(viewer);
   EXPECT_TRUE(before["allowed"]);
+  EXPECT_TRUE(before["steerable"]);
   EXPECT_FALSE(before["paused"]);
   EXPECT_TRUE(state_after(viewer, Command::kPause)["paused"]);
   EXPECT_TRUE(state_after(viewer, Command::kPause)["paused"]);  // it is already
@@ -47,6 +48,25 @@ TEST_F(Steered, PausesStepsAndGoesOn) {
   EXPECT_FALSE(state_after(viewer, Command::kResume)["paused"]);
   EXPECT_FALSE(state_after(viewer, Command::kStep)["paused"]);  // means nothing now
   EXPECT_EQ(run->calls(), (Calls{"pause", "step", "go on"}));
+}
+
+// A robot that gives its frames itself: viewers may have its map saved, and nothing else.
+class OfAProgram : public Steered {
+ protected:
+  void SetUp() override {
+    run->steers = false;
+    Steered::SetUp();
+  }
+};
+
+TEST_F(OfAProgram, TheMapIsSavedAndNothingIsSteered) {
+  TestViewer viewer(port(*output));
+  EXPECT_FALSE(state(viewer)["steerable"]);
+  EXPECT_FALSE(state_after(viewer, Command::kPause)["paused"]);
+  EXPECT_FALSE(state_after(viewer, Command::kEnd)["ending"]);
+  EXPECT_THAT(state_after(viewer, Command::kSaveMap)["note"].get<std::string>(),
+              HasSubstr("map saved"));
+  EXPECT_EQ(run->calls(), (Calls{"save"}));
 }
 
 TEST_F(Steered, AllViewersSeeItAndMayGoOn) {

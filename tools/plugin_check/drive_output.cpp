@@ -41,8 +41,8 @@ class OutputDrive final : public FrameDrive<Output> {
 
   bool begin() override {
     observer_.call("may_miss_frames", {}, [&] { return stage_.may_miss_frames(); });
-    if (!scenario_.is_pushed)
-      observer_.call("begin", {}, [&] { stage_.begin(std::make_shared<QuietRun>()); });
+    observer_.call("begin", {},
+                   [&] { stage_.begin(std::make_shared<QuietRun>(!scenario_.is_pushed)); });
     return true;
   }
 

@@ -15,6 +15,9 @@ namespace stillpoint::plugin_check {
 /// Its program has named no file for the sparse map, and its dense map is busy half of the time.
 class QuietRun final : public LiveRun {
  public:
+  explicit QuietRun(bool steerable) : steerable_(steerable) {}
+
+  bool steerable() const override { return steerable_; }
   Pause pause() override { return std::make_shared<const int>(0); }
   void step() override {}
   void stop() override {}
@@ -29,6 +32,7 @@ class QuietRun final : public LiveRun {
   }
 
  private:
+  const bool steerable_;
   std::atomic<int> asked_ = 0;  // from any thread
 };
 

@@ -155,7 +155,7 @@ class StageCase {
     const FileSums before = sums_of_files(folder);
     Observer observer(name_);
     auto stage = make<Output>(folder);
-    observer.call("begin", {}, [&] { stage->begin(std::make_shared<QuietRun>()); });
+    observer.call("begin", {}, [&] { stage->begin(std::make_shared<QuietRun>(true)); });
     const SparseMap no_map;
     const std::vector<TrackedPose> no_poses;
     const SourceReport no_report;

@@ -78,7 +78,9 @@ void read_log(RunData& run) {
   std::error_code none;
   if (!std::filesystem::is_regular_file(run.folder / "log.txt", none)) return;
   std::string beginning(kLogBeginning, '\0');
-  std::ifstream(run.folder / "log.txt").read(beginning.data(), kLogBeginning);
+  std::ifstream file(run.folder / "log.txt");
+  file.read(beginning.data(), kLogBeginning);
+  beginning.resize(static_cast<std::size_t>(file.gcount()));
   std::istringstream log(beginning);
   const auto next = [&] {
     std::string line;

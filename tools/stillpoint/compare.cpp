@@ -46,10 +46,7 @@ NamedFile parse_run(const std::string& text) {
   const std::size_t equals = text.find('=');
   if (equals != std::string::npos && equals > 0 && !fs::exists(text))
     return {text.substr(0, equals), in_folder(text.substr(equals + 1), "trajectory.txt")};
-  const fs::path path = fs::path(text).lexically_normal();
-  const fs::path last = path.has_filename() ? path.filename() : path.parent_path().filename();
-  return {fs::is_directory(path) ? last.string() : last.stem().string(),
-          in_folder(path, "trajectory.txt")};
+  return {name_of_run(text), in_folder(fs::path(text).lexically_normal(), "trajectory.txt")};
 }
 
 std::vector<NamedFile> parse_runs(const std::vector<std::string>& texts) {

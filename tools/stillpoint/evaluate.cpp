@@ -68,8 +68,7 @@ void print_evaluation(const EvaluateArguments& arguments) {
     write_trajectory(arguments.aligned,
                      aligned(result.rigid.reference_from_estimate, result.estimate));
   if (arguments.plot.empty()) return;
-  const std::string name = fs::path(arguments.estimate).filename().string();
-  const std::vector<Contestant> runs = {{name, result, result.rigid}};
+  const std::vector<Contestant> runs = {{name_of_run(arguments.estimate), result, result.rigid}};
   figures::write_figure(figures::evaluation_figure(runs), arguments.plot);
 }
 

@@ -129,18 +129,29 @@ void Pipeline::add_outputs(std::vector<OutputSetup> setups) {
                           stop_, times_);
 }
 
+void Pipeline::begin_outputs() {
+  for (OutputStage& output : outputs_) output.begin(controlled_run_);
+}
+
 FrameReportPtr Pipeline::push(Frame frame) {
   if (finished_ || feed_)
     throw Error(Fault::kUsage, "no frame can be pushed during run() or after finish()");
   throw_failure();
-  frame.index = pushed_ ? pushed_->index + 1 : 0;
+  const bool is_first = !pushed_;
+  frame.index = is_first ? 0 : pushed_->index + 1;
   if (frame.gray.empty() && !frame.bgr.empty() && frame.bgr.type() == CV_8UC3)
     cv::cvtColor(frame.bgr, frame.gray, cv::COLOR_BGR2GRAY);
   check_pushed(frame, pushed_.get(), options_.validates_fully());
   if (options_.validates_fully()) frame = with_read_only_images(std::move(frame));
   pushed_ = std::make_shared<const Frame>(std::move(frame));
   FrameReportPtr report;
-  keep_failure_of([&] { report = process(pushed_); });
+  keep_failure_of([&] {
+    if (is_first) {
+      controlled_run_->give_up_steering();
+      begin_outputs();
+    }
+    report = process(pushed_);
+  });
   throw_failure();
   return report;
 }
@@ -152,7 +163,7 @@ void Pipeline::run(std::stop_token stop) {
   const std::stop_callback by_caller(std::move(stop), request_stop);
   const std::stop_callback by_output(controlled_run_->stop_token(), request_stop);
   keep_failure_of([this] {
-    for (OutputStage& output : outputs_) output.begin(controlled_run_);
+    begin_outputs();
     feed_.emplace(std::move(source_), options_, *clock_, *controlled_run_, stop_, times_);
     while (const FramePtr frame = feed_->next()) process(frame);
   });

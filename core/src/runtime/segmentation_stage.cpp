@@ -11,7 +11,9 @@
 namespace stillpoint {
 namespace {
 
-constexpr double kJitter = 0.01;     // seconds, of the times of frames
+// The times of frames are irregular: so much earlier is in time.
+double with_tolerance(double seconds) { return seconds - std::min(0.01, seconds / 4); }
+
 constexpr int kMinObjectPixels = 1;  // segmenters that name no objects have all of them named
 
 /// The share of the image that one class has, at most.
@@ -75,7 +77,7 @@ SegmentationPtr SegmentationStage::labels_for(const FramePtr& frame) {
 }
 
 FramePtr SegmentationStage::take(FramePtr frame) {
-  if (frame) next_ = frame->time + options_.interval_seconds - kJitter;
+  if (frame) next_ = frame->time + with_tolerance(options_.interval_seconds);
   return frame;
 }
 
@@ -109,7 +111,7 @@ Segmentation SegmentationStage::labels_of(const Frame& frame) {
 void SegmentationStage::imitate_latency(const FramePtr& now) {
   if (!newest_.frame) return segment(take(std::exchange(waiting_, nullptr)));
   if (!running_) running_ = take(std::exchange(waiting_, nullptr));
-  if (!running_ || now->time - running_->time < options_.latency_seconds - kJitter) return;
+  if (!running_ || now->time - running_->time < with_tolerance(options_.latency_seconds)) return;
   segment(std::exchange(running_, take(std::exchange(waiting_, nullptr))));
 }
 

@@ -20,7 +20,7 @@ export class SteeringPanel {
   }
 
   /** Without a run. */
-  reset() { this.show({allowed: false, notes: -1}); }
+  reset() { this.show({allowed: false, steerable: false, notes: -1}); }
 
   take(state) {
     const isNews = this.state.notes >= 0 && state.notes > this.state.notes;  // of before, nobody needs to know
@@ -31,6 +31,7 @@ export class SteeringPanel {
   show(state) {
     this.state = state;
     byId('steering').hidden = !state.allowed;
+    for (const id of ['pause', 'step', 'end']) byId(id).hidden = !state.steerable;
     byId('paused').hidden = !state.paused;
     byId('pause').textContent = state.paused ? 'Go on' : 'Pause';
     byId('step').disabled = !state.paused;
@@ -46,7 +47,7 @@ export class SteeringPanel {
     const busy = event.target.closest('button, input, select, dialog') || event.ctrlKey || event.metaKey || event.altKey;
     if (busy || !this.state.allowed) return;
     const actions = {
-      ' ': () => this.pauseOrGoOn(),
+      ' ': () => this.state.steerable && this.pauseOrGoOn(),
       '.': () => this.state.paused && this.send(COMMANDS.step),
       m: () => this.state.map_file && this.send(COMMANDS.saveMap),
     };

@@ -212,11 +212,29 @@ TEST_P(LiveRunTest, AFailureOfBeginIsNamed) {
   EXPECT_EQ(fixture.output->finished, 1);
 }
 
-TEST_P(LiveRunTest, IsNotForFramesThatAProgramGives) {
+// It is shown, and its map saved, but nobody holds up the program.
+TEST_P(LiveRunTest, OfFramesThatAProgramGivesCannotBeSteered) {
   Engine engine = this->engine();
   engine.process(testing::make_frame(0));
+  ASSERT_TRUE(steering->run);
+  EXPECT_FALSE(steering->run->steerable());
+  {
+    const LiveRun::Pause pause = steering->run->pause();
+    EXPECT_TRUE(engine.process(testing::make_frame(1)));
+  }
+  steering->run->stop();
+  EXPECT_TRUE(engine.process(testing::make_frame(2)));
+  steering->run->save_map();
+  EXPECT_TRUE(fs::exists(map_file));
   engine.finish();
-  EXPECT_FALSE(steering->run);
+  EXPECT_EQ(steering->run->dense_map(), std::nullopt) << "after the end";
+}
+
+TEST_P(LiveRunTest, OfARecordingCanBeSteered) {
+  steering->on_begin = [&] { EXPECT_TRUE(steering->run->steerable()); };
+  Engine engine = this->engine();
+  engine.run();
+  EXPECT_TRUE(steering->run);
 }
 
 }  // namespace

@@ -35,8 +35,8 @@ struct KeyFrame {
   /// Covariance of the pose relative to the previous key frames, as in PoseUncertainty, when the
   /// landmarks alone did not constrain it; 0 otherwise, and in maps loaded from files.
   Matrix6d covariance = Matrix6d::Zero();
-  std::shared_ptr<const Camera> camera;
-  FeaturesPtr features;  ///< not null; without keypoints when the tracker has none
+  std::shared_ptr<const Camera> camera;  ///< that of the frame; features are in its pixels
+  FeaturesPtr features;                  ///< not null; without keypoints when the tracker has none
   std::vector<std::uint8_t> track_weights;  ///< per feature, as StaticWeights::track
   std::vector<std::uint8_t> map_weights;    ///< per feature, as StaticWeights::map
   std::vector<LandmarkId> landmarks;        ///< per feature, kNoId = none

@@ -17,6 +17,10 @@ class STILLPOINT_EXPORT LiveRun {
  public:
   virtual ~LiveRun();
 
+  /// Whether pause(), step() and stop() change anything. Not where a program gives the frames
+  /// itself (Engine::process()): it decides when the next one comes.
+  virtual bool steerable() const { return true; }
+
   /// Whoever has one keeps the run paused.
   using Pause = std::shared_ptr<const void>;
   /// No frame begins before all pauses are gone; the one under way is finished, and mapping goes

@@ -89,11 +89,10 @@ struct RunSummary {
 class STILLPOINT_EXPORT Output {
  public:
   static constexpr const char* kKind = "output";
-  static constexpr std::uint32_t kApi = 8;  ///< see kPluginApi
+  static constexpr std::uint32_t kApi = 9;  ///< see kPluginApi
   virtual ~Output();
 
-  /// Before the first frame of Engine::run(), on thread 1; not called when frames are pushed. The
-  /// pointer may be kept.
+  /// Before the first frame, on thread 1. The pointer may be kept.
   virtual void begin(const std::shared_ptr<LiveRun>&) {}
   /// For viewers: frames may be left out when this output is too slow, instead of tracking waiting
   /// for it. `when_full` in the pipeline file has the last word.

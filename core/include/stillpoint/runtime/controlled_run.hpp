@@ -1,6 +1,7 @@
 // The run as outputs reach it, and where tracking waits while it is paused.
 #pragma once
 
+#include <atomic>
 #include <condition_variable>
 #include <filesystem>
 #include <functional>
@@ -28,6 +29,7 @@ class ControlledRun final : public LiveRun, public std::enable_shared_from_this<
   ControlledRun(Reach reach, std::filesystem::path map_file)
       : map_file_(std::move(map_file)), reach_(std::move(reach)) {}
 
+  bool steerable() const override { return steerable_; }
   Pause pause() override;
   void step() override;
   void stop() override { stop_.request_stop(); }
@@ -36,6 +38,8 @@ class ControlledRun final : public LiveRun, public std::enable_shared_from_this<
   std::filesystem::path map_file() const override { return map_file_; }
   void save_map() override;
 
+  /// Before outputs have it, when a program gives the frames.
+  void give_up_steering() { steerable_ = false; }
   /// Requested by stop().
   std::stop_token stop_token() const { return stop_.get_token(); }
   bool paused() const;
@@ -51,6 +55,7 @@ class ControlledRun final : public LiveRun, public std::enable_shared_from_this<
 
   const std::filesystem::path map_file_;
   std::stop_source stop_;
+  std::atomic<bool> steerable_ = true;
 
   mutable std::mutex mutex_;
   std::condition_variable_any changed_;

@@ -43,6 +43,7 @@ class Pipeline {
 
  private:
   void add_outputs(std::vector<OutputSetup> setups);
+  void begin_outputs();
   FrameReportPtr process(const FramePtr& frame);
   void add(NewKeyFrame keyframe);
   void record(const FrameReportPtr& report);

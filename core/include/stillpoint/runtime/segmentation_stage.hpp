@@ -14,8 +14,9 @@ namespace stillpoint {
 
 /// Schedule `wait`: every frame has its own labels, as in the paper. `latest`: the newest finished
 /// labels are brought to the current frame by the propagator; between two frames that the network
-/// takes lie `interval_seconds` at least, and of those that come while it is busy only the newest
-/// waits. The first labels are always waited for, because the map begins with them.
+/// takes lie `interval_seconds`, give or take the irregularity of time stamps, and of those that
+/// come while it is busy only the newest waits. The first labels are always waited for, because the
+/// map begins with them.
 ///
 /// `latest` inline imitates a network that takes `latency_seconds` per image, by the times of the
 /// frames, so that its effect can be studied without the clock.
