@@ -3,9 +3,10 @@
 namespace stillpoint::orb_slam {
 namespace {
 
+// Those of ORB-SLAM (VI-B and VI-E), but that a second observation is enough where it asks for a
+// third: depth gives a landmark its place from the first one on.
 constexpr double kMinFoundRatio = 0.25;
-constexpr KeyFrameId kTrialKeyFrames =
-    2;  // key frames within which a second observation is required
+constexpr KeyFrameId kTrialKeyFrames = 2;  // within which the second one must come
 constexpr int kMinOtherObservers = 3;
 
 enum class Verdict { kRemove, kKeep, kUndecided };

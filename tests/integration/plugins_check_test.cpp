@@ -113,7 +113,7 @@ constexpr Forgetful kForgetful[] = {
     {"map_backend", "occupancy", kUsual, "a point of occupied() has occupancy 100"},
     {"output", "ids", kLargeIds, "no such key frame"},
     {"output", "steers", kUsual, "begin failed: the program has named no file"},
-    {"output", "begin", "frames that a program gives", "no run"},
+    {"output", "holds", "frames that a program gives", "it cannot be held up"},
     {"output", "one_frame", "a single frame", "no way to speak of"},
     {"output", "no_frame", kNoFrame, "no frame to show"},
     {"output", "replaces", kNoFrame, "a run without a frame replaced frames.txt"},
