@@ -10,6 +10,9 @@ namespace {
 constexpr std::size_t kCandidates = 5;  // per frame, two of them around the last known place
 constexpr std::size_t kNewPlaces = 50;  // key frames added to the index per frame; 15 ms
 constexpr int kMinRelocalisationInliers = 30;
+constexpr double kSupportNear = 0.1, kSupportFarAway = 0.2;
+constexpr double kReachMetres = 1.0;
+constexpr double kReachSpeed = 2.0;  // m/s
 
 }  // namespace
 
@@ -38,6 +41,10 @@ bool Relocaliser::find(ObservedFrame& frame, const SparseMap& map, const Accept&
   }
   frame.clear_matches();
   return false;
+}
+
+double required_support(double metres, double seconds) {
+  return metres <= kReachMetres + kReachSpeed * seconds ? kSupportNear : kSupportFarAway;
 }
 
 }  // namespace stillpoint::orb_slam

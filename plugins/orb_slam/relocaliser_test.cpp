@@ -92,6 +92,11 @@ TEST_F(RelocaliserTest, UnknownPlaceIsNeverFound) {
   EXPECT_EQ(frame.matched(), 0);
 }
 
+TEST(RequiredSupport, IsLargerOutOfReach) {
+  EXPECT_LT(required_support(0.9, 0), required_support(1.1, 0));
+  EXPECT_EQ(required_support(1.1, 1), required_support(0.9, 0)) << "a second later it may be there";
+}
+
 TEST_F(RelocaliserTest, WithoutBeginItStillFinds) { EXPECT_GT(calls_to_find(8), 0); }
 
 }  // namespace

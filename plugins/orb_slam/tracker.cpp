@@ -8,6 +8,7 @@
 #include "orb_slam/landmark_geometry.hpp"
 #include "orb_slam/orb_keyframe.hpp"
 #include "orb_slam/pose_uncertainty.hpp"
+#include "orb_slam/tracked_features.hpp"
 
 namespace stillpoint::orb_slam {
 namespace {
@@ -20,26 +21,7 @@ constexpr double kMinMotionShare = 0.5;
 constexpr int kManyFeatures = 500;
 constexpr double kMinMatchedShare = 0.1;
 constexpr double kRecentSeconds = 1.0;  // afterwards the camera may be anywhere
-// A lost camera is found where so large a share of the landmarks that it should see are inliers:
-// objects that have been moved would be found with less. Out of reach of the last pose, where
-// somebody may have carried it, more are needed.
-constexpr double kMinSupportNear = 0.1, kMinSupportFarAway = 0.2;
-constexpr double kReachMetres = 1.0;
-constexpr double kReachSpeed = 2.0;  // m/s
-constexpr double kSettled = 0.2;     // seconds without a key frame after relocalisation
-
-std::vector<TrackedFeature> describe(const ObservedFrame& frame) {
-  std::vector<TrackedFeature> tracked(frame.features->size());
-  for (std::uint32_t i = 0; i < tracked.size(); ++i) {
-    tracked[i].pixel = frame.features->keypoints[i].pt;
-    if (!frame.usable(i))
-      tracked[i].use = TrackedFeature::Use::kMoving;
-    else if (frame.landmarks[i] != kNoId)
-      tracked[i].use =
-          frame.outlier[i] ? TrackedFeature::Use::kOutlier : TrackedFeature::Use::kInlier;
-  }
-  return tracked;
-}
+constexpr double kSettled = 0.2;        // seconds without a key frame after relocalisation
 
 /// Its features, with their depths.
 struct PreparedOrbFrame final : PreparedFrame {
@@ -173,14 +155,12 @@ bool OrbTracker::relocalise(const SparseMap& map) {
   return true;
 }
 
-// A thing that has been moved looks as it did, and matches where it was.
 bool OrbTracker::is_supported(const SparseMap& map) const {
   const Eigen::Vector3d way =
       current_.world_from_camera.translation() - last_.world_from_camera.translation();
-  const bool in_reach =
-      !last_.frame || way.norm() <= kReachMetres + kReachSpeed * seconds_since_last();
-  return inliers_ >= (in_reach ? kMinSupportNear : kMinSupportFarAway) *
-                         count_unoccluded(current_, map, visible_);
+  const double least =
+      last_.frame ? required_support(way.norm(), seconds_since_last()) : required_support(0, 0);
+  return inliers_ >= least * count_unoccluded(current_, map, visible_);
 }
 
 bool OrbTracker::track_local_map(const SparseMap& map) {
@@ -263,7 +243,7 @@ TrackResult OrbTracker::tracked(const SparseMap& map, TrackHints hints) {
   result.inliers = inliers_;
   result.uncertainty = last_uncertainty_ = uncertainty(map);
   result.depth_registered = depth_registration_.refined();
-  result.tracked = describe(current_);
+  result.tracked = tracked_features(current_);
 
   TrackingQuality quality = tracking_quality(
       current_, map, inliers_, static_cast<int>(current_.frame->index - last_keyframe_index_),
@@ -322,7 +302,7 @@ TrackResult OrbTracker::not_tracked(TrackState state) {
   TrackResult result{.state = state};
   result.features = static_cast<int>(current_.features->size());
   current_.clear_matches();
-  result.tracked = describe(current_);
+  result.tracked = tracked_features(current_);
   if (state_ == TrackState::kTracking) relocaliser_.begin(last_.reference);
   state_ = state;
   velocity_.reset();

@@ -1,66 +1,11 @@
 #include "orb_slam/tracker.hpp"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include "orb_slam/local_mapper.hpp"
-#include "orb_slam/test_scene.hpp"
-#include "orb_slam/test_surfaces.hpp"
-#include "orb_slam/test_world.hpp"
+#include "orb_slam/tracker_fixture.hpp"
 
 namespace stillpoint::orb_slam {
 namespace {
 
 using Use = TrackedFeature::Use;
-
-// Tracker and mapper in turns, as `mode: inline` runs them.
-class TrackerTest : public testing::Test {
- protected:
-  TrackResult step(FramePtr frame, const StaticWeights& weights = {}) {
-    const auto id = static_cast<KeyFrameId>(map_.keyframe_id_end());
-    TrackResult result =
-        tracker_.track(tracker_.prepare(std::move(frame)), weights, map_, {.next_keyframe = id});
-    if (result.keyframe) {
-      EXPECT_EQ(result.keyframe->id, id);
-      map_ = mapper_.insert(std::move(map_), *result.keyframe);
-      EXPECT_EQ(map_.check(), std::nullopt);
-      map_ = mapper_.refine(std::move(map_), id, {});
-      EXPECT_EQ(map_.check(), std::nullopt);
-    }
-    return result;
-  }
-  TrackResult step(const Pose& pose, const StaticWeights& weights = {}) {
-    return step(scene_.render(pose, next_++), weights);
-  }
-  static void expect_at(const TrackResult& result, const Pose& truth, double metres = 0.006,
-                        double radians = 0.003) {
-    ASSERT_EQ(result.state, TrackState::kTracking);
-    EXPECT_LT(metres_between(result.world_from_camera, truth), metres);
-    EXPECT_LT(radians_between(result.world_from_camera, truth), radians);
-  }
-  void track_along(const std::function<Pose(double)>& path, int frames) {
-    for (int i = 0; i < frames; ++i) {
-      SCOPED_TRACE(i);
-      expect_at(step(path(static_cast<double>(i) / (frames - 1))), path(1.0 * i / (frames - 1)));
-    }
-  }
-  std::vector<Pose> anew(OrbTracker::Options options, const StaticWeights& weights = {}) {
-    tracker_ = OrbTracker{options};
-    mapper_ = OrbLocalMapper{OrbLocalMapper::Options{}, StageContext{}};
-    map_ = {};
-    next_ = 0;
-    std::vector<Pose> poses;
-    for (int i = 0; i < 8; ++i)
-      poses.push_back(step(pose_at({0.05 * i, 0, 0}), weights).world_from_camera);
-    return poses;
-  }
-
-  TestScene scene_;
-  OrbTracker tracker_{OrbTracker::Options{}};
-  OrbLocalMapper mapper_{OrbLocalMapper::Options{}, StageContext{}};
-  SparseMap map_;
-  std::uint32_t next_ = 0;
-};
 
 TEST_F(TrackerTest, FollowsTranslation) {
   track_along([](double t) { return pose_at({0.6 * t, -0.2 * t, 0.4 * t}); }, 25);
@@ -134,23 +79,6 @@ TEST_F(TrackerTest, DepthGivesThePoseInAPlainCorner) {
 }
 
 // A lens that is covered for a moment.
-TEST_F(TrackerTest, DepthTracksOnAfterAMomentWithoutIt) {
-  const auto truth = [](int i) { return pose_at({-0.01 * i, 0.003 * i, 0.006 * i}); };
-  const auto see = [&](int i, bool covered) {
-    auto frame = std::make_shared<Frame>(
-        *render_planes({kAhead, kRight, kFloor}, truth(i), static_cast<std::uint32_t>(i), 0.002));
-    if (covered) frame->depth.setTo(0);
-    return step(frame);
-  };
-  for (int i = 0; i < 10; ++i) expect_at(see(i, false), truth(i));
-  for (int i = 10; i < 13; ++i) EXPECT_EQ(see(i, true).state, TrackState::kLost);
-  for (int i = 13; i < 20; ++i) {
-    SCOPED_TRACE(i);
-    expect_at(see(i, false), truth(i));
-  }
-  for (int i = 20; i < 55; ++i) see(i, true);
-  EXPECT_EQ(see(55, false).state, TrackState::kLost) << "after a second it may be anywhere";
-}
 
 TEST_F(TrackerTest, ASlideAlongAWallIsReported) {
   scene_ = TestScene({{-4, -3, 8, 6, 3.0}});
@@ -195,68 +123,6 @@ TEST_F(TrackerTest, SurfacesOfNoWeightDoNotHold) {
 TEST_F(TrackerTest, BlackFirstFrameWaits) {
   EXPECT_EQ(step(scene_.black(next_++)).state, TrackState::kWaiting);
   expect_at(step(Pose::Identity()), Pose::Identity());
-}
-
-TEST_F(TrackerTest, BlackFrameIsLostAndThenFoundAgain) {
-  for (int i = 0; i < 5; ++i) expect_at(step(pose_at({0.02 * i, 0, 0})), pose_at({0.02 * i, 0, 0}));
-  for (int i = 0; i < 3; ++i) {
-    const TrackResult result = step(scene_.black(next_++));
-    EXPECT_EQ(result.state, TrackState::kLost);
-    EXPECT_FALSE(result.keyframe);
-  }
-  for (int i = 5; i < 10; ++i) {
-    SCOPED_TRACE(i);
-    expect_at(step(pose_at({0.02 * i, 0, 0})), pose_at({0.02 * i, 0, 0}));
-  }
-}
-
-TEST_F(TrackerTest, LostFarAwayIsFoundWhereTheMapIsKnown) {
-  for (int i = 0; i < 20; ++i) step(pose_at({0.05 * i, 0, 0}));
-  EXPECT_EQ(step(scene_.black(next_++)).state, TrackState::kLost);
-  TrackResult result;
-  for (int i = 0; i < 20 && result.state != TrackState::kTracking; ++i)
-    result = step(pose_at({0.03, 0.02, 0}));
-  expect_at(result, pose_at({0.03, 0.02, 0}));
-}
-
-TEST_F(TrackerTest, AThingThatHasBeenMovedIsNoPlace) {
-  for (int i = 0; i < 8; ++i) step(pose_at({0.02 * i, 0, 0}));
-  step(scene_.black(next_++));
-  // Only the nearer of the two things is left, half a metre farther to the right.
-  const Panel nowhere{100, 100, 1, 1, 3};
-  const TestScene moved({nowhere, nowhere, {0.9, -0.2, 0.9, 1.2, 1.8}});
-  for (int i = 0; i < 5; ++i)
-    EXPECT_EQ(step(moved.render(pose_at({0.5, 0, 0}), next_++)).state, TrackState::kLost) << i;
-  expect_at(step(pose_at({0.1, 0, 0})), pose_at({0.1, 0, 0}));
-}
-
-TEST_F(TrackerTest, RelocalisationMustHoldBeforeTheMapGrows) {
-  for (int i = 0; i < 8; ++i) step(pose_at({0.02 * i, 0, 0}));
-  step(scene_.black(next_++));
-  const Pose aside = pose_at({0.9, 0, 0});  // half of what is in view is not in the map yet
-  const std::uint32_t found = next_;
-  bool has_keyframe = false;
-  for (int i = 0; i < 12; ++i) {
-    const bool early = next_ - found < 6;  // 0.2 s at 30 Hz
-    const TrackResult result = step(aside);
-    expect_at(result, aside);
-    EXPECT_FALSE(early && result.keyframe) << i;
-    has_keyframe |= result.keyframe.has_value();
-  }
-  EXPECT_TRUE(has_keyframe);
-}
-
-TEST_F(TrackerTest, UnknownViewIsLost) {
-  for (int i = 0; i < 5; ++i) step(pose_at({0.02 * i, 0, 0}));
-  EXPECT_EQ(step(TestScene({{-6, -6, 15, 15, 2.7}}).render(pose_at({3, 3, 0}), next_++)).state,
-            TrackState::kLost);
-}
-
-TEST_F(TrackerTest, JumpIsFoundByAppearance) {
-  for (int i = 0; i < 6; ++i) step(pose_at({0.01 * i, 0, 0}));
-  const Pose jump = pose_at({0.25, 0.1, 0.1}, {0.05, 0.15, 0.2});
-  expect_at(step(jump), jump);
-  expect_at(step(pose_at({0.01, 0, 0})), pose_at({0.01, 0, 0}));
 }
 
 TEST_F(TrackerTest, FeaturesOfNoWeightAreNotUsed) {
@@ -331,6 +197,7 @@ TEST_F(TrackerTest, EverythingMovingAtTheStartWaits) {
 }
 
 // Landmarks could not be made of them.
+
 TEST_F(TrackerTest, WhatMustNotBeMappedDoesNotBeginTheMap) {
   StaticWeights weights;
   weights.map = cv::Mat(480, 640, CV_8UC1, cv::Scalar(0));
