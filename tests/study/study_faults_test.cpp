@@ -1,6 +1,7 @@
 // What is wrong with a study is said before anything runs, with its place.
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 
@@ -35,6 +36,20 @@ TEST_F(StudyFaults, AGridThatIsNoneIsRefusedWithItsPlace) {
   EXPECT_THAT(refusal("{tracker.features: [[1]]}"),
               HasSubstr("a value of a grid is a number or a word"));
   EXPECT_THAT(refusal("{tracker.featurs: [1]}"), HasSubstr("did you mean 'features'?"));
+}
+
+// As of the recordings of real_people, of which there are 25.
+TEST_F(StudyFaults, AVariableThatIsNotSetIsSaidOnce) {
+  const Outcome outcome = ablate(
+      "version: 1\n"
+      "sequences:\n"
+      "  - {name: a, dataset: '${STILLPOINT_TEST_UNSET}/a'}\n"
+      "  - {name: b, dataset: '${STILLPOINT_TEST_UNSET}/b'}\n"
+      "variants: [{name: v, pipeline: orb_baseline}]\n");
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_THAT(outcome.err, HasSubstr("study.yaml:3:24: error: environment variable "
+                                     "'STILLPOINT_TEST_UNSET' is not set; set it"));
+  EXPECT_EQ(std::ranges::count(outcome.err, '\n'), 1) << outcome.err;
 }
 
 TEST_F(StudyFaults, NamesEveryFaultOfPublishedFigures) {

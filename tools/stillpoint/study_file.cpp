@@ -61,7 +61,10 @@ StudyFile load_study(const std::string& name_or_file, Registry& registry) {
   StudyFile result{.file = find_config(name_or_file, "studies"), .study = {}, .effective_yaml = {}};
   FaultList faults;
   ConfigNode tree = load_tree(result.file, faults);
-  substitute_environment(tree, faults);
+  FaultList unset;
+  substitute_environment(tree, unset);
+  faults.add(unset);
+  if (!unset.empty()) faults.throw_if_any();  // each path with it would be one more fault
   result.effective_yaml = "version: 1\n" + read_options(tree, result.study, faults);
   const fs::path folder = fs::absolute(result.file).parent_path();
   for (Sequence& sequence : result.study.sequences) {

@@ -16,6 +16,10 @@ void FaultList::add(const FaultList& others) {
   faults_.insert(faults_.end(), others.faults_.begin(), others.faults_.end());
 }
 
+void FaultList::add_once(const Location& where, const std::string& problem) {
+  if (std::ranges::find(faults_, problem, &Fault::problem) == faults_.end()) add(where, problem);
+}
+
 void FaultList::throw_if_any() const {
   if (faults_.empty()) return;
   std::vector<Fault> sorted = faults_;

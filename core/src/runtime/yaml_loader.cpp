@@ -254,7 +254,8 @@ std::string substituted(const std::string& text, const Location& where, FaultLis
     if (const char* value = std::getenv(name.c_str()))
       result += value;
     else
-      faults.add(where, "environment variable '" + name + "' is not set");
+      faults.add_once(where, "environment variable '" + name +
+                                 "' is not set; set it, or write a value in its place");
     position = end + 1;
   }
 }

@@ -13,6 +13,8 @@ class STILLPOINT_EXPORT FaultList {
  public:
   void add(const Location& where, const std::string& problem);
   void add(const FaultList& others);
+  /// Where many places have the same fault, the first one says it.
+  void add_once(const Location& where, const std::string& problem);
   bool empty() const { return faults_.empty(); }
 
   /// Throws ConfigError with one line "where: error: problem" per fault, in the order of files,
