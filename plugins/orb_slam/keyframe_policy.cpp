@@ -13,12 +13,11 @@ namespace {
 // Inliers, of the matches of the reference: with fewer, tracking may be lost before mapping is
 // free.
 constexpr double kUrgentRatio = 0.25;
-// Frames between two key frames where depth gives the pose: unstable corners would ask for one
-// every time.
-constexpr int kMinFramesBetweenByDepth = 5;
+// Between two key frames where depth gives the pose: unstable corners would ask for one every time.
+constexpr double kMinSecondsBetweenByDepth = 0.15;
 // Likewise while another one waits: in a fast turn near points run out every time, and the queue
 // would fill and hold up tracking.
-constexpr int kMinFramesBetweenWhileWaiting = 3;
+constexpr double kMinSecondsBetweenWhileWaiting = 0.08;
 
 // Landmarks of the reference key frame that others observe as well; in a young map, all of them.
 int established_landmarks(const KeyFrame& keyframe, const SparseMap& map) {
@@ -47,11 +46,11 @@ double motion_since(const KeyFrame& reference, const ObservedFrame& frame) {
 }  // namespace
 
 void KeyFrameOptions::visit(OptionVisitor& v) {
-  v("keyframe_max_frames", max_frames_between,
-    {.min = 1,
-     .unit = "frames",
-     .help = "frames since the last key frame from which a new one is made even while another "
-             "waits for local mapping"});
+  v("keyframe_max_seconds", max_seconds_between,
+    {.min = 0,
+     .unit = "s",
+     .help = "time since the last key frame from which a new one is made even while another waits "
+             "for local mapping"});
   v("keyframe_tracked_ratio", min_tracked_ratio,
     {.min = 0,
      .max = 1,
@@ -83,8 +82,8 @@ void KeyFrameOptions::visit(OptionVisitor& v) {
 }
 
 TrackingQuality tracking_quality(const ObservedFrame& frame, const SparseMap& map, int inliers,
-                                 int frames_since_last, const KeyFrameOptions& options) {
-  TrackingQuality quality{.inliers = inliers, .frames_since_last = frames_since_last};
+                                 double seconds_since_last, const KeyFrameOptions& options) {
+  TrackingQuality quality{.inliers = inliers, .seconds_since_last = seconds_since_last};
   if (const KeyFrame* reference = map.keyframe(frame.reference)) {
     quality.reference_matches = established_landmarks(*reference, map);
     quality.motion = motion_since(*reference, frame);
@@ -104,7 +103,7 @@ TrackingQuality tracking_quality(const ObservedFrame& frame, const SparseMap& ma
 bool needs_keyframe(const TrackingQuality& q, TrackHints hints, const KeyFrameOptions& options) {
   const bool needs_close =
       q.close_tracked < options.min_close && q.close_untracked > options.max_close_untracked;
-  if (q.depth_registered) return needs_close && q.frames_since_last >= kMinFramesBetweenByDepth;
+  if (q.depth_registered) return needs_close && q.seconds_since_last >= kMinSecondsBetweenByDepth;
   if (q.inliers < options.min_inliers) return false;
   // If the camera has not moved, landmarks are missing because a person occludes them.
   const double least =
@@ -113,8 +112,8 @@ bool needs_keyframe(const TrackingQuality& q, TrackHints hints, const KeyFrameOp
   if (!needs_close && !view_changed) return false;
   const bool nearly_lost = q.inliers < kUrgentRatio * q.reference_matches;
   const bool urgent =
-      nearly_lost || (needs_close && q.frames_since_last >= kMinFramesBetweenWhileWaiting);
-  return urgent || q.frames_since_last >= options.max_frames_between || !hints.mapping_waiting;
+      nearly_lost || (needs_close && q.seconds_since_last >= kMinSecondsBetweenWhileWaiting);
+  return urgent || q.seconds_since_last >= options.max_seconds_between || !hints.mapping_waiting;
 }
 
 }  // namespace stillpoint::orb_slam

@@ -8,7 +8,7 @@
 namespace stillpoint::orb_slam {
 
 struct KeyFrameOptions {
-  int max_frames_between = 30;
+  double max_seconds_between = 1;
   double min_tracked_ratio = 0.8;
   double moved = 0.02;  // as TrackingQuality::motion
   double moved_tracked_ratio = 0.9;
@@ -26,13 +26,13 @@ struct TrackingQuality {
   int reference_matches = 0;  ///< landmarks the reference key frame sees, of those well established
   int close_tracked = 0;      ///< features with near depth and an inlier landmark
   int close_untracked = 0;    ///< features with near depth and none, which could become one
-  int frames_since_last = 0;  ///< since the last key frame
+  double seconds_since_last = 0;  ///< since the last key frame of this recording
   double motion = 0;  ///< since the reference: translation in median depths + rotation in radians
   bool depth_registered = false;  ///< the pose does not depend on landmarks
 };
 
 TrackingQuality tracking_quality(const ObservedFrame& frame, const SparseMap& map, int inliers,
-                                 int frames_since_last, const KeyFrameOptions& options);
+                                 double seconds_since_last, const KeyFrameOptions& options);
 
 bool needs_keyframe(const TrackingQuality& quality, TrackHints hints,
                     const KeyFrameOptions& options);

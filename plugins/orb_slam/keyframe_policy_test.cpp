@@ -15,7 +15,7 @@ TrackingQuality good(const KeyFrameOptions& options) {
           .reference_matches = 400,
           .close_tracked = options.min_close + 100,
           .close_untracked = 0,
-          .frames_since_last = 3};
+          .seconds_since_last = 0.1};
 }
 
 TEST(NeedsKeyFrame, NotWhileTheViewIsKnown) {
@@ -54,7 +54,7 @@ TEST(NeedsKeyFrame, WhenNearPointsRunOut) {
   quality.close_untracked = options.max_close_untracked + 1;
   EXPECT_TRUE(needs_keyframe(quality, kIdle, options));
   EXPECT_TRUE(needs_keyframe(quality, kBusy, options)) << "it is urgent";
-  quality.frames_since_last = 2;
+  quality.seconds_since_last = 0.07;
   EXPECT_TRUE(needs_keyframe(quality, kIdle, options));
   EXPECT_FALSE(needs_keyframe(quality, kBusy, options)) << "or the queue would fill";
 }
@@ -65,7 +65,7 @@ TEST(NeedsKeyFrame, NeverFromAPoorPose) {
   quality.inliers = options.min_inliers - 1;
   quality.close_tracked = 0;
   quality.close_untracked = 500;
-  quality.frames_since_last = 1000;
+  quality.seconds_since_last = 1000;
   EXPECT_FALSE(needs_keyframe(quality, kIdle, options));
 }
 
@@ -74,9 +74,9 @@ TEST(NeedsKeyFrame, BusyMapperIsSparedUnlessItIsUrgentOrLongAgo) {
   TrackingQuality quality = good(options);
   quality.inliers = static_cast<int>(options.min_tracked_ratio * quality.reference_matches) - 5;
   EXPECT_FALSE(needs_keyframe(quality, kBusy, options));
-  quality.frames_since_last = options.max_frames_between;
+  quality.seconds_since_last = options.max_seconds_between;
   EXPECT_TRUE(needs_keyframe(quality, kBusy, options));
-  quality.frames_since_last = 1;
+  quality.seconds_since_last = 0.03;
   quality.inliers = 20;
   EXPECT_TRUE(needs_keyframe(quality, kBusy, options)) << "tracking is nearly lost";
 }
@@ -108,9 +108,9 @@ TEST_F(TrackingQualityTest, CountsNearPointsByWhetherTheyAreTracked) {
     }
   }
   ASSERT_GT(close, 25);
-  const TrackingQuality quality = tracking_quality(frame_, known_.map, 123, 7, options_);
+  const TrackingQuality quality = tracking_quality(frame_, known_.map, 123, 0.7, options_);
   EXPECT_EQ(quality.inliers, 123);
-  EXPECT_EQ(quality.frames_since_last, 7);
+  EXPECT_EQ(quality.seconds_since_last, 0.7);
   EXPECT_EQ(quality.close_untracked, 15) << "without landmark, or an outlier";
   EXPECT_EQ(quality.close_tracked, close - 21) << "what cannot be mapped counts nowhere";
 }

@@ -5,13 +5,15 @@
 
 #include "orb_slam/landmark_geometry.hpp"
 #include "orb_slam/observed_frame.hpp"
+#include "stillpoint/support/pixel_scale.hpp"
 
 namespace stillpoint::orb_slam {
 namespace {
 
 constexpr double kRecent = 5.0;     // seconds
 constexpr double kMinShare = 0.02;  // of the image: less is noise of masks and depth
-constexpr int kDisocclusion = 8;    // px of background that may be disoccluded until the next frame
+// px of 640 x 480: background that may be disoccluded until the next frame.
+constexpr double kDisocclusion = 8;
 
 cv::Mat unmapped(const StaticWeights& weights) {
   cv::Mat used;
@@ -21,7 +23,8 @@ cv::Mat unmapped(const StaticWeights& weights) {
     used = used.empty() ? mapped : cv::Mat(used & mapped);
   }
   if (used.empty()) return {};
-  cv::dilate(used, used, cv::Mat::ones(2 * kDisocclusion + 1, 2 * kDisocclusion + 1, CV_8U));
+  const int side = 2 * cvRound(kDisocclusion * pixel_scale(used.size())) + 1;
+  cv::dilate(used, used, cv::Mat::ones(side, side, CV_8U));
   return used == 0;
 }
 

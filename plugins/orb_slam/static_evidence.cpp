@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <vector>
 
+#include "stillpoint/support/pixel_scale.hpp"
+
 namespace stillpoint::orb_slam {
 namespace {
 
@@ -12,7 +14,8 @@ constexpr double kFreeSpaceMargin = 0.2;   // relative: measured depth beyond th
 constexpr double kOcclusionMargin = 0.1;   // relative: measured depth before the landmark
 constexpr double kRate = 30;               // Hz, that the log-odds of a frame are meant for
 constexpr double kLeastShare = 0.5, kMostShare = 3;  // of them, at other rates and after gaps
-constexpr int kEdgeRadius = 2;  // px; free space beside a depth discontinuity proves nothing
+// px of 640 x 480; free space beside a depth discontinuity proves nothing.
+constexpr double kEdgeRadius = 2;
 
 enum class Visibility { kOpen, kOccluded, kFreeSpace };
 
@@ -22,14 +25,14 @@ Visibility visibility(const Frame& frame, const Eigen::Vector3d& in_camera) {
   const Eigen::Vector2d at = frame.camera->project(in_camera);
   const cv::Point pixel(cvRound(at.x()), cvRound(at.y()));
   const cv::Mat& depth = frame.depth;
-  const cv::Rect inside(kEdgeRadius, kEdgeRadius, depth.cols - 2 * kEdgeRadius,
-                        depth.rows - 2 * kEdgeRadius);
+  const int radius = cvRound(kEdgeRadius * pixel_scale(depth.size()));
+  const cv::Rect inside(radius, radius, depth.cols - 2 * radius, depth.rows - 2 * radius);
   if (!inside.contains(pixel)) return Visibility::kOpen;
   const float middle = depth.at<float>(pixel);
   if (middle > 0 && middle < (1 - kOcclusionMargin) * in_camera.z()) return Visibility::kOccluded;
-  for (int y = pixel.y - kEdgeRadius; y <= pixel.y + kEdgeRadius; ++y) {
+  for (int y = pixel.y - radius; y <= pixel.y + radius; ++y) {
     const auto* row = depth.ptr<float>(y);
-    for (int x = pixel.x - kEdgeRadius; x <= pixel.x + kEdgeRadius; ++x)
+    for (int x = pixel.x - radius; x <= pixel.x + radius; ++x)
       if (row[x] <= (1 + kFreeSpaceMargin) * in_camera.z()) return Visibility::kOpen;
   }
   return Visibility::kFreeSpace;

@@ -246,8 +246,7 @@ TrackResult OrbTracker::tracked(const SparseMap& map, TrackHints hints) {
   result.tracked = tracked_features(current_);
 
   TrackingQuality quality = tracking_quality(
-      current_, map, inliers_, static_cast<int>(current_.frame->index - last_keyframe_index_),
-      options_.keyframe);
+      current_, map, inliers_, current_.frame->time - last_keyframe_at_, options_.keyframe);
   quality.depth_registered = depth_registration_.refined();
   const bool unknown_view = (bridged_ || depth_registration_.shows_new_surfaces()) &&
                             last_keyframe_ == kNoId;  // the last one is in the map
@@ -329,7 +328,7 @@ KeyFrame OrbTracker::make_keyframe(KeyFrameId id) {
   std::sort(keyframe.evidence.begin(), keyframe.evidence.end(),
             [](const auto& a, const auto& b) { return a.landmark < b.landmark; });
   evidence_.clear();
-  last_keyframe_index_ = current_.frame->index;
+  last_keyframe_at_ = current_.frame->time;
   if (options_.register_depth) depth_registration_.add_keyframe(keyframe.id);
   return keyframe;
 }

@@ -71,7 +71,7 @@ class OrbTracker final : public Tracker {
 
   std::optional<double> relocalised_at_;      // seconds, the last time; none: never
   std::optional<KeyFrameId> first_keyframe_;  // of this recording: others came with the map
-  std::uint32_t last_keyframe_index_ = 0;     // frame index of the newest key frame
+  double last_keyframe_at_ = -1e300;          // seconds, the newest key frame of this recording
   std::vector<LandmarkId> visible_;           // landmarks that should be seen in this frame
   EvidenceByLandmark evidence_;
 };
