@@ -23,6 +23,7 @@ class InABrowser : public ::testing::Test {
     SKIP_WITHOUT_BROWSER();
     StageContext context = testing::test_context();
     context.output_directory = folder;
+    run->dense = {{.position = {0, 0, 1}}};
     output =
         std::make_unique<WebOutput>(WebOutput::Options{.port = 0, .record = "live.html"}, context);
     output->begin(run);
@@ -55,6 +56,46 @@ TEST_F(InABrowser, TheRunIsShownAndPausedByAClick) {
   const auto calls = run->calls();
   ASSERT_FALSE(calls.empty());
   EXPECT_EQ(calls.front(), "pause");
+}
+
+// A second after the page is there, it has asked for what is new, and nothing is.
+constexpr const char* kChooseDenseMap = R"((() => {
+  const byId = (id) => document.getElementById(id);
+  const kinds = (message) => {
+    const view = new DataView(message), found = [];
+    for (let at = 1; at < view.byteLength; at += 5 + view.getUint32(at + 1, true))
+      found.push(view.getUint8(at));
+    return found;
+  };
+  if (byId('legend').children.length === 0) return false;
+  window.since ??= performance.now();
+  if (performance.now() - window.since < 1000) return false;
+  if (!window.realSend) {
+    window.realSend = WebSocket.prototype.send;
+    WebSocket.prototype.send = function(bytes) {
+      const look = ({data}) => { window.voxels ||= kinds(data).includes(16); };
+      this.addEventListener('message', look, {once: true});
+      realSend.call(this, bytes);
+    };
+    byId('surfaces').value = 'voxels';
+    byId('surfaces').dispatchEvent(new Event('change'));
+  }
+  return window.voxels;
+})())";
+
+TEST_F(InABrowser, TheDenseMapComesWhenItIsChosenThoughNothingElseIsNew) {
+  document_in_browser(output->url(), kChooseDenseMap);
+}
+
+TEST_F(InABrowser, APageThatIsNotLetInSaysWhy) {
+  const WebOutput guarded({.port = 0, .token = "s3cret", .viewers = 1}, testing::test_context());
+  const TestViewer first(port_of(guarded.url()), "/live?token=s3cret");
+  document_in_browser(guarded.url(), R"((() => {
+    const said = document.getElementById('connection').textContent;
+    if (said === 'as many viewers as the run allows')
+      history.replaceState(null, '', '?token=guess');
+    return said.startsWith('the address lacks the right token');
+  })())");
 }
 
 TEST_F(InABrowser, ARecordingPlaysWithoutAServer) {

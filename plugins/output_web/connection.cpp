@@ -46,18 +46,15 @@ void Connection::answer() {
                                     .host = view_of(request[http::field::host]),
                                     .origin = view_of(request[http::field::origin])});
   if (!refusal.empty()) return respond(http::status::forbidden, refusal);
-  if (path_of(target) == "/live" && boost::beast::websocket::is_upgrade(request))
-    return become_viewer();
+  const bool is_viewer = path_of(target) == "/live";
+  if (is_viewer && loop_.is_full())  // also to a page that was refused, and asks why
+    return respond(http::status::service_unavailable, "as many viewers as the run allows");
+  if (is_viewer && boost::beast::websocket::is_upgrade(request))
+    return std::make_shared<Viewer>(loop_, std::move(stream_))->start(request);
   if (request.method() != http::verb::get && request.method() != http::verb::head)
     return respond(http::status::method_not_allowed, "only GET");
   if (path_of(target) != "/") return respond(http::status::not_found, "there is only /");
   respond(http::status::ok, loop_.setup().page, "text/html; charset=utf-8");
-}
-
-void Connection::become_viewer() {
-  if (loop_.is_full())
-    return respond(http::status::service_unavailable, "as many viewers as the run allows");
-  std::make_shared<Viewer>(loop_, std::move(stream_))->start(parser_.get());
 }
 
 void Connection::respond(http::status status, std::string_view text, const char* type) {

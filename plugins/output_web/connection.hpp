@@ -25,7 +25,6 @@ class Connection : public std::enable_shared_from_this<Connection> {
 
  private:
   void answer();
-  void become_viewer();
   void respond(boost::beast::http::status status, std::string_view text,
                const char* type = "text/plain; charset=utf-8");
 

@@ -18,7 +18,8 @@ class DenseMapReader {
   using Clock = std::chrono::steady_clock;
 
   void begin(std::shared_ptr<LiveRun> run) { run_ = std::move(run); }
-  /// Null when the last time was not long ago, when the map is busy, and without one.
+  /// Null when the last time was not long ago, when the map is busy, without one, and when it looks
+  /// as it did the last time.
   VoxelsPtr read() {
     const Clock::time_point begin = Clock::now();
     if (!run_ || begin < next_) return nullptr;
@@ -27,12 +28,15 @@ class DenseMapReader {
     VoxelsPtr voxels = sorted_voxels(*std::move(points));
     const Clock::time_point end = Clock::now();
     next_ = end + std::max<Clock::duration>(std::chrono::seconds(1), 20 * (end - begin));
+    if (last_ && look_alike(*last_, *voxels)) return nullptr;
+    last_ = voxels;
     return voxels;
   }
 
  private:
   std::shared_ptr<LiveRun> run_;
   Clock::time_point next_{};
+  VoxelsPtr last_;
 };
 
 }  // namespace stillpoint::output_web

@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "output_web/json_text.hpp"
-#include "output_web/map_changes.hpp"
 #include "output_web/message_writer.hpp"
 #include "output_web/picture.hpp"
 
@@ -14,19 +13,34 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::size_t kTimesKept = 12'000;      // about 600 frames
-constexpr std::size_t kFramesPerMessage = 700;  // 92 bytes each
-constexpr std::size_t kCloudsPerMessage = 8;    // 29 kB each for 640 × 480 px
+constexpr std::size_t kTimesKept = 12'000;  // about 600 frames
 constexpr std::size_t kCloudsKept = 2000;
-constexpr std::size_t kVoxelsPerMessage = 50'000;  // 17 bytes each
-constexpr std::size_t kFirstFit = 10;              // frames
-constexpr double kFitGrowth = 1.05;                // of the frames, until the truth is fitted again
-constexpr double kNoShift = 1e-4;                  // metres
+constexpr std::size_t kFirstFit = 10;  // frames
+constexpr double kFitGrowth = 1.05;    // of the frames, until the truth is fitted again
+constexpr double kNoShift = 1e-4;      // metres
+
+// A viewer says nothing while a message comes, and is taken for gone after half a minute of that.
+// Over half a megabit per second, all of this and an image come within a third of it.
+constexpr std::size_t kFramesPerMessage = 700;         // 92 bytes each
+constexpr std::size_t kTimesPerMessage = 6000;         // 9 bytes each
+constexpr std::size_t kMapBytesPerMessage = 128'000;   // and the rest of one element
+constexpr std::size_t kCloudBytesPerMessage = 80'000;  // likewise; 29 kB each for 640 × 480 px
+constexpr std::size_t kVoxelsPerMessage = 12'000;      // 17 bytes each
 
 void write_text(Record kind, const std::string& text, MessageWriter& writer) {
   writer.begin(kind);
   writer.text(text);
   writer.end();
+}
+
+/// At most `most` elements from `first` on, which is then the first that is left.
+template <class List>
+std::vector<typename List::value_type> next_part(const List& list, std::size_t& first,
+                                                 std::size_t most) {
+  const auto begin = list.begin() + static_cast<std::ptrdiff_t>(first);
+  const std::size_t count = std::min(list.size() - first, most);
+  first += count;
+  return {begin, begin + static_cast<std::ptrdiff_t>(count)};
 }
 
 }  // namespace
@@ -41,12 +55,13 @@ struct EventLog::Snapshot {
   std::vector<std::shared_ptr<const std::string>> clouds;
   std::vector<LoopEntry> loops;
   std::string steering;
-  VoxelsPtr voxels;  // null: nothing new
+  MapPtr map;        // null: nothing new
+  VoxelsPtr voxels;  // likewise
   std::string end;
 
   bool empty() const {
-    return frames.empty() && times.empty() && clouds.empty() && steering.empty() && !voxels &&
-           end.empty();
+    return frames.empty() && times.empty() && clouds.empty() && steering.empty() && !map &&
+           !voxels && end.empty();
   }
 };
 
@@ -151,10 +166,7 @@ std::string EventLog::news(Seen& seen, const Request& request) {
     seen.run_info = true;
   }
   write_stages(now.stages, now.first_stage, writer);
-  if (request.map && now.latest.map && now.latest.map != seen.map) {
-    write_map_changes(*seen.map, *now.latest.map, writer);
-    seen.map = now.latest.map;
-  }
+  if (now.map) write_map_changes(seen.map, now.map, kMapBytesPerMessage, writer);
   write_frames(now.frames, writer);
   if (now.latest.left_out != seen.left_out) {
     write_left_out(now.latest.left_out, writer);
@@ -178,32 +190,30 @@ std::string EventLog::news(Seen& seen, const Request& request) {
 EventLog::Snapshot EventLog::snapshot(Seen& seen, const Request& request) const {
   const std::lock_guard lock(mutex_);
   Snapshot now{.latest = latest_, .first_stage = seen.stages};
-  now.stages.assign(stages_.begin() + static_cast<std::ptrdiff_t>(seen.stages), stages_.end());
-  seen.stages = stages_.size();
+  now.stages = next_part(stages_, seen.stages, stages_.size());
 
   const auto grown = static_cast<std::size_t>(kFitGrowth * static_cast<double>(seen.fitted_frames));
   if (run_.truth.known() && frames_.size() >= std::max(kFirstFit, grown + 1)) {
     now.fit = frames_;
     seen.fitted_frames = frames_.size();
   }
-  const auto first = frames_.begin() + static_cast<std::ptrdiff_t>(seen.frames);
-  const std::size_t count = std::min(frames_.size() - seen.frames, kFramesPerMessage);
-  now.frames.assign(first, first + static_cast<std::ptrdiff_t>(count));
-  seen.frames += count;
+  now.frames = next_part(frames_, seen.frames, kFramesPerMessage);
+  std::size_t times = std::max(seen.times, times_dropped_) - times_dropped_;
+  now.times = next_part(times_, times, kTimesPerMessage);
+  seen.times = times_dropped_ + times;
+  now.loops = next_part(loops_, seen.loops, loops_.size());
 
-  const std::size_t times = std::max(seen.times, times_dropped_) - times_dropped_;
-  now.times.assign(times_.begin() + static_cast<std::ptrdiff_t>(times), times_.end());
-  seen.times = times_dropped_ + times_.size();
-
-  now.loops.assign(loops_.begin() + static_cast<std::ptrdiff_t>(seen.loops), loops_.end());
-  seen.loops = loops_.size();
   seen.clouds = std::max(seen.clouds, clouds_dropped_);
+  std::size_t bytes = 0;
   for (std::size_t i = seen.clouds - clouds_dropped_;
-       request.cloud && i < clouds_.size() && now.clouds.size() < kCloudsPerMessage; ++i)
+       request.cloud && i < clouds_.size() && bytes < kCloudBytesPerMessage; ++i) {
     now.clouds.push_back(clouds_[i]);
+    bytes += clouds_[i]->size();
+  }
   seen.clouds += now.clouds.size();
   if (seen.steering != steering_changes_) now.steering = steering_;
   seen.steering = steering_changes_;
+  if (request.map && latest_.map && seen.map.whole != latest_.map) now.map = latest_.map;
   if (request.voxels && voxels_ && seen.voxels != voxels_) now.voxels = voxels_;
   if (!seen.end && seen.frames == frames_.size()) {
     now.end = end_;

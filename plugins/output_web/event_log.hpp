@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "output_web/event_records.hpp"
+#include "output_web/map_changes.hpp"
 #include "output_web/request.hpp"
 #include "output_web/truth.hpp"
 #include "output_web/voxels.hpp"
@@ -26,7 +27,7 @@ struct Seen {
   std::size_t fitted_frames = 0;  ///< that the last fit of the truth was made of
   std::size_t left_out = 0;       ///< images, by the source
   std::optional<std::uint32_t> image;
-  std::shared_ptr<const SparseMap> map = std::make_shared<const SparseMap>();
+  SeenMap map;
   VoxelsPtr voxels = std::make_shared<const Voxels>();
 };
 
@@ -48,7 +49,8 @@ class EventLog {
   void set_voxels(VoxelsPtr voxels);
 
   /// A message with all that is new to a viewer, as far as it asks for that; empty when nothing is.
-  /// Who comes late gets frames and surfaces in parts, one with each message.
+  /// Besides the image, it has some of each kind, about half a megabyte in all: who comes late gets
+  /// the rest in parts, one with each message.
   std::string news(Seen& seen, const Request& request);
 
  private:

@@ -20,7 +20,9 @@ class FakeRun final : public LiveRun {
   }
   void step() override { write("step"); }
   void stop() override { write("stop"); }
-  std::optional<std::vector<LabelledPoint>> dense_map() override { return dense; }
+  std::optional<std::vector<LabelledPoint>> dense_map() override {
+    return busy_reads-- > 0 ? std::nullopt : dense;
+  }
   bool save_dense_map(const std::filesystem::path&) override { return false; }
   std::filesystem::path map_file() const override { return "/secret/folder/room.map"; }
   void save_map() override {
@@ -36,6 +38,7 @@ class FakeRun final : public LiveRun {
   bool disk_is_full = false;
   bool steers = true;
   std::optional<std::vector<LabelledPoint>> dense;
+  int busy_reads = 0;  // of the dense map, before there is one that succeeds
 
  private:
   void write(const std::string& call) {

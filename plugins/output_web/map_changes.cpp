@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <utility>
 
 namespace stillpoint::output_web {
 namespace {
@@ -76,24 +77,33 @@ bool write_if_changed(LandmarkId id, const Landmark* old, const Landmark* landma
   return true;
 }
 
+/// From `id` on, which is then the first that is left, while the message is below `full` bytes.
+template <class Id, class WriteIfChanged>
+void write_list(Record kind, Id& id, std::size_t id_end, std::size_t full, MessageWriter& writer,
+                WriteIfChanged write_if_changed) {
+  writer.begin(kind);
+  const std::size_t place = writer.count();
+  std::size_t count = 0;
+  for (; id < id_end && writer.size() < full; ++id)
+    if (write_if_changed(id)) ++count;
+  writer.set_count(place, count);
+  writer.end();
+}
+
 }  // namespace
 
-void write_map_changes(const SparseMap& before, const SparseMap& after, MessageWriter& writer) {
-  writer.begin(Record::kKeyFrames);
-  std::size_t place = writer.count();
-  std::size_t count = 0;
-  for (KeyFrameId id = 0; id < after.keyframe_id_end(); ++id)
-    if (write_if_changed(id, before, after, writer)) ++count;
-  writer.set_count(place, count);
-  writer.end();
-
-  writer.begin(Record::kLandmarks);
-  place = writer.count();
-  count = 0;
-  for (LandmarkId id = 0; id < after.landmark_id_end(); ++id)
-    if (write_if_changed(id, before.landmark(id), after.landmark(id), writer)) ++count;
-  writer.set_count(place, count);
-  writer.end();
+void write_map_changes(SeenMap& seen, const MapPtr& now, std::size_t limit, MessageWriter& writer) {
+  if (!seen.next) seen.next = now;
+  const SparseMap &before = *seen.whole, &after = *seen.next;
+  const std::size_t full = writer.size() + limit;
+  write_list(Record::kKeyFrames, seen.keyframes, after.keyframe_id_end(), full, writer,
+             [&](KeyFrameId id) { return write_if_changed(id, before, after, writer); });
+  write_list(Record::kLandmarks, seen.landmarks, after.landmark_id_end(), full, writer,
+             [&](LandmarkId id) {
+               return write_if_changed(id, before.landmark(id), after.landmark(id), writer);
+             });
+  if (seen.keyframes == after.keyframe_id_end() && seen.landmarks == after.landmark_id_end())
+    seen = {.whole = std::move(seen.next)};
 }
 
 }  // namespace stillpoint::output_web

@@ -3,17 +3,25 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <map>
+
 #include "output_web/test_reports.hpp"
 #include "output_web/test_viewer.hpp"
 
 namespace stillpoint::output_web {
 namespace {
 
-Records changes(const SparseMap& before, const SparseMap& after) {
+std::string next_message(SeenMap& seen, const MapPtr& now, std::size_t limit) {
   MessageWriter writer;
   writer.number(kProtocol);
-  write_map_changes(before, after, writer);
-  return records_of(writer.take());
+  write_map_changes(seen, now, limit, writer);
+  return writer.take();
+}
+
+Records changes(const SparseMap& before, const SparseMap& after) {
+  constexpr std::size_t kAll = 1 << 20;  // bytes
+  SeenMap seen{.whole = std::make_shared<const SparseMap>(before)};
+  return records_of(next_message(seen, std::make_shared<const SparseMap>(after), kAll));
 }
 
 TEST(MapChanges, OfAnEmptyMapAreAllOfIt) {
@@ -78,6 +86,48 @@ TEST(MapChanges, TellWhereARemovedKeyFrameStandsAndThatALandmarkIsGone) {
   const std::string& moved = records[Record::kKeyFrames].at(0);
   EXPECT_EQ(number_at<std::uint32_t>(moved, 0), 3u);
   EXPECT_EQ(number_at<float>(moved, moved.size() - 33 + 9), 7.f);
+}
+
+using ById = std::map<std::uint32_t, float>;  // x of landmarks
+
+ById landmarks_of(const SparseMap& map) {
+  ById x;
+  for (LandmarkId id = 0; id < map.landmark_id_end(); ++id)
+    x[id] = static_cast<float>(map.landmark(id)->position_in_world.x());
+  return x;
+}
+
+void take_landmarks(const std::string& part, ById& known) {
+  constexpr std::size_t kLandmarkSize = 18;  // bytes
+  const std::string list = records_of(part)[Record::kLandmarks].at(0);
+  EXPECT_EQ(list.size(), 4 + kLandmarkSize * number_at<std::uint32_t>(list, 0));
+  for (std::size_t at = 4; at < list.size(); at += kLandmarkSize)
+    known[number_at<std::uint32_t>(list, at)] = number_at<float>(list, at + 4);
+}
+
+TEST(MapChanges, ComeInPartsOneVersionAfterTheOther) {
+  MapEdit many(map_of_three());
+  for (int i = 0; i < 100; ++i) many.add_landmark({.position_in_world = {7, 0, 0}, .reference = 0});
+  const auto first = std::make_shared<const SparseMap>(std::move(many).finish());
+  MapEdit moving(*first);
+  for (LandmarkId id = 0; id < first->landmark_id_end(); ++id)
+    moving.landmark(id).position_in_world.x() = id;
+  const auto second = std::make_shared<const SparseMap>(std::move(moving).finish());
+
+  constexpr std::size_t kLimit = 500, kHeaders = 1 + 2 * (5 + 4), kLargestElement = 60;  // bytes
+  SeenMap seen;
+  ById known;
+  take_landmarks(next_message(seen, first, kLimit), known);
+  EXPECT_LT(known.size(), 50u);
+  for (const MapPtr& version : {first, second}) {
+    for (int parts = 0; seen.whole != version; ++parts) {
+      ASSERT_LT(parts, 10);
+      const std::string part = next_message(seen, second, kLimit);
+      EXPECT_LE(part.size(), kHeaders + kLimit + kLargestElement);
+      take_landmarks(part, known);
+    }
+    EXPECT_EQ(known, landmarks_of(*version));
+  }
 }
 
 }  // namespace

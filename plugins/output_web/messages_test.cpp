@@ -1,4 +1,5 @@
 // What viewers get.
+#include <map>
 #include <nlohmann/json.hpp>
 #include <thread>
 
@@ -50,6 +51,17 @@ TEST_F(LiveView, SendsWhatIsNewAndAskedFor) {
   EXPECT_FALSE(records->contains(Record::kLeftOut));
 }
 
+TEST_F(LiveView, AnswersTheLastOfSeveralRequests) {
+  output->frame(report_of(0));
+  TestViewer viewer(port(*output));
+  ASSERT_TRUE(viewer.asked(2));
+  viewer.ask(2);  // nothing of it is new
+  viewer.ask(6);  // in its place
+  const auto records = viewer.next();
+  ASSERT_TRUE(records);
+  EXPECT_TRUE(records->contains(Record::kCloud));
+}
+
 TEST_F(LiveView, TellsOfLoops) {
   FrameReport report = report_of(0);
   report.map = std::make_shared<const SparseMap>(map_of_three());
@@ -96,6 +108,49 @@ TEST_F(LiveView, GivesALateViewerTheFramesInParts) {
   }
   EXPECT_EQ(next, kFrames);
   EXPECT_EQ(messages, 3u);
+}
+
+/// Of 1500 frames, a key frame each, 30,000 times, 20,002 landmarks and 50,000 voxels.
+void write_long_run(EventLog& events) {
+  MapEdit edit(map_of_three());
+  for (int i = 0; i < 20'000; ++i) edit.add_landmark({.reference = 0});
+  FrameReport report = report_of(0);
+  report.map = std::make_shared<const SparseMap>(std::move(edit).finish());
+  report.times = std::vector<StageTime>(20, report.times.front());
+  for (std::uint32_t i = 0; i < 1500; ++i) {
+    auto frame = std::make_shared<Frame>(*report.frame);
+    frame->index = i;
+    report.frame = frame;
+    events.add(report);
+  }
+  std::vector<LabelledPoint> voxels(50'000);
+  for (std::size_t i = 0; i < voxels.size(); ++i) voxels[i].position.x() = static_cast<float>(i);
+  events.set_voxels(sorted_voxels(std::move(voxels)));
+}
+
+// Or a viewer with a slow connection would be taken for gone before it has the first one.
+TEST(EventLog, GivesALongRunInMessagesThatAreNotLarge) {
+  constexpr std::size_t kLargest = 650'000;  // bytes
+  EventLog events({.name = "walk", .classes = testing::TestRecording::classes(), .truth = {}});
+  write_long_run(events);
+  Seen seen;
+  std::map<Record, std::size_t> bytes;
+  std::size_t landmarks = 0, clouds = 0;
+  const Request all{.image = true, .map = true, .cloud = true, .voxels = true};
+  for (std::string message; !(message = events.news(seen, all)).empty();) {
+    EXPECT_LE(message.size(), kLargest);
+    for (const auto& [kind, contents] : records_of(message))
+      for (const std::string& content : contents) {
+        bytes[kind] += content.size();
+        if (kind == Record::kLandmarks) landmarks += number_at<std::uint32_t>(content, 0);
+        if (kind == Record::kCloud) ++clouds;
+      }
+  }
+  EXPECT_EQ(bytes[Record::kFrames], 1500u * 92);
+  EXPECT_EQ(bytes[Record::kTimes], 12'000u * 9);  // so many are kept
+  EXPECT_EQ(bytes[Record::kVoxels], 50'000u * 17);
+  EXPECT_EQ(landmarks, 20'002u);
+  EXPECT_EQ(clouds, 1500u);
 }
 
 TEST_F(LiveView, SaysHowTheRunHasEndedThenGoodBye) {

@@ -20,6 +20,7 @@ using namespace std::chrono_literals;
 
 constexpr std::size_t kMostConnections = 64;
 constexpr auto kCloseTimeout = 500ms;
+constexpr auto kBetweenDenseMaps = 1s;
 constexpr int kNice = 10;  // a tenth of tracking's share while both want to run
 
 tcp::endpoint endpoint_of(const ServerSetup& setup) {
@@ -99,6 +100,12 @@ void ServerLoop::read_dense_map() {
     warn(error.what());
     dense_map_.begin(nullptr);
   }
+  if (closing_) return;
+  // It may have been busy, and grows while a paused run has no frames that would bring it.
+  dense_map_timer_.expires_after(kBetweenDenseMaps);
+  dense_map_timer_.async_wait([this](error_code cancelled) {
+    if (!cancelled) notify();
+  });
 }
 
 void ServerLoop::work() {
@@ -160,6 +167,7 @@ void ServerLoop::close_gracefully() {
   closing_ = true;
   acceptor_.close();
   retry_.cancel();
+  dense_map_timer_.cancel();
   record(&Recorder::finish);
   for (Connection* connection : connections_) connection->cancel();
   if (viewers_.empty()) return;

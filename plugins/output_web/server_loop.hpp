@@ -47,7 +47,7 @@ class ServerLoop {
   void leave(Viewer& viewer);
   /// False where viewers may only look.
   bool execute(Viewer& viewer, Command command);
-  /// A viewer wants to see it.
+  /// A viewer wants to see it, and is offered it again in a second.
   void read_dense_map();
   void warn(std::string_view text) const { setup_.log(LogLevel::kWarning, text); }
 
@@ -72,6 +72,7 @@ class ServerLoop {
   boost::asio::ip::tcp::acceptor acceptor_;
   const std::uint16_t port_ = acceptor_.local_endpoint().port();
   boost::asio::steady_timer retry_{context_};
+  boost::asio::steady_timer dense_map_timer_{context_};
   std::atomic<bool> notified_ = false;
   std::jthread thread_;  // last: it uses all the others
 };

@@ -73,16 +73,24 @@ TEST_F(LiveView, ClosesOnWhatNoPageOfItsOwnSays) {
     EXPECT_FALSE(viewer.next());
     EXPECT_EQ(viewer.close_code(), 1008) << wrong.size();
   }
-  TestViewer greedy(port(*output));
-  ASSERT_TRUE(greedy.asked());
-  greedy.ask();
-  greedy.ask();  // before there is an answer
-  EXPECT_FALSE(greedy.next());
   TestViewer large(port(*output));
   large.send(std::string(100, 'x'));
   EXPECT_FALSE(large.next());
   EXPECT_EQ(large.close_code(), 1009);  // too big
   EXPECT_TRUE(TestViewer(port(*output)).asked());
+}
+
+TEST_F(LiveView, BearsAFloodOfRequests) {
+  output->frame(report_of(0));
+  TestViewer flooding(port(*output)), viewer(port(*output));
+  ASSERT_TRUE(flooding.asked(2));
+  for (int round = 0; round < 1000; ++round) flooding.ask(2);  // and nothing is new
+  for (std::size_t i = 1; i < recording().size(); ++i) {
+    output->frame(report_of(i));
+    EXPECT_TRUE(viewer.asked()) << i;
+  }
+  EXPECT_TRUE(flooding.next());
+  output.reset();  // does not wait until all of them have been read
 }
 
 TEST_F(LiveView, SurvivesGarbage) {
@@ -123,6 +131,9 @@ TEST_F(LiveView, WantsTheTokenWhereThereIsOne) {
   EXPECT_THAT(get(port(*guarded), "/"), StartsWith("HTTP/1.1 403"));
   EXPECT_THAT(get(port(*guarded), "/?token=s3cret"), StartsWith("HTTP/1.1 200"));
   EXPECT_THROW(TestViewer(port(*guarded), "/live?token=guess"), boost::system::system_error);
+  const std::string why = get(port(*guarded), "/live?token=guess");
+  EXPECT_THAT(why, StartsWith("HTTP/1.1 403"));
+  EXPECT_THAT(why, HasSubstr("the address lacks the right token"));
   EXPECT_TRUE(TestViewer(port(*guarded), "/live?token=s3cret").asked());
 
   const auto open = make({.port = 0, .address = "0.0.0.0"});
@@ -138,6 +149,9 @@ TEST_F(LiveView, HasAsManyViewersAsItMay) {
   ASSERT_TRUE(first.asked());
   EXPECT_THROW(TestViewer{port(*narrow)}, boost::system::system_error);
   EXPECT_THAT(get(port(*narrow), "/"), StartsWith("HTTP/1.1 200"));
+  const std::string why = get(port(*narrow), "/live");  // which a page asks that was turned away
+  EXPECT_THAT(why, StartsWith("HTTP/1.1 503"));
+  EXPECT_THAT(why, ::testing::EndsWith("\r\n\r\nas many viewers as the run allows"));
 }
 
 std::string failure_of(const WebOutput::Options& options) {

@@ -11,6 +11,9 @@ namespace websocket = beast::websocket;
 using boost::system::error_code;
 
 constexpr auto kIdleTime = std::chrono::seconds(30);  // until one that answers no pings has gone
+// After a request that came before the answer to the one before: requests without end make the
+// server look for news ten times per second, not more.
+constexpr auto kAfterEarlyRequest = std::chrono::milliseconds(100);
 
 }  // namespace
 
@@ -51,7 +54,13 @@ void Viewer::read() {
   });
 }
 
-// A second request before the answer, or an invalid one, closes the connection.
+void Viewer::read_later() {
+  read_timer_.expires_after(kAfterEarlyRequest);
+  read_timer_.async_wait([self = shared_from_this()](error_code error) {
+    if (!error) self->read();
+  });
+}
+
 void Viewer::take_request() {
   const auto bytes = buffer_.cdata();
   const auto said = parse_request({static_cast<const std::uint8_t*>(bytes.data()), bytes.size()});
@@ -60,10 +69,11 @@ void Viewer::take_request() {
   if (const auto* command = std::get_if<Command>(&*said)) {
     if (!loop_.execute(*this, *command)) return close(websocket::close_code::policy_error);
   } else {
-    if (asked_) return close(websocket::close_code::policy_error);
+    const bool is_early = asked_.has_value();
     asked_ = std::get<Request>(*said);
     wants_voxels_ = asked_->voxels;
     offer();
+    if (is_early) return read_later();
   }
   read();
 }

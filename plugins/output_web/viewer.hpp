@@ -1,6 +1,7 @@
 // A browser with the page open. It asks, and gets one message.
 #pragma once
 
+#include <boost/asio/steady_timer.hpp>
 #include <boost/beast/core.hpp>
 #include <boost/beast/http.hpp>
 #include <boost/beast/websocket.hpp>
@@ -13,7 +14,8 @@
 
 namespace stillpoint::output_web {
 
-/// Lives as long as something of it is under way.
+/// Lives as long as something of it is under way. Of several requests before an answer, the last
+/// one is answered.
 class Viewer : public std::enable_shared_from_this<Viewer> {
  public:
   Viewer(ServerLoop& loop, boost::beast::tcp_stream stream);
@@ -30,6 +32,7 @@ class Viewer : public std::enable_shared_from_this<Viewer> {
 
  private:
   void read();
+  void read_later();
   void take_request();
   void send(const Request& request);
   void written();
@@ -37,11 +40,12 @@ class Viewer : public std::enable_shared_from_this<Viewer> {
 
   ServerLoop& loop_;
   boost::beast::websocket::stream<boost::beast::tcp_stream> socket_;
+  boost::asio::steady_timer read_timer_{socket_.get_executor()};
   boost::beast::flat_buffer buffer_;
   std::string message_;  // under way
   Seen seen_;
   std::optional<Request> asked_;
-  bool wants_voxels_ = false;  // at last
+  bool wants_voxels_ = false;  // whether the last request asked for the dense map
   bool open_ = false;          // the handshake is over
   bool writing_ = false;
   bool closed_ = false;

@@ -52,6 +52,12 @@ VoxelsPtr sorted_voxels(std::vector<LabelledPoint> points) {
   return std::make_shared<const Voxels>(std::move(points));
 }
 
+bool look_alike(const Voxels& a, const Voxels& b) {
+  return std::ranges::equal(a, b, [](const LabelledPoint& one, const LabelledPoint& other) {
+    return one.position == other.position && look_alike(one, other);
+  });
+}
+
 VoxelsPtr write_voxel_changes(const VoxelsPtr& before, const VoxelsPtr& after, std::size_t limit,
                               MessageWriter& writer) {
   Voxels changed, removed, known;

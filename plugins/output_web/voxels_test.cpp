@@ -70,6 +70,19 @@ TEST_F(VoxelChanges, OfOccupancyAreSentFromAFifteenthOn) {
   EXPECT_EQ(send(sorted_voxels({seen})), header + kVoxelBytes);
 }
 
+TEST(Voxels, LookAlikeUntilAViewerCouldSeeADifference) {
+  LabelledPoint seen = voxel(1);
+  seen.occupancy = 0.72F;
+  const Voxels before = {seen, voxel(2)};
+  Voxels now = before;
+  now[0].occupancy = 0.73F;
+  EXPECT_TRUE(look_alike(before, now));
+  now[0].occupancy = 0.8F;
+  EXPECT_FALSE(look_alike(before, now));
+  EXPECT_FALSE(look_alike(before, {seen, voxel(3)}));
+  EXPECT_FALSE(look_alike(before, {seen}));
+}
+
 TEST_F(VoxelChanges, ComeInPartsThatAddUp) {
   Voxels many, others;
   for (int i = 0; i < 25; ++i) {
@@ -103,6 +116,36 @@ TEST_F(LiveView, ShowsTheDenseMapToWhoAsksForIt) {
   Scene scene;
   scene.take(*records);
   EXPECT_EQ(scene.labels, (std::map<float, int>{{1, 4}}));
+}
+
+// As while a run is paused.
+TEST_F(LiveView, ShowsTheDenseMapThoughNothingElseIsNew) {
+  const auto run = std::make_shared<FakeRun>();
+  run->dense = {voxel(1, 4)};
+  output->begin(run);
+  output->frame(report_of(0));
+  TestViewer viewer(port(*output));
+  ASSERT_TRUE(viewer.asked(7));
+  viewer.ask(7);
+  viewer.ask(15);
+  const auto records = viewer.next();
+  ASSERT_TRUE(records);
+  Scene scene;
+  scene.take(*records);
+  EXPECT_EQ(scene.labels, (std::map<float, int>{{1, 4}}));
+}
+
+TEST_F(LiveView, ReadsADenseMapAgainThatWasBusy) {
+  const auto run = std::make_shared<FakeRun>();
+  run->dense = {voxel(1, 4)};
+  run->busy_reads = 2;
+  output->begin(run);
+  output->frame(report_of(0));
+  TestViewer viewer(port(*output));
+  ASSERT_TRUE(viewer.asked(15));
+  const auto records = viewer.asked(15);
+  ASSERT_TRUE(records);
+  EXPECT_TRUE(records->contains(Record::kVoxels));
 }
 
 TEST_F(LiveView, ShowsTheRestWhileTheDenseMapIsBusy) {

@@ -43,7 +43,8 @@ FuzzTarget live_connection() {
   const std::string upgrade =
       "GET /live HTTP/1.1\r\nHost: localhost\r\nUpgrade: websocket\r\nConnection: Upgrade\r\n"
       "Sec-WebSocket-Version: 13\r\nSec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n\r\n";
-  const std::string ask("\x82\x83\0\0\0\0\x01\x01\x07", 9);
+  const std::string ask =
+      std::string("\x82\x83\0\0\0\0", 6) + static_cast<char>(output_web::kProtocol) + "\x01\x07";
   return {.seeds = {bytes_of_text(upgrade + ask),
                     bytes_of_text("HEAD / HTTP/1.1\r\nHost: localhost\r\n\r\n")},
           .parse =

@@ -15,6 +15,7 @@ const BETWEEN_CHARTS = 500;   // ms
 const RETRY = 1500;           // ms
 const TOAST = 6000;           // ms
 const POLICY_ERROR = 1008;    // the server closes with it what does not speak its protocol
+const REFUSALS = [403, 503];  // it does not let the page in, or has no room for it now
 
 const byId = (id) => document.getElementById(id);
 const image = new ImagePanel();
@@ -36,15 +37,22 @@ function mapPanel() {
   }
 }
 
-const live = {socket: null};
+const live = {socket: null, due: 0};  // due: a timer, of the next request
 const steering = new SteeringPanel((command) => live.socket?.send(order(command)), toast);
+
+/** In place of the request before, if that has no answer yet. */
+function ask() {
+  clearTimeout(live.due);
+  if (live.socket?.readyState === WebSocket.OPEN) live.socket.send(request({image: true, map: true, ...map.wanted}));
+}
 
 function connect() {
   const scheme = location.protocol === 'https:' ? 'wss:' : 'ws:';
   const socket = live.socket = new WebSocket(`${scheme}//${location.host}/live${location.search}`);
+  let opened = false;
   socket.binaryType = 'arraybuffer';
-  const ask = () => socket.readyState === WebSocket.OPEN && socket.send(request({image: true, map: true, ...map.wanted}));
   socket.onopen = () => {
+    opened = true;
     say('live');
     ask();
   };
@@ -60,12 +68,14 @@ function connect() {
     }
     await draw(changed);
     const rest = BETWEEN_REQUESTS - (performance.now() - begin);
-    setTimeout(() => requestAnimationFrame(ask), Math.max(0, rest));
+    clearTimeout(live.due);
+    live.due = setTimeout(() => requestAnimationFrame(ask), Math.max(0, rest));
   };
-  socket.onclose = ({code}) => {
+  socket.onclose = async ({code}) => {
     if (code === POLICY_ERROR) return giveUp();
     steering.reset();
-    say(run.end ? endWords(run.end) : 'no connection, trying again');
+    const refused = opened ? '' : await refusal();
+    say(refused || (run.end ? endWords(run.end) : 'no connection, trying again'));
     setTimeout(connect, RETRY);
   };
   const giveUp = () => {  // asking again would not help
@@ -73,6 +83,16 @@ function connect() {
     steering.reset();
     say(OTHER_VERSION);
   };
+}
+
+/** Why the server does not let this page in; a WebSocket does not tell. Empty where there is no server that says so. */
+async function refusal() {
+  try {
+    const answer = await fetch(`/live${location.search}`);
+    return REFUSALS.includes(answer.status) ? await answer.text() : '';
+  } catch {
+    return '';
+  }
 }
 
 /** Shows a recording that is within the page. */
@@ -177,6 +197,9 @@ function showFigures() {
     return box;
   }));
 }
+
+// A run that is paused sends nothing new, so what has been asked for before would never be answered.
+byId('surfaces').addEventListener('change', ask);
 
 // The messages of a recording come after this script.
 document.addEventListener('DOMContentLoaded', () => {
