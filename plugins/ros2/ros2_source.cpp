@@ -9,6 +9,7 @@
 #include "bag/bag_reader.hpp"
 #include "bag/camera_model.hpp"
 #include "bag/raw_image.hpp"
+#include "bag/registration.hpp"
 
 namespace stillpoint::ros2 {
 namespace {
@@ -78,9 +79,13 @@ void Ros2Source::Options::visit(OptionVisitor& v) {
     {.min = 0,
      .max = 1,
      .unit = "s",
-     .help = "largest time difference of a colour and a depth image in a pair, if approximate"});
+     .help = "largest time difference of a colour and a depth image in a pair, if approximate; at "
+             "most 0.6 of the time from one image to the next"});
   v("rectified", rectified,
     {.help = "the images are rectified: use the matrix P of CameraInfo instead of K and D"});
+  v("registered", registered,
+    {.help =
+         "take the depth images as registered to colour, although their frame_id says otherwise"});
   v("depth_factor", depth_factor,
     {.min = 0,
      .max = 1e9,
@@ -96,6 +101,7 @@ void Ros2Source::Options::visit(OptionVisitor& v) {
 
 Ros2Source::Ros2Source(const Options& options, const StageContext& context)
     : options_(options),
+      camera_file_(context.camera),
       log_(context.log),
       participant_(options.domain),
       color_reader_(participant_, options.color_topic, bag::kImageType, options.queue_size,
@@ -121,7 +127,7 @@ void Ros2Source::wait_for_camera() {
   rectifier_.emplace(with_depth_factor(model, options_.depth_factor));
 }
 
-bool Ros2Source::wait_for(std::optional<Image>& image, const Reader& reader, Kind kind) const {
+bool Ros2Source::wait_for(std::optional<Image>& image, const Reader& reader, Kind kind) {
   if (image) return true;
   const auto bytes = reader.take(after(options_.timeout), stop_);
   if (!bytes) return false;
@@ -129,8 +135,10 @@ bool Ros2Source::wait_for(std::optional<Image>& image, const Reader& reader, Kin
     const bag::ImageMessage message = bag::read_image(*bytes, bag::Serialisation::kCdr, false);
     const cv::Mat pixels =
         kind == Kind::kColor ? bag::color_pixels(message) : bag::depth_pixels(message);
-    return Image{bag::seconds(message.description.header.stamp), pixels.clone()};
+    const bag::MessageHeader& header = message.description.header;
+    return Image{bag::seconds(header.stamp), header.frame, pixels.clone()};
   });
+  (kind == Kind::kColor ? color_period_ : depth_period_).add(image->stamp);
   return true;
 }
 
@@ -155,7 +163,11 @@ std::optional<Frame> Ros2Source::next() {
 bool Ros2Source::is_pair() {
   const double ahead = color_->stamp - depth_->stamp;
   const double apart = std::abs(ahead);
-  if (apart <= (options_.approximate ? options_.max_difference : 0.0)) return true;
+  const double limit =
+      options_.approximate
+          ? live_camera::pairing_limit(options_.max_difference, color_period_, depth_period_)
+          : 0.0;
+  if (apart <= limit) return true;
   if (ahead < 0) missing_.add(color_->stamp + shift_);  // it did come
   unpaired_depth_ += ahead > 0 ? 1 : 0;
   // The later one would wait for ever for a clock that was set back: both go.
@@ -169,10 +181,27 @@ bool Ros2Source::is_pair() {
   return false;
 }
 
+void Ros2Source::check_first_pair(const Image& color, const Image& depth) const {
+  if (!options_.registered &&
+      !bag::is_registered({options_.color_topic, color.frame}, {options_.depth_topic, depth.frame}))
+    throw Error(Fault::kData,
+                "the depth images are in the frame '" + depth.frame + "', those of " +
+                    options_.color_topic + " in '" + color.frame +
+                    "': they are not registered to the colour images, and this source does not "
+                    "register them",
+                options_.depth_topic,
+                "subscribe registered depth (align_depth, depth_registered); if it is registered, "
+                "set source.registered=true");
+  if (!camera_file_ || options_.depth_factor > 0 || depth.pixels.type() != CV_16UC1) return;
+  const std::string warning = bag::depth_factor_warning(*camera_file_);
+  if (!warning.empty()) log_(LogLevel::kWarning, warning);
+}
+
 std::optional<Frame> Ros2Source::frame_of_waiting() {
   if (!is_pair()) return std::nullopt;
   const Image color = *std::exchange(color_, std::nullopt);
   const Image depth = *std::exchange(depth_, std::nullopt);
+  if (given_ == 0) check_first_pair(color, depth);
   if (goes_back(color.stamp)) go_on_from(color.stamp);
   const double time = color.stamp + shift_;
   if (given_ > 0 && time <= last_time_) {
@@ -215,10 +244,11 @@ void Ros2Source::fail(const Reader& missing) const {
                     "source.timeout is how long to wait");
 }
 
-// Of a colour image that is missing, the depth image has been counted if it came.
+// Where the times of colour images have a gap, an image never came. If its depth image did, that
+// one had no partner, and has been counted.
 std::size_t Ros2Source::count_missing() const {
-  const std::size_t missing = missing_.count();
-  return missing - std::min(missing, unpaired_depth_);
+  const std::size_t gaps = missing_.count();
+  return gaps > unpaired_depth_ ? gaps - unpaired_depth_ : 0;
 }
 
 std::size_t Ros2Source::count_left_out() const { return unpaired_ + backwards_ + count_missing(); }

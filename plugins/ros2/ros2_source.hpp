@@ -8,6 +8,7 @@
 #include <string>
 #include <utility>
 
+#include "live_camera/stream_period.hpp"
 #include "ros2/missing_frames.hpp"
 #include "ros2/participant.hpp"
 #include "stillpoint/sdk.hpp"
@@ -16,10 +17,10 @@
 namespace stillpoint::ros2 {
 
 /// Listens from its construction on. next() waits for CameraInfo, where the pipeline names no
-/// camera, and for a pair of images; it throws Error(kData) when none comes, and for images that
-/// cannot be read. Silence after the first pair is the end. Where stamps go back by more than a
-/// second, because a clock was set back or a bag is played again, times go on by one interval:
-/// those of all later frames differ from their stamps.
+/// camera, and for a pair of images; it throws Error(kData) when none comes, for images that cannot
+/// be read, and for depth that is not registered to colour. Silence after the first pair is the
+/// end. Where stamps go back by more than a second, because a clock was set back or a bag is played
+/// again, times go on by one interval: those of all later frames differ from their stamps.
 class Ros2Source final : public Source {
  public:
   struct Options {
@@ -32,6 +33,7 @@ class Ros2Source final : public Source {
     bool approximate = false;      ///< stamps of a pair may differ, by max_difference
     double max_difference = 0.02;  ///< seconds
     bool rectified = false;        ///< P of CameraInfo holds, not K and D
+    bool registered = false;       ///< depth is, whatever its frame says
     double depth_factor = 0.0;     ///< of 16-bit depth, value of one metre; 0: the camera's
     double timeout = 5.0;          ///< seconds
     int limit = 0;                 ///< frames; 0: none
@@ -49,6 +51,7 @@ class Ros2Source final : public Source {
  private:
   struct Image {
     double stamp = 0.0;  ///< seconds, of the header
+    std::string frame;   ///< of the header
     cv::Mat pixels;
   };
   enum class Kind { kColor, kDepth };
@@ -60,9 +63,12 @@ class Ros2Source final : public Source {
   /// Only a stop ends the wait without one.
   void wait_for_camera();
   /// The next image of a topic becomes `image`, unless there is one. False when none comes in time.
-  bool wait_for(std::optional<Image>& image, const Reader& reader, Kind kind) const;
+  bool wait_for(std::optional<Image>& image, const Reader& reader, Kind kind);
   /// Whether the waiting images belong together; otherwise one of them is dropped, or both.
   bool is_pair();
+  /// Throws Error(kData) when depth is not seen from the colour camera; tells of another unit than
+  /// that of ROS.
+  void check_first_pair(const Image& color, const Image& depth) const;
   /// The waiting images, if they belong together and come after the frame before.
   std::optional<Frame> frame_of_waiting();
   /// Whether a stamp is of a clock that was set back since the last frame.
@@ -72,6 +78,7 @@ class Ros2Source final : public Source {
   [[noreturn]] void fail(const Reader& missing) const;
 
   Options options_;
+  std::optional<CameraModel> camera_file_;
   std::function<void(LogLevel, std::string_view)> log_;
   Participant participant_;
   Reader color_reader_, depth_reader_;
@@ -79,6 +86,7 @@ class Ros2Source final : public Source {
   std::optional<Rectifier> rectifier_;
   std::stop_token stop_;
   std::optional<Image> color_, depth_;  // waiting for each other
+  live_camera::StreamPeriod color_period_, depth_period_;
   bool ended_ = false;
   std::uint32_t given_ = 0;   // frames
   double last_time_ = 0.0;    // of the last frame, seconds

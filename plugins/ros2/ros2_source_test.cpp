@@ -111,6 +111,19 @@ TEST_F(Ros2SourceTest, TakesTheCameraOfThePipeline) {
   ASSERT_TRUE(frame);
   EXPECT_EQ(frame->camera->fx, 60);
   EXPECT_FLOAT_EQ(frame->depth.at<float>(5, 7), 0.5F);
+  EXPECT_THAT(log_, Contains(HasSubstr("16-bit depth of ROS is in millimetres, but the camera file "
+                                       "has depth_factor 2000: set it to 1000"))
+                        .Times(1));
+}
+
+TEST_F(Ros2SourceTest, DoesNotTellOfADepthFactorThatIsSet) {
+  context_.camera = CameraModel{
+      .name = "mine", .width = testing::kImageWidth, .height = testing::kImageHeight, .fx = 60};
+  options_.depth_factor = 1000;
+  color(0);
+  depth(0);
+  EXPECT_TRUE(source().next());
+  EXPECT_THAT(log_, Each(HasSubstr("waiting for")));
 }
 
 TEST_F(Ros2SourceTest, TakesTheProjectionOfRectifiedImages) {
@@ -203,6 +216,22 @@ TEST_F(Ros2SourceTest, PairsStampsThatDiffer) {
   EXPECT_DOUBLE_EQ(source().next()->time, bag::seconds(stamp(1) + kInterval));
 }
 
+// At 60 Hz, the depth image of a lost colour image is within 20 ms of the next one.
+TEST_F(Ros2SourceTest, ALostImageDoesNotShiftThePairs) {
+  options_.approximate = true;
+  info();
+  for (int i = 0; i < 9; ++i) {
+    const std::int64_t time = kStart + kInterval / 2 * i;
+    if (i != 4) color_.write(image_message(kRos2, time, "camera", color_image(i), "bgr8"));
+    depth_.write(image_message(kRos2, time, "camera", depth_image(1000 + i), "16UC1"));
+  }
+  const auto frames = testing::frames_of(source());
+  EXPECT_EQ(frames.size(), 8U);
+  for (const Frame& frame : frames)
+    EXPECT_FLOAT_EQ(frame.depth.at<float>(5, 7),
+                    1.0F + 0.001F * static_cast<float>(frame.bgr.at<cv::Vec3b>(5, 7)[0]));
+}
+
 TEST_F(Ros2SourceTest, TimeGoesForward) {
   info();
   for (const int i : {5, 4, 6}) {
@@ -282,6 +311,25 @@ TEST_F(Ros2SourceTest, SaysThatNobodyPublishes) {
   EXPECT_THAT(
       error_text(Fault::kData, [&] { source().next(); }),
       AllOf(HasSubstr("/none: no message for 0.1 s; publishers: 0"), HasSubstr("source.timeout")));
+}
+
+TEST_F(Ros2SourceTest, RefusesDepthThatIsNotRegistered) {
+  const Writer unregistered(participant_, "depth/image_raw", bag::kImageType, Kept::kShortly);
+  options_.depth_topic = "depth/image_raw";
+  const auto send_pair = [&] {
+    source_.reset();
+    info();
+    color(0);
+    unregistered.write(image_message(kRos2, stamp(0), "depth_frame", depth_image(1000), "16UC1"));
+  };
+  send_pair();
+  EXPECT_THAT(error_text(Fault::kData, [&] { source().next(); }),
+              AllOf(HasSubstr("depth/image_raw: the depth images are in the frame 'depth_frame', "
+                              "those of rgb/image_raw in 'camera'"),
+                    HasSubstr("set source.registered=true")));
+  options_.registered = true;
+  send_pair();
+  EXPECT_TRUE(source().next());
 }
 
 TEST_F(Ros2SourceTest, RefusesAnEncoding) {

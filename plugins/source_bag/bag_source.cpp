@@ -1,5 +1,6 @@
 #include "source_bag/bag_source.hpp"
 
+#include <algorithm>
 #include <opencv2/core.hpp>
 
 #include "bag/camera_model.hpp"
@@ -15,15 +16,39 @@ std::unique_ptr<bag::BagReader> opened(const std::string& path) {
   return bag::open_bag(path);
 }
 
+/// Its unit, too: they are those of the camera that the user gives.
+void use_depth_range(const CameraModel& of, CameraModel& depth) {
+  depth.depth_factor = of.depth_factor;
+  depth.min_depth = of.min_depth;
+  depth.max_depth = of.max_depth;
+}
+
+bool see_the_same(const CameraModel& rectified, const CameraModel& color) {
+  return std::ranges::all_of(color.distortion, [](double k) { return k == 0.0; }) &&
+         rectified.fx == color.fx && rectified.fy == color.fy && rectified.cx == color.cx &&
+         rectified.cy == color.cy;
+}
+
+/// Of depth that is registered. Where it is rectified, but colour is not, it is not undistorted
+/// with the colour images.
+FrameMaker maker_of_registered(const bag::TopicChoice& choice, const CameraModel& color) {
+  if (!choice.depth.rectified() || choice.color.rectified()) return FrameMaker(color);
+  CameraModel depth = bag::rectified_camera(choice, color);
+  if (see_the_same(depth, color)) return FrameMaker(color);
+  use_depth_range(color, depth);
+  return FrameMaker(color, depth, Pose::Identity());
+}
+
 FrameMaker maker_of(bag::BagReader& bag, const bag::TopicChoice& choice,
                     const BagSource::Options& options, const StageContext& context) {
   CameraModel color = context.camera ? *context.camera : bag::camera_in_bag(bag, choice.color);
-  if (options.depth_factor > 0) color.depth_factor = options.depth_factor;
-  if (choice.registered() || options.registered) return FrameMaker(color);
+  if (options.depth_factor > 0)
+    color.depth_factor = options.depth_factor;
+  else if (!context.camera)
+    color.depth_factor = bag::depth_factor_in_bag(bag, choice.depth);
+  if (choice.registered() || options.registered) return maker_of_registered(choice, color);
   bag::DepthExtrinsics depth = bag::depth_extrinsics(bag, choice);
-  depth.camera.depth_factor = color.depth_factor;
-  depth.camera.min_depth = color.min_depth;
-  depth.camera.max_depth = color.max_depth;
+  use_depth_range(color, depth.camera);
   return FrameMaker(color, depth.camera, depth.color_from_depth);
 }
 
@@ -57,8 +82,10 @@ void BagSource::Options::visit(OptionVisitor& v) {
   v("depth_factor", depth_factor,
     {.min = 0,
      .max = 1e9,
-     .help = "value of one metre in 16-bit depth images; 0: that of the camera section, or 1000 "
-             "(millimetres) where the camera comes from the bag"});
+     .help =
+         "value of one metre in 16-bit depth images; 0: that of the camera section, or where the "
+         "camera comes from the bag 1000 (millimetres), or what a recording of the RealSense "
+         "SDK says"});
   selection.visit(v);
 }
 
@@ -71,12 +98,19 @@ BagSource::BagSource(Options options, const StageContext& context)
       images_(*bag_, choice_) {
   context.log(LogLevel::kInfo,
               "colour of " + choice_.color.name + ", depth of " + choice_.depth.name +
-                  (maker_.registers() ? ", registered to the colour images by tf" : "") +
-                  ", camera " +
+                  (maker_.registers() ? ", registered to the colour images" : "") + ", camera " +
                   (context.camera ? "'" + context.camera->name + "'"
                                   : "of " + bag_->topics()[*choice_.color.info].name));
   for (const std::string& damage : bag_->damage()) skipped_.warn(damage);
   for (const std::string& note : notes_) skipped_.warn(note);
+  if (context.camera && options.depth_factor == 0 && !choice_.depth.first.in_metres())
+    check_depth_factor(*context.camera);
+}
+
+void BagSource::check_depth_factor(const CameraModel& camera_file) {
+  const std::string warning =
+      bag::depth_factor_warning(camera_file, bag::depth_factor_in_bag(*bag_, choice_.depth));
+  if (!warning.empty()) skipped_.warn(warning);
 }
 
 std::vector<BagSource::Pair> BagSource::make_pairs(const Options& options) {

@@ -44,6 +44,8 @@ class BagSource final : public Source {
   };
 
   std::vector<Pair> make_pairs(const Options& options);
+  /// Of 16-bit depth and a camera that the bag does not know of.
+  void check_depth_factor(const CameraModel& camera_file);
   Frame load(const Pair& pair);
 
   std::unique_ptr<bag::BagReader> bag_;

@@ -25,6 +25,7 @@ using testing::error_text;
 using testing::frames_of;
 using ::testing::HasSubstr;
 using testing::image_message;
+using ::testing::IsEmpty;
 using testing::kImageHeight;
 using testing::kImageWidth;
 using testing::TemporaryFolder;
@@ -143,6 +144,38 @@ TEST_F(OneBagSourceTest, TakesAnotherCameraAndItsDepthFactor) {
   ASSERT_TRUE(frame.has_value());
   EXPECT_EQ(frame->camera->fx, 60);
   EXPECT_FLOAT_EQ(frame->depth.at<float>(5, 7), 0.5F);
+}
+
+/// As a user's files have it who has run folders until now.
+StageContext context_with_depth_factor(double factor) {
+  StageContext context;
+  context.camera = CameraModel{.name = "mine",
+                               .width = kImageWidth,
+                               .height = kImageHeight,
+                               .fx = 60,
+                               .depth_factor = factor};
+  return context;
+}
+
+TEST_F(OneBagSourceTest, TellsThatACameraFileHasAnotherUnitThanTheBag) {
+  write(1);
+  EXPECT_THAT(open({}, context_with_depth_factor(5000)).report().warnings,
+              ElementsAre("16-bit depth of ROS is in millimetres, but the camera file has "
+                          "depth_factor 5000: set it to 1000, or source.depth_factor if these "
+                          "images differ"));
+  EXPECT_THAT(open({.depth_factor = 5000}, context_with_depth_factor(5000)).report().warnings,
+              IsEmpty());
+  EXPECT_THAT(open({}, context_with_depth_factor(1000)).report().warnings, IsEmpty());
+}
+
+TEST_F(OneBagSourceTest, SaysNothingOfTheUnitOfMetres) {
+  info();
+  color(0);
+  cv::Mat metres;
+  depth_image(1000).convertTo(metres, CV_32F, 0.001);
+  add(kDepth, "sensor_msgs/Image", stamp(0),
+      image_message(serialisation_, stamp(0), "color_frame", metres, "32FC1"));
+  EXPECT_THAT(open({}, context_with_depth_factor(5000)).report().warnings, IsEmpty());
 }
 
 TEST_F(OneBagSourceTest, TakesAnotherDepthFactor) {
@@ -276,6 +309,81 @@ TEST_F(OneBagSourceTest, RegistersDepthByTf) {
   }
   EXPECT_THAT(source.report().warnings,
               ElementsAre(HasSubstr("the depth image has 64 x 20 pixels, but its camera")));
+}
+
+/// A patch of depth.
+cv::Mat patch_at(int x, int y, int raw) {
+  cv::Mat patch = depth_image(0);
+  patch(cv::Rect(x, y, 10, 8)) = raw;
+  return patch;
+}
+
+cv::Mat in_metres(const cv::Mat& raw, double factor) {
+  cv::Mat metres;
+  raw.convertTo(metres, CV_32F, 1 / factor);
+  return metres;
+}
+
+// As of kinect2_bridge: colour as recorded, with one CameraInfo for raw and rectified images.
+TEST_F(OneBagSourceTest, DoesNotUndistortRectifiedDepth) {
+  const TestCameraInfo camera{.distortion = {0.3, 0, 0, 0, 0}, .rectified_fx = 50};  // that of K
+  const cv::Mat patch = patch_at(52, 4, 1000);
+  add("/kinect2/qhd/camera_info", "sensor_msgs/CameraInfo", stamp(0),
+      camera_info_message(serialisation_, camera));
+  add("/kinect2/qhd/image_color", "sensor_msgs/Image", stamp(0),
+      image_message(serialisation_, stamp(0), "rgb", color_image(9), "bgr8"));
+  add("/kinect2/qhd/image_depth_rect", "sensor_msgs/Image", stamp(0),
+      image_message(serialisation_, stamp(0), "rgb", patch, "16UC1"));
+  BagSource source = open();
+  const auto frames = frames_of(source);
+  ASSERT_EQ(frames.size(), 1U);
+  EXPECT_EQ(cv::norm(frames[0].depth, in_metres(patch, 1000), cv::NORM_INF), 0);
+  EXPECT_EQ(frames[0].bgr.at<cv::Vec3b>(0, 0), cv::Vec3b(0, 0, 0));  // not seen: it is undistorted
+}
+
+/// As realsense-viewer writes it: depth in 0.5 mm, 10 cm to the left of the colour camera.
+class RealSenseBagSourceTest : public BagSourceTest {
+ protected:
+  RealSenseBagSourceTest() : BagSourceTest(BagStyle{"bag", "lz4"}) {
+    add("/device_0/sensor_0/option/Depth Units/value", "std_msgs/Float32", stamp(0),
+        testing::ByteWriter(serialisation_).number(0.0005F).bytes());
+    for (const char* stream : {kColorStream, kDepthStream})
+      add(std::string(stream) + "/info/camera_info", "sensor_msgs/CameraInfo", stamp(0),
+          camera_info_message(serialisation_, {.frame = "", .rectified_fx = 0}));
+    image(kColorStream, color_image(9), "bgr8");
+    image(kDepthStream, patch_at(20, 15, 2000), "mono16");
+  }
+  void image(const std::string& stream, const cv::Mat& pixels, const std::string& encoding) {
+    add(stream + "/image/data", "sensor_msgs/Image", stamp(0),
+        image_message(serialisation_, stamp(0), "0", pixels, encoding));
+  }
+  /// Where the first stream of the device is in this one: without rotation.
+  void transform(const std::string& stream, double x) {
+    testing::ByteWriter writer(serialisation_);
+    for (const double number : {x, 0., 0., 0., 0., 0., 1.}) writer.number(number);
+    add(stream + "/tf/0", "geometry_msgs/Transform", stamp(0), writer.bytes());
+  }
+  static constexpr const char* kColorStream = "/device_0/sensor_1/Color_0";
+  static constexpr const char* kDepthStream = "/device_0/sensor_0/Depth_0";
+};
+
+TEST_F(RealSenseBagSourceTest, RegistersDepthByTheTransformsOfTheSdk) {
+  transform(kColorStream, 0.06);
+  transform(kDepthStream, -0.04);
+  BagSource source = open();
+  const auto frames = frames_of(source);
+  ASSERT_EQ(frames.size(), 1U);
+  const cv::Mat expected = in_metres(patch_at(25, 15, 2000), 2000);
+  EXPECT_EQ(cv::norm(frames[0].depth, expected, cv::NORM_INF), 0);
+}
+
+TEST_F(RealSenseBagSourceTest, RefusesDepthWithoutThem) {
+  transform(kColorStream, 0.06);
+  EXPECT_THAT(error_text(Fault::kUsage, [&] { open(); }),
+              AllOf(HasSubstr("a recording of the RealSense SDK, whose depth is not registered"),
+                    HasSubstr("align_depth"), HasSubstr("source.registered=true")));
+  BagSource source = open({.registered = true});
+  EXPECT_FLOAT_EQ(source.next()->depth.at<float>(16, 21), 1.0F);
 }
 
 TEST_F(OneBagSourceTest, AsksForACamera) {

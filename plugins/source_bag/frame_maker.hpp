@@ -16,7 +16,7 @@ class FrameMaker {
  public:
   /// Depth is seen from the colour camera. Throws Error(kUsage) when a camera is none.
   explicit FrameMaker(const CameraModel& color);
-  /// Depth is that of a camera beside it.
+  /// Depth is that of a camera beside it, or of the same one without its distortion.
   FrameMaker(const CameraModel& color, const CameraModel& depth, const Pose& color_from_depth);
 
   bool registers() const { return registration_.has_value(); }

@@ -47,7 +47,8 @@ DepthFolder::DepthFolder(fs::path folder, PairBy pair_by)
   std::ranges::transform(files_, std::back_inserter(times_), time_of);
 }
 
-std::optional<std::size_t> DepthFolder::near(double time, double max_difference) {
+std::optional<std::size_t> DepthFolder::near(double time, std::optional<double> next,
+                                             double max_difference) {
   const auto first = times_.begin() + static_cast<std::ptrdiff_t>(next_);
   const auto distance = [&](double other) { return std::abs(other - time); };
   const auto later = std::lower_bound(first, times_.end(), time);
@@ -55,6 +56,7 @@ std::optional<std::size_t> DepthFolder::near(double time, double max_difference)
   const auto closest =
       std::ranges::min_element(later == first ? later : later - 1, end, {}, distance);
   if (closest == end || distance(*closest) > max_difference) return std::nullopt;
+  if (next && std::abs(*closest - *next) < distance(*closest)) return std::nullopt;
   next_ = static_cast<std::size_t>(closest - times_.begin()) + 1;
   return next_ - 1;
 }

@@ -24,8 +24,9 @@ class DepthFolder {
 
   const std::filesystem::path& path() const { return folder_; }
   std::size_t size() const { return files_.size(); }
-  /// The closest one that is at most so far away and that no earlier call gave. Times must grow.
-  std::optional<std::size_t> near(double time, double max_difference);
+  /// The closest one that is at most so far away and that no earlier call gave, unless it is closer
+  /// to `next`, the time of the next call, if there is one. Times must grow.
+  std::optional<std::size_t> near(double time, std::optional<double> next, double max_difference);
   /// CV_16UC1 of this size. Throws Error(kData) for any other image, and for one that is damaged.
   cv::Mat read(std::size_t number, cv::Size size);
 

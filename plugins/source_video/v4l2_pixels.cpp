@@ -6,6 +6,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "stillpoint/support/image_codec.hpp"
+#include "tum_recording/image_decoder.hpp"
 
 namespace stillpoint::source_video {
 namespace {
@@ -19,6 +20,7 @@ cv::Mat rows_of(const V4l2Image& image, int type, cv::Size size) {
 }
 
 cv::Mat decoded(const V4l2Image& image) {
+  if (tum_recording::is_truncated_jpeg(image.bytes)) return {};
   try {
     return decode_image(image.bytes);
   } catch (const cv::Exception&) {

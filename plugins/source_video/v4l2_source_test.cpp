@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <opencv2/core.hpp>
 #include <stop_token>
 #include <thread>
 
@@ -16,6 +17,7 @@ namespace stillpoint::source_video {
 namespace {
 
 using ::testing::AllOf;
+using ::testing::Contains;
 using ::testing::ElementsAre;
 using testing::error_text;
 using ::testing::HasSubstr;
@@ -40,6 +42,18 @@ FakeImage depth(std::uint64_t microseconds, int millimetres = 1500) {
       pixel[1] = static_cast<std::uint8_t>(millimetres >> 8);
     }
   return image;
+}
+
+/// Without its last quarter: a decoder makes a whole image of it.
+std::vector<std::uint8_t> truncated(std::vector<std::uint8_t> jpeg) {
+  jpeg.resize(jpeg.size() * 3 / 4);
+  return jpeg;
+}
+
+std::vector<std::uint8_t> jpeg_of_noise() {
+  cv::Mat image(kHeight, kWidth, CV_8UC3);
+  cv::RNG(1).fill(image, cv::RNG::UNIFORM, 0, 256);
+  return encode_image(".jpg", image);
 }
 
 /// A camera of two devices, which is there as often as there are sessions.
@@ -132,6 +146,22 @@ TEST_F(V4l2SourceTest, CountsDamagedImages) {
   EXPECT_THAT(camera.report().warnings, ElementsAre(HasSubstr("2 images came damaged")));
 }
 
+TEST_F(V4l2SourceTest, CountsTruncatedMotionJpegAsDamaged) {
+  options_.color_format = V4l2Source::ColorFormat::kMjpeg;
+  color_.pixels = V4L2_PIX_FMT_MJPEG;
+  const std::vector<std::uint8_t> jpeg = jpeg_of_noise();
+  color_.sessions = {
+      FakeSession{.images = {{.bytes = truncated(jpeg), .microseconds = 5 * kSecond},
+                             {.bytes = jpeg, .microseconds = 5 * kSecond + 100'000}}}};
+  depth_.sessions = {
+      FakeSession{.images = {depth(5 * kSecond, 1500), depth(5 * kSecond + 100'000, 2500)}}};
+  V4l2Source camera = source();
+  const auto frame = camera.next();
+  ASSERT_TRUE(frame);
+  EXPECT_FLOAT_EQ(frame->depth.at<float>(7, 7), 2.5f);
+  EXPECT_THAT(camera.report().warnings, Contains(HasSubstr("1 images came damaged")));
+}
+
 TEST_F(V4l2SourceTest, SaysThatADeviceIsMissing) {
   color_.sessions = {FakeSession{}};
   EXPECT_THAT(refused(Fault::kData), HasSubstr("/dev/video2: cannot be opened: No such file"));
@@ -168,6 +198,8 @@ TEST(V4l2Pixels, OfMotionJpeg) {
   EXPECT_TRUE(bgr_of({.bytes = jpeg}, V4L2_PIX_FMT_MJPEG, {2 * kWidth, kHeight}).empty());
   EXPECT_TRUE(
       bgr_of({.bytes = std::span(jpeg).first(20)}, V4L2_PIX_FMT_MJPEG, {kWidth, kHeight}).empty());
+  const std::vector<std::uint8_t> cut = truncated(jpeg_of_noise());
+  EXPECT_TRUE(bgr_of({.bytes = cut}, V4L2_PIX_FMT_MJPEG, {kWidth, kHeight}).empty());
 }
 
 }  // namespace

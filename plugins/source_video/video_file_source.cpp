@@ -125,7 +125,8 @@ std::optional<VideoFileSource::Pair> VideoFileSource::next_pair() {
 }
 
 std::optional<std::size_t> VideoFileSource::depth_of(std::size_t image, double time) {
-  if (options_.pair_by == PairBy::kTime) return depths_.near(time, options_.max_difference);
+  if (options_.pair_by == PairBy::kTime)
+    return depths_.near(time, times_.at(image + 1), options_.max_difference);
   if (image < depths_.size()) return image;
   throw Error(
       Fault::kData,

@@ -109,6 +109,20 @@ TEST_F(VideoFileSourceTest, PairsByTheNamesOfDepthImages) {
   EXPECT_THAT(video.report().warnings, ElementsAre(HasSubstr("2 images of the video have no")));
 }
 
+// Each depth image is within 20 ms of the image before its own.
+TEST_F(VideoFileSourceTest, PairsAFastVideoWithEveryOtherDepthImage) {
+  options_.pair_by = PairBy::kTime;
+  options_.rate = 60;
+  rename_depth(0, "0.0");
+  rename_depth(1, "0.033333");
+  for (const int left_out : {2, 3}) fs::remove(depths() / (std::to_string(left_out) + ".png"));
+  VideoFileSource video = source();
+  const auto frames = frames_of(video);
+  ASSERT_EQ(frames.size(), 2u);
+  EXPECT_NEAR(frames[1].time, 2 / 60.0, 1e-9);
+  EXPECT_FLOAT_EQ(frames[1].depth.at<float>(5, 7), 1.001f);
+}
+
 TEST_F(VideoFileSourceTest, EndsAfterTheLimit) {
   options_.limit = 2;
   VideoFileSource video = source();

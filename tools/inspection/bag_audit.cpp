@@ -52,11 +52,11 @@ void unless_missing(BagAudit& audit, Function find) {
 }
 
 void find_cameras(bag::BagReader& bag, const BagAuditOptions& options, BagAudit& audit) {
-  constexpr double kMillimetres = 1000;
   unless_missing(audit, [&] {
     audit.camera = options.camera ? *options.camera : bag::camera_in_bag(bag, audit.choice->color);
   });
-  audit.depth_factor = audit.camera ? audit.camera->depth_factor : kMillimetres;
+  audit.depth_factor = options.camera ? options.camera->depth_factor
+                                      : bag::depth_factor_in_bag(bag, audit.choice->depth);
   if (audit.choice->registered()) return;
   unless_missing(audit, [&] {
     const bag::DepthExtrinsics depth = bag::depth_extrinsics(bag, *audit.choice);

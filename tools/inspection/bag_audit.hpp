@@ -37,7 +37,7 @@ struct BagAudit : PairAudit {
   std::uintmax_t bytes = 0;  ///< of all its files
   std::vector<TopicAudit> topics;
   std::optional<bag::TopicChoice> choice;
-  std::optional<Pose> color_from_depth;  ///< by tf, of depth that is not registered
+  std::optional<Pose> color_from_depth;  ///< as the bag says, of depth that is not registered
 };
 
 /// Throws Error(kData) when it is no bag; all else is a finding.

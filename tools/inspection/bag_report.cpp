@@ -54,7 +54,7 @@ std::string camera_text(const CameraModel& camera) {
 std::string depth_camera_text(const BagAudit& audit) {
   const double distance = audit.color_from_depth->translation().norm();
   return camera_text(*audit.depth_camera) + "; " + fixed(1e3 * distance, 1) +
-         " mm beside, registered by tf";
+         " mm beside, registered to colour";
 }
 
 BagJson topic_json(const TopicAudit& topic) {

@@ -22,7 +22,7 @@ struct InspectArguments {
 /// The camera that is named, or the one that lies beside the recording.
 std::optional<CameraModel> camera_for(const InspectArguments& arguments) {
   if (!arguments.camera.empty()) return load_camera(arguments.camera);
-  const auto beside = std::filesystem::path(arguments.recording) / "camera.yaml";
+  const auto beside = bag_path(arguments.recording) / "camera.yaml";
   if (std::filesystem::is_regular_file(beside)) return load_camera(beside.string());
   return std::nullopt;
 }

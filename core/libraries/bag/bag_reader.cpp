@@ -49,7 +49,8 @@ std::uint32_t BagReader::add_topic(Topic topic) {
 
 void BagReader::sort_messages() { std::ranges::stable_sort(messages_, {}, &MessagePlace::time); }
 
-std::unique_ptr<BagReader> open_bag(const fs::path& path) {
+std::unique_ptr<BagReader> open_bag(const fs::path& named) {
+  const fs::path path = bag_path(named);
   std::error_code error;
   if (!fs::is_directory(path, error)) return open_file(path);
   const std::vector<fs::path> files = bag_files(path);

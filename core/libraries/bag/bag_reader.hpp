@@ -64,8 +64,9 @@ class BagReader {
   DamageList damage_;
 };
 
-/// A file, by its content, or a folder with such files (stillpoint::bag_files), of which those that
-/// cannot be read are damage. Throws Error(kData) when it is no bag, or nothing of it can be read.
+/// A file, by its content, or a folder with such files (stillpoint::bag_files) or its
+/// metadata.yaml, of which those that cannot be read are damage. Throws Error(kData) when it is no
+/// bag, or nothing of it can be read.
 std::unique_ptr<BagReader> open_bag(const std::filesystem::path& path);
 
 /// "sensor_msgs/Image" of "sensor_msgs/msg/Image".

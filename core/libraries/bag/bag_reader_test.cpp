@@ -6,6 +6,7 @@
 #include <fstream>
 
 #include "bag/mcap_file.hpp"
+#include "stillpoint/support/bag_files.hpp"
 #include "support/bag_writer.hpp"
 #include "support/error_text.hpp"
 #include "support/recording_writer.hpp"
@@ -199,6 +200,59 @@ TEST(OpenBag, RefusesWhatIsNoBag) {
   EXPECT_THAT(refusal_of(folder.write("a.bag", "hello")), HasSubstr("is neither a ROS 1 bag"));
   EXPECT_THAT(refusal_of(folder.write("a.bag", "#ROSBAG V1.2\n")), HasSubstr("rosbag fix"));
   EXPECT_THAT(refusal_of(folder.write("a.db3.zstd", "\x28\xb5\x2f\xfd....")), HasSubstr("zstd -d"));
+}
+
+constexpr const char* kZstd = "\x28\xb5\x2f\xfd....";
+
+TEST(OpenBag, RefusesWhatIsCompressedAsAWholeWhereverItLies) {
+  const TemporaryFolder folder;
+  for (const char* name : {"walk/walk_0.mcap.zstd", "run/run_0.db3.zstd"}) {
+    const auto file = folder.write(name, kZstd);
+    const auto metadata = file.parent_path() / "metadata.yaml";
+    EXPECT_THAT(bag_files(file), ElementsAre(file));
+    for (const auto& path : {file, file.parent_path(), metadata})
+      EXPECT_THAT(refusal_of(path), HasSubstr("decompress it with 'zstd -d' first")) << path;
+  }
+}
+
+TEST(OpenBag, TakesTheFileThatACompressedOneWasMadeOf) {
+  const TemporaryFolder folder;
+  write_bag(folder.path() / "walk_0.mcap", {"mcap", "none"});
+  folder.write("walk_0.mcap.zstd", kZstd);
+  const auto bag = open_bag(folder.path());
+  EXPECT_THAT(numbers_in(*bag), SizeIs(kCount));
+  EXPECT_THAT(bag->damage(), IsEmpty());
+}
+
+TEST(OpenBag, TakesTheFolderOfItsMetadata) {
+  const TemporaryFolder folder;
+  write_bag(folder.path() / "walk_0.mcap", {"mcap", "none"});
+  const auto metadata = folder.write("metadata.yaml", "rosbag2_bagfile_information: {}\n");
+  EXPECT_EQ(bag_path(metadata), folder.path());
+  EXPECT_THAT(numbers_in(*open_bag(metadata)), SizeIs(kCount));
+  EXPECT_THAT(bag_files(folder.write("other/metadata.yaml", "")), IsEmpty());
+}
+
+// As `ros2 bag record --compression-mode message` writes MCAP.
+TEST(OpenBag, ReadsMessagesThatAreCompressedEachForItself) {
+  const TemporaryFolder folder;
+  const auto file = folder.path() / "a.mcap";
+  const auto writer = make_bag_writer(file, {"mcap", "none"});
+  const auto stored = [](int i) { return stillpoint::testing::compressed("zstd", message(i)); };
+  for (int i = 0; i < 3; ++i)
+    writer->add(i % 2 == 0 ? "/even" : "/odd", "sensor_msgs/Image", kStart + 1'000'000 * i,
+                stored(i));
+  BagBytes cut = stored(3);
+  cut.resize(cut.size() / 2);
+  writer->add("/odd", "sensor_msgs/Image", kStart + 3'000'000, cut);
+  writer->finish();
+  const auto bag = open_bag(file);
+  EXPECT_THAT(numbers_in(*bag), ElementsAre(0, 1, 2));
+  const ByteSpan begin = bag->read(bag->messages()[1], 20);
+  const BagBytes whole = message(1);
+  EXPECT_EQ(BagBytes(begin.begin(), begin.end()), BagBytes(whole.begin(), whole.begin() + 20));
+  EXPECT_THAT(error_text(Fault::kData, [&] { bag->read(bag->messages()[3]); }),
+              HasSubstr("a.mcap: the compressed message is damaged: it ends too early"));
 }
 
 TEST(OpenBag, RefusesOtherDatabases) {

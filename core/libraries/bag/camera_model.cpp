@@ -1,7 +1,9 @@
 #include "bag/camera_model.hpp"
 
 #include <algorithm>
+#include <sstream>
 
+#include "bag/realsense_recording.hpp"
 #include "stillpoint/support/option_check.hpp"
 
 namespace stillpoint::bag {
@@ -14,7 +16,10 @@ std::vector<double> brown_conrady(const CameraInfoMessage& info) {
   std::vector<double> all = info.distortion;
   while (!all.empty() && all.back() == 0.0) all.pop_back();
   if (all.empty()) return {};
-  const bool fits = info.model == "plumb_bob" || info.model == "rational_polynomial";
+  // The RealSense SDK writes "Inverse Brown Conrady" and the like, and projects by the same
+  // formula; its node for ROS calls them plumb_bob.
+  const bool fits = info.model == "plumb_bob" || info.model == "rational_polynomial" ||
+                    info.model.ends_with("Brown Conrady");
   if (!fits || all.size() > 5)
     throw Error(Fault::kData,
                 "the distortion '" + info.model + "' with " + std::to_string(all.size()) +
@@ -22,6 +27,13 @@ std::vector<double> brown_conrady(const CameraInfoMessage& info) {
                 "", "record rectified images, or rectify them with image_proc");
   all.resize(std::max<std::size_t>(all.size(), 4));
   return all;
+}
+
+std::string number_text(double number) {
+  std::ostringstream text;
+  text.precision(9);
+  text << number;
+  return text.str();
 }
 
 }  // namespace
@@ -50,20 +62,39 @@ CameraModel camera_model(const CameraInfoMessage& info, bool rectified, const st
 }
 
 CameraModel camera_in_bag(BagReader& bag, const ImageTopic& images) {
-  std::optional<CameraInfoMessage> info;
-  for (const MessagePlace& place : bag.messages()) {
-    if (place.topic != images.info) continue;
-    try {
-      info = read_camera_info(bag.read(place), bag.topics()[place.topic].serialisation);
-      break;
-    } catch (const Error&) {  // a damaged one; the next may do
-    }
-  }
-  if (info) return camera_model(*info, images.rectified(), bag.topics()[*images.info].name);
+  if (images.camera)
+    return camera_model(*images.camera, images.rectified(), bag.topics()[*images.info].name);
   const bool depth = images.first.kind() == ImageKind::kDepth;
   throw Error(Fault::kUsage, "the bag has no CameraInfo of " + images.name, "",
-              std::string("name its topic with --set source.") +
-                  (depth ? "depth_info_topic=NAME" : "info_topic=NAME, or a camera with --camera"));
+              "name its topic: " + how_to_name(depth ? "depth_info_topic" : "info_topic") +
+                  (depth ? "" : "; or give a camera with --camera"));
+}
+
+CameraModel rectified_camera(const TopicChoice& choice, const CameraModel& color) {
+  for (const ImageTopic* images : {&choice.depth, &choice.color}) {
+    const auto& info = images->camera;
+    if (info && info->projection[0] != 0.0 && info->width == color.width &&
+        info->height == color.height)
+      return camera_model(*info, true, color.name);
+  }
+  CameraModel rectified = color;
+  rectified.distortion.clear();
+  rectified.crop.clear();
+  return rectified;
+}
+
+double depth_factor_in_bag(BagReader& bag, const ImageTopic& depth) {
+  return realsense_depth_factor(bag, depth.name).value_or(kMillimetres);
+}
+
+std::string depth_factor_warning(const CameraModel& camera_file, double of_images) {
+  if (camera_file.depth_factor == of_images) return {};
+  const std::string unit = of_images == kMillimetres
+                               ? "of ROS is in millimetres"
+                               : "of this recording has " + number_text(of_images) + " for a metre";
+  return "16-bit depth " + unit + ", but the camera file has depth_factor " +
+         number_text(camera_file.depth_factor) + ": set it to " + number_text(of_images) +
+         ", or source.depth_factor if these images differ";
 }
 
 }  // namespace stillpoint::bag

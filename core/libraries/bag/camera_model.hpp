@@ -17,4 +17,15 @@ CameraModel camera_model(const CameraInfoMessage& info, bool rectified, const st
 /// none.
 CameraModel camera_in_bag(BagReader& bag, const ImageTopic& images);
 
+/// Of depth images that are registered to colour images of the camera `color`, and rectified, which
+/// the colour images are not: as P of a CameraInfo has it, or else `color` without distortion.
+CameraModel rectified_camera(const TopicChoice& choice, const CameraModel& color);
+
+/// Of 16-bit depth images, the value of one metre: 1000, as ROS has it, or what a recording of the
+/// RealSense SDK says.
+double depth_factor_in_bag(BagReader& bag, const ImageTopic& depth);
+
+/// Empty when a camera file has the depth factor of the 16-bit images; otherwise that it has not.
+std::string depth_factor_warning(const CameraModel& camera_file, double of_images = 1000.0);
+
 }  // namespace stillpoint::bag

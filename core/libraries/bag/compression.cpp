@@ -141,4 +141,18 @@ bool is_zstd(ByteSpan bytes) {
   return bytes.size() >= 4 && std::equal(std::begin(kMagic), std::end(kMagic), bytes.begin());
 }
 
+ByteSpan MessageBytes::first(std::size_t at_most, const std::string& where,
+                             const std::function<ByteSpan(std::size_t)>& stored) {
+  constexpr std::size_t kMagic = 4;          // bytes
+  constexpr std::size_t kLargest = 1 << 30;  // bytes; larger ones are damage
+  const ByteSpan begin = stored(std::max(at_most, kMagic));
+  if (!is_zstd(begin)) return begin.first(std::min(at_most, begin.size()));
+  Decompressed result =
+      decompress(Compression::kZstd, stored(kLargest), std::min(at_most, kLargest));
+  if (!result.fault.empty() && result.bytes.size() < at_most)
+    throw Error(Fault::kData, "the compressed message is damaged: " + result.fault, where);
+  decompressed_ = std::move(result.bytes);
+  return decompressed_;
+}
+
 }  // namespace stillpoint::bag

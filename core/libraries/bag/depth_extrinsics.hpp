@@ -12,8 +12,9 @@ struct DepthExtrinsics {
   Pose color_from_depth = Pose::Identity();
 };
 
-/// By their CameraInfo, and by tf between their frame and that of the colour images. Throws
-/// Error(kUsage), which says that depth is not registered, when the bag lacks either.
+/// By their CameraInfo, and by tf between their frame and that of the colour images, or by what a
+/// recording of the RealSense SDK has in place of tf. Throws Error(kUsage), which says that depth
+/// is not registered, when the bag lacks either.
 DepthExtrinsics depth_extrinsics(BagReader& bag, const TopicChoice& choice);
 
 }  // namespace stillpoint::bag

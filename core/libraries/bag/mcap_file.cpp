@@ -214,15 +214,17 @@ void McapFile::add_channel(ByteReader reader) {
 }
 
 ByteSpan McapFile::read(const MessagePlace& place, std::size_t at_most) {
+  const std::string file = chunks_.path().string();
   const auto record = record_at(place.chunk, place.position);
   if (!record || record->opcode != Opcode::kMessage || record->size < kMessageHeader)
-    throw Error(Fault::kData, "the message is damaged", chunks_.path().string());
-  const auto wanted = static_cast<std::size_t>(
-      std::min<std::uint64_t>({at_most, record->size - kMessageHeader, kLargestChunk}));
-  const ByteSpan bytes = chunks_.bytes(place.chunk, record->content() + kMessageHeader, wanted);
-  if (bytes.size() < wanted)
-    throw Error(Fault::kData, "the message is damaged", chunks_.path().string());
-  return bytes;
+    throw Error(Fault::kData, "the message is damaged", file);
+  return message_.first(at_most, file, [&](std::size_t count) {
+    const auto wanted = static_cast<std::size_t>(
+        std::min<std::uint64_t>({count, record->size - kMessageHeader, kLargestChunk}));
+    const ByteSpan bytes = chunks_.bytes(place.chunk, record->content() + kMessageHeader, wanted);
+    if (bytes.size() < wanted) throw Error(Fault::kData, "the message is damaged", file);
+    return bytes;
+  });
 }
 
 }  // namespace stillpoint::bag

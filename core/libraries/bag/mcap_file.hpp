@@ -39,6 +39,7 @@ class McapFile final : public BagReader {
   Chunks chunks_;
   std::unordered_map<std::uint16_t, std::string> type_of_;     // by number of the schema
   std::unordered_map<std::uint16_t, std::uint32_t> topic_of_;  // by number of the channel
+  MessageBytes message_;
 };
 
 }  // namespace stillpoint::bag

@@ -38,6 +38,22 @@ void read_numbers(ByteReader& reader, std::array<double, kCount>& numbers) {
   for (double& number : numbers) number = reader.number<double>();
 }
 
+/// geometry_msgs/Transform.
+std::optional<Pose> read_pose(ByteReader& reader) {
+  constexpr double kUnit = 0.01;  // that the norm of a quaternion may be off
+  std::array<double, 3> translation;
+  std::array<double, 4> rotation;  // x, y, z, w
+  read_numbers(reader, translation);
+  read_numbers(reader, rotation);
+  const Eigen::Quaterniond quaternion(rotation.data());
+  const Eigen::Vector3d position(translation.data());
+  if (!position.allFinite() || !(std::abs(quaternion.norm() - 1) < kUnit)) return std::nullopt;
+  Pose pose = Pose::Identity();
+  pose.linear() = quaternion.normalized().toRotationMatrix();
+  pose.translation() = position;
+  return pose;
+}
+
 }  // namespace
 
 ImageKind ImageDescription::kind() const {
@@ -94,25 +110,28 @@ CameraInfoMessage read_camera_info(ByteSpan message, Serialisation serialisation
 }
 
 std::vector<TransformMessage> read_transforms(ByteSpan message, Serialisation serialisation) {
-  constexpr double kUnit = 0.01;  // that the norm of a quaternion may be off
   ByteReader reader(message, serialisation);
   std::vector<TransformMessage> transforms;
   for (auto left = reader.number<std::uint32_t>(); left > 0; --left) {
     MessageHeader header = read_header(reader, serialisation);
     TransformMessage transform{
         .parent = std::move(header.frame), .child = read_frame(reader), .stamp = header.stamp};
-    std::array<double, 3> translation;
-    std::array<double, 4> rotation;  // x, y, z, w
-    read_numbers(reader, translation);
-    read_numbers(reader, rotation);
-    const Eigen::Quaterniond quaternion(rotation.data());
-    const Eigen::Vector3d position(translation.data());
-    if (!position.allFinite() || !(std::abs(quaternion.norm() - 1) < kUnit)) continue;
-    transform.parent_from_child.linear() = quaternion.normalized().toRotationMatrix();
-    transform.parent_from_child.translation() = position;
+    const auto pose = read_pose(reader);
+    if (!pose) continue;
+    transform.parent_from_child = *pose;
     transforms.push_back(std::move(transform));
   }
   return transforms;
+}
+
+std::optional<Pose> read_transform(ByteSpan message, Serialisation serialisation) {
+  ByteReader reader(message, serialisation);
+  return read_pose(reader);
+}
+
+float read_float(ByteSpan message, Serialisation serialisation) {
+  ByteReader reader(message, serialisation);
+  return reader.number<float>();
 }
 
 }  // namespace stillpoint::bag

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -16,6 +17,8 @@ inline constexpr std::string_view kImageType = "sensor_msgs/Image";
 inline constexpr std::string_view kCompressedImageType = "sensor_msgs/CompressedImage";
 inline constexpr std::string_view kCameraInfoType = "sensor_msgs/CameraInfo";
 inline constexpr std::string_view kTransformTypes[] = {"tf2_msgs/TFMessage", "tf/tfMessage"};
+inline constexpr std::string_view kOneTransformType = "geometry_msgs/Transform";
+inline constexpr std::string_view kFloatType = "std_msgs/Float32";
 
 /// std_msgs/Header.
 struct MessageHeader {
@@ -33,6 +36,8 @@ struct ImageDescription {
   std::string encoding;       ///< "rgb8", "16UC1", …; when compressed its format, "jpeg", …
 
   ImageKind kind() const;
+  /// Depth as floating-point numbers; that of 16 bits has a unit of its own.
+  bool in_metres() const { return encoding.starts_with("32FC1"); }
 };
 
 /// sensor_msgs/Image, or CompressedImage with `data` only. Its bytes are those of the message.
@@ -66,5 +71,9 @@ ImageMessage read_image(ByteSpan message, Serialisation serialisation, bool comp
 CameraInfoMessage read_camera_info(ByteSpan message, Serialisation serialisation);
 /// Without those whose numbers are no rigid transform.
 std::vector<TransformMessage> read_transforms(ByteSpan message, Serialisation serialisation);
+/// geometry_msgs/Transform; nothing when its numbers are no rigid transform.
+std::optional<Pose> read_transform(ByteSpan message, Serialisation serialisation);
+/// std_msgs/Float32.
+float read_float(ByteSpan message, Serialisation serialisation);
 
 }  // namespace stillpoint::bag

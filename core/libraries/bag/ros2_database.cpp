@@ -1,8 +1,5 @@
 #include "bag/ros2_database.hpp"
 
-#include "bag/chunks.hpp"
-#include "bag/compression.hpp"
-
 namespace stillpoint::bag {
 
 Ros2Database::Ros2Database(const std::filesystem::path& file) : file_(file), database_(file) {
@@ -51,16 +48,9 @@ void Ros2Database::read_messages() {
 
 ByteSpan Ros2Database::read(const MessagePlace& place, std::size_t at_most) {
   const auto row = static_cast<std::int64_t>(place.position);
-  constexpr std::size_t kMagic = 4;  // bytes
-  ByteSpan bytes = database_.blob("messages", "data", row, std::max(at_most, kMagic));
-  if (!is_zstd(bytes)) return bytes.first(std::min(at_most, bytes.size()));
-  bytes = database_.blob("messages", "data", row, kLargestChunk);
-  Decompressed result =
-      decompress(Compression::kZstd, bytes, std::min<std::size_t>(at_most, kLargestChunk));
-  if (!result.fault.empty() && result.bytes.size() < at_most)
-    throw Error(Fault::kData, "row " + std::to_string(row) + ": " + result.fault, file_.string());
-  decompressed_ = std::move(result.bytes);
-  return decompressed_;
+  return message_.first(
+      at_most, file_.string() + ": row " + std::to_string(row),
+      [&](std::size_t count) { return database_.blob("messages", "data", row, count); });
 }
 
 }  // namespace stillpoint::bag

@@ -5,14 +5,14 @@
 #include <filesystem>
 #include <string>
 #include <unordered_map>
-#include <vector>
 
 #include "bag/bag_reader.hpp"
+#include "bag/compression.hpp"
 #include "bag/sqlite_reader.hpp"
 
 namespace stillpoint::bag {
 
-/// One .db3 file. Messages that are compressed each for itself (zstd) are read, too.
+/// One .db3 file.
 class Ros2Database final : public BagReader {
  public:
   explicit Ros2Database(const std::filesystem::path& file);
@@ -27,7 +27,7 @@ class Ros2Database final : public BagReader {
   std::filesystem::path file_;
   SqliteReader database_;
   std::unordered_map<std::int64_t, std::uint32_t> topic_of_;  // by its key in the database
-  std::vector<std::uint8_t> decompressed_;
+  MessageBytes message_;
 };
 
 }  // namespace stillpoint::bag

@@ -1,14 +1,20 @@
 #include "bag/topic_choice.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <tuple>
 
+#include "bag/registration.hpp"
 #include "stillpoint/support/did_you_mean.hpp"
 
 namespace stillpoint::bag {
 namespace {
 
-bool contains(const std::string& text, const char* part) {
+/// Of names such as "Depth_0", too.
+bool contains(std::string text, const char* part) {
+  std::ranges::transform(text, text.begin(), [](unsigned char letter) {
+    return static_cast<char>(std::tolower(letter));
+  });
   return text.find(part) != std::string::npos;
 }
 
@@ -23,10 +29,6 @@ std::string base_of(const ImageTopic& topic) {
 std::string leaf_of(const ImageTopic& topic) {
   const std::string base = base_of(topic);
   return base.substr(base.rfind('/') + 1);
-}
-
-bool says_registered(const std::string& name) {
-  return contains(name, "registered") || contains(name, "aligned");
 }
 
 /// Parts of the name that two topics begin with: cameras of one robot have one each.
@@ -52,7 +54,7 @@ ImageTopic best_of(const std::vector<ImageTopic>& topics, const std::string& opt
   }
   if (best.size() > 1)
     throw Error(Fault::kUsage, "several topics may be the " + option + ": " + listed(best), "",
-                "name one with --set source." + option + "=NAME");
+                "name one: " + how_to_name(option));
   return best.front();
 }
 
@@ -102,31 +104,63 @@ ImageTopic choose_depth(const std::vector<ImageTopic>& topics, const ImageTopic&
   });
 }
 
-/// The camera info beside the images, or that of the given name.
+/// Beside the images; of a recording of the RealSense SDK, "…/Color_0/info/camera_info" of
+/// "…/Color_0/image/data".
+std::vector<std::string> usual_info_names(const ImageTopic& images) {
+  const std::string folder = parent_of(base_of(images));
+  return {folder + "/camera_info", parent_of(folder) + "/info/camera_info"};
+}
+
+/// The camera info of the images, or that of the given name.
 std::optional<std::uint32_t> choose_info(BagReader& bag, const ImageTopic& images,
                                          const std::string& name) {
-  const std::string wanted = name.empty() ? parent_of(base_of(images)) + "/camera_info" : name;
+  const std::vector<Topic>& topics = bag.topics();
+  for (const std::string& wanted : name.empty() ? usual_info_names(images) : std::vector{name})
+    for (std::uint32_t i = 0; i < topics.size(); ++i)
+      if (topics[i].type == kCameraInfoType &&
+          (topics[i].name == wanted || topics[i].name == "/" + wanted))
+        return i;
+  if (name.empty()) return std::nullopt;
   std::vector<std::string> names;
-  for (std::uint32_t i = 0; i < bag.topics().size(); ++i) {
-    const Topic& topic = bag.topics()[i];
-    if (topic.type != kCameraInfoType) continue;
-    if (topic.name == wanted || topic.name == "/" + wanted) return i;
-    names.push_back(topic.name);
+  for (const Topic& topic : topics)
+    if (topic.type == kCameraInfoType) names.push_back(topic.name);
+  throw Error(Fault::kUsage,
+              "there is no topic of camera infos '" + name + "'" + did_you_mean(name, names), "",
+              "those there are: " + (names.empty() ? "none" : join(names)));
+}
+
+std::optional<CameraInfoMessage> first_camera_info(BagReader& bag,
+                                                   std::optional<std::uint32_t> info) {
+  for (const MessagePlace& place : bag.messages()) {
+    if (place.topic != info) continue;
+    try {
+      return read_camera_info(bag.read(place), bag.topics()[place.topic].serialisation);
+    } catch (const Error&) {  // a damaged one; the next may do
+    }
   }
-  if (!name.empty())
-    throw Error(Fault::kUsage,
-                "there is no topic of camera infos '" + name + "'" + did_you_mean(name, names), "",
-                "those there are: " + (names.empty() ? "none" : join(names)));
   return std::nullopt;
+}
+
+void find_camera(BagReader& bag, ImageTopic& images, const std::string& name) {
+  images.info = choose_info(bag, images, name);
+  images.camera = first_camera_info(bag, images.info);
+}
+
+ImageOrigin origin_of(const ImageTopic& images) {
+  return {images.name, images.first.header.frame, images.camera};
 }
 
 }  // namespace
 
-bool TopicChoice::registered() const {
-  return color.first.header.frame == depth.first.header.frame || says_registered(depth.name);
-}
+bool TopicChoice::registered() const { return is_registered(origin_of(color), origin_of(depth)); }
 
 bool ImageTopic::rectified() const { return contains(leaf_of(*this), "rect"); }
+
+std::string how_to_name(const std::string& option) {
+  std::string flag = option;
+  std::ranges::replace(flag, '_', '-');
+  return "--set source." + option + "=NAME for run, --" + flag + " NAME for inspect";
+}
 
 std::vector<ImageTopic> image_topics(BagReader& bag) {
   constexpr std::size_t kBegin = 4096;  // bytes: a description and more
@@ -157,8 +191,8 @@ TopicChoice choose_topics(BagReader& bag, const TopicNames& names) {
   choice.color = names.color.empty() ? choose_color(topics) : named(topics, names.color);
   choice.depth =
       names.depth.empty() ? choose_depth(topics, choice.color) : named(topics, names.depth);
-  choice.color.info = choose_info(bag, choice.color, names.info);
-  choice.depth.info = choose_info(bag, choice.depth, names.depth_info);
+  find_camera(bag, choice.color, names.info);
+  find_camera(bag, choice.depth, names.depth_info);
   return choice;
 }
 

@@ -22,6 +22,7 @@ struct ImageTopic {
   std::string name;
   ImageDescription first;
   std::optional<std::uint32_t> info = {};  ///< index of their CameraInfo; nothing: there is none
+  std::optional<CameraInfoMessage> camera = {};  ///< the first of these that can be read
 
   /// By the name ("image_rect_color").
   bool rectified() const;
@@ -30,9 +31,12 @@ struct ImageTopic {
 struct TopicChoice {
   ImageTopic color, depth;
 
-  /// Whether depth is seen from the colour camera, by the frames of both or by the name of depth.
+  /// Whether depth is seen from the colour camera, as is_registered() says.
   bool registered() const;
 };
+
+/// How a topic is named that is the source's `option` ("color_topic"): in the commands that use it.
+std::string how_to_name(const std::string& option);
 
 /// The topics with images that can be read; their cameras are not looked for.
 std::vector<ImageTopic> image_topics(BagReader& bag);

@@ -6,6 +6,7 @@
 #include <opencv2/core.hpp>
 
 #include "bag/camera_model.hpp"
+#include "bag/depth_extrinsics.hpp"
 #include "support/bag_writer.hpp"
 #include "support/error_text.hpp"
 #include "support/recording_writer.hpp"
@@ -113,7 +114,8 @@ TEST_F(TopicChoiceTest, TakesThoseThatAreNamed) {
   EXPECT_THAT(error_text(Fault::kUsage, [&] { choose(); }),
               AllOf(HasSubstr("several topics may be the color_topic"),
                     HasSubstr("/back/color/image_raw (rgb8), /front/color/image_raw (rgb8)"),
-                    HasSubstr("--set source.color_topic=NAME")));
+                    HasSubstr("--set source.color_topic=NAME for run, --color-topic NAME for "
+                              "inspect")));
   EXPECT_EQ(choose({.color = "/back/color/image_raw"}).depth.name, "/back/depth/image_raw");
   EXPECT_EQ(choose({.color = "front/color/image_raw"}).depth.name, "/front/depth/image_raw");
   EXPECT_THAT(error_text(Fault::kUsage, [&] { choose({.color = "/back/color/image_rw"}); }),
@@ -134,8 +136,36 @@ TEST_F(TopicChoiceTest, DepthOfAnotherFrameIsNotRegistered) {
   image("/color/image", "c", "rgb8");
   image("/depth/image", "d", "16UC1");
   EXPECT_FALSE(choose().registered());
-  EXPECT_THAT(error_text(Fault::kUsage, [&] { camera_in_bag(bag(), choose().color); }),
-              AllOf(HasSubstr("has no CameraInfo of /color/image"), HasSubstr("--camera")));
+  EXPECT_THAT(
+      error_text(Fault::kUsage, [&] { camera_in_bag(bag(), choose().color); }),
+      AllOf(HasSubstr("has no CameraInfo of /color/image"),
+            HasSubstr("--set source.info_topic=NAME for run, --info-topic NAME for inspect"),
+            HasSubstr("--camera")));
+}
+
+// As of a driver that stamps all its cameras with one frame.
+TEST_F(TopicChoiceTest, DepthOfAnotherCameraIsNotRegisteredWhateverItsFrame) {
+  image("/color/image", "camera", "rgb8");
+  image("/depth/image", "camera", "16UC1");
+  info("/color/camera_info");
+  info("/depth/camera_info", {.fx = 60});
+  const TopicChoice choice = choose();
+  EXPECT_FALSE(choice.registered());
+  EXPECT_THAT(error_text(Fault::kUsage, [&] { depth_extrinsics(bag(), choice); }),
+              AllOf(HasSubstr("both have the same frame, but their CameraInfo are of different "
+                              "cameras"),
+                    HasSubstr("source.registered=true")));
+}
+
+TEST_F(TopicChoiceTest, AFrameWithoutANameIsNone) {
+  image("/color/image", "", "rgb8");
+  image("/depth/image", "", "16UC1");
+  info("/color/camera_info");
+  info("/depth/camera_info");
+  const TopicChoice choice = choose();
+  EXPECT_FALSE(choice.registered());
+  EXPECT_THAT(error_text(Fault::kUsage, [&] { depth_extrinsics(bag(), choice); }),
+              HasSubstr("the frame '' does not say where a camera is"));
 }
 
 TEST_F(TopicChoiceTest, TheCameraIsThatOfTheImages) {
@@ -153,6 +183,22 @@ TEST_F(TopicChoiceTest, TheCameraIsThatOfTheImages) {
       camera_in_bag(bag(), choose({.color = "/color/image_rect_color"}).color);
   EXPECT_EQ(rectified.fx, 45);
   EXPECT_TRUE(rectified.distortion.empty());
+}
+
+// As of kinect2_bridge: P of the one CameraInfo is for the rectified images.
+TEST_F(TopicChoiceTest, TheCameraOfRectifiedDepthIsP) {
+  image("/qhd/image_color", "rgb", "rgb8");
+  image("/qhd/image_depth_rect", "rgb", "16UC1");
+  info("/qhd/camera_info", {.distortion = {0.1, -0.2, 0, 0, 0}});
+  const TopicChoice choice = choose();
+  EXPECT_TRUE(choice.registered());
+  const CameraModel color = camera_in_bag(bag(), choice.color);
+  const CameraModel depth = rectified_camera(choice, color);
+  EXPECT_EQ(depth.fx, 45);
+  EXPECT_TRUE(depth.distortion.empty());
+  CameraModel of_another_size = color;
+  of_another_size.width = 1000;
+  EXPECT_EQ(rectified_camera(choice, of_another_size).fx, 50);
 }
 
 TEST_F(TopicChoiceTest, TheCameraIsThatOfTheFirstMessageThatIsWhole) {

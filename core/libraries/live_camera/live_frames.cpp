@@ -54,7 +54,8 @@ void LiveOptions::visit(OptionVisitor& v) {
     {.min = 0.001,
      .max = 1,
      .unit = "s",
-     .help = "largest time difference of a colour and a depth image in a pair"});
+     .help = "largest time difference of a colour and a depth image in a pair; at most 0.6 of the "
+             "time from one image to the next"});
   v("timeout", timeout,
     {.min = 0.1,
      .max = 3600,
@@ -200,7 +201,8 @@ SourceReport LiveFrames::report() const {
   if (unpaired > 0)
     report.warnings.push_back(text_of(device_, ": ", unpaired, " images had no partner within ",
                                       1000 * options_.max_difference,
-                                      " ms (source.max_difference)"));
+                                      " ms (source.max_difference) and ", kLargestShare,
+                                      " of the time from one image to the next"));
   if (late_ > 0)
     report.warnings.push_back(
         text_of(device_, ": ", late_, " pairs of images were older than the frame before"));

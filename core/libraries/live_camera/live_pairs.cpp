@@ -14,6 +14,7 @@ constexpr std::size_t kWaitingImages = 4;  // of a kind, without partner
 
 void LivePairs::put_color(double seconds, cv::Mat bgr) {
   const std::lock_guard lock(mutex_);
+  color_period_.add(seconds);
   if (auto depth = partner(seconds, depths_))
     deliver({seconds, std::move(bgr), std::move(depth->pixels)});
   else
@@ -22,6 +23,7 @@ void LivePairs::put_color(double seconds, cv::Mat bgr) {
 
 void LivePairs::put_depth(double seconds, cv::Mat depth) {
   const std::lock_guard lock(mutex_);
+  depth_period_.add(seconds);
   if (auto color = partner(seconds, colors_))
     deliver({color->seconds, std::move(color->pixels), std::move(depth)});
   else
@@ -31,7 +33,8 @@ void LivePairs::put_depth(double seconds, cv::Mat depth) {
 std::optional<LivePairs::Image> LivePairs::partner(double seconds, Waiting& others) {
   const auto distance = [&](const Image& image) { return std::abs(image.seconds - seconds); };
   const auto closest = std::ranges::min_element(others, {}, distance);
-  if (closest == others.end() || distance(*closest) > max_difference_) return std::nullopt;
+  const double limit = pairing_limit(max_difference_, color_period_, depth_period_);
+  if (closest == others.end() || distance(*closest) > limit) return std::nullopt;
   Image image = std::move(*closest);
   unpaired_ += static_cast<std::size_t>(closest - others.begin());
   others.erase(others.begin(), closest + 1);
@@ -67,6 +70,7 @@ void LivePairs::restart() {
   pairs_.clear();
   colors_.clear();
   depths_.clear();
+  color_period_ = depth_period_ = {};
   why_ended_.clear();
 }
 

@@ -11,6 +11,8 @@
 #include <stop_token>
 #include <string>
 
+#include "live_camera/stream_period.hpp"
+
 namespace stillpoint::live_camera {
 
 struct LivePair {
@@ -24,7 +26,8 @@ struct LivePair {
 /// Thread-safe.
 class LivePairs {
  public:
-  /// Images of a pair are at most `max_difference` seconds apart.
+  /// Images of a pair are at most `max_difference` seconds apart, and less where they come faster:
+  /// an image whose partner was lost does not take that of the next one.
   explicit LivePairs(double max_difference) : max_difference_(max_difference) {}
 
   /// A new image and its time in seconds. Its pixels must not change any more.
@@ -61,6 +64,7 @@ class LivePairs {
   mutable std::mutex mutex_;
   std::condition_variable_any changed_;  // knows stop tokens
   Waiting colors_, depths_;              // without partner yet
+  StreamPeriod color_period_, depth_period_;
   std::deque<LivePair> pairs_;
   std::string why_ended_;
   std::size_t dropped_ = 0;

@@ -39,6 +39,46 @@ TEST(LivePairs, TakesTheClosestAndCountsWhatIsLeftOver) {
   EXPECT_EQ(pairs.unpaired(), 1u);
 }
 
+// The depth image of a lost colour image is within 20 ms of the next one.
+TEST(LivePairs, ALostImageShiftsNoPairsOfSixtyHertz) {
+  LivePairs pairs(0.02);
+  int given = 0;
+  for (int i = 0; i < 60; ++i) {
+    if (i != 20) pairs.put_color(i / 60.0, image(i));
+    pairs.put_depth(i / 60.0 + 0.004, image(i));
+    while (const auto pair = pairs.take(0ms)) {
+      ++given;
+      EXPECT_EQ(value_of(pair->bgr), value_of(pair->depth));
+    }
+  }
+  EXPECT_EQ(given, 59);
+}
+
+// Depth comes first, while the colour image in between waits.
+TEST(LivePairs, PairsStreamsOfTwoRates) {
+  LivePairs pairs(0.02);
+  for (int i = 0; i < 20; ++i) {
+    if (i % 2 == 0) pairs.put_depth(i / 60.0, image(i));
+    pairs.put_color(i / 60.0, image(i));
+    const auto pair = pairs.take(0ms);
+    ASSERT_EQ(pair.has_value(), i % 2 == 0) << i;
+    if (!pair) continue;
+    EXPECT_EQ(value_of(pair->bgr), value_of(pair->depth));
+  }
+}
+
+// The colour and depth images of a Kinect are taken independently of each other.
+TEST(LivePairs, PairsThoseThatAreHalfAnIntervalApart) {
+  LivePairs pairs(0.02);
+  int given = 0;
+  for (int i = 0; i < 60; ++i) {
+    pairs.put_color(i / 30.0, image(i));
+    pairs.put_depth(i / 30.0 + (i % 2 == 0 ? 0.015 : 0.018), image(i));
+    while (pairs.take(0ms)) ++given;
+  }
+  EXPECT_EQ(given, 60);
+}
+
 TEST(LivePairs, PairsNothingThatIsFarApart) {
   LivePairs pairs(0.02);
   for (int i = 0; i < 10; ++i) {

@@ -15,16 +15,6 @@ namespace {
   throw Error(Fault::kData, problem, where, remedy);
 }
 
-/// libjpeg fills what a truncated file lacks with gray and only warns. In compressed data 0xff is
-/// always escaped, so that the end-of-image marker cannot appear there by chance.
-bool is_truncated_jpeg(std::span<const std::uint8_t> bytes) {
-  if (bytes.size() < 2 || bytes[0] != 0xff || bytes[1] != 0xd8) return false;
-  constexpr std::uint8_t kEndOfImage[] = {0xff, 0xd9};
-  const auto tail = bytes.last(std::min<std::size_t>(bytes.size(), 4096));
-  return std::search(tail.begin(), tail.end(), std::begin(kEndOfImage), std::end(kEndOfImage)) ==
-         tail.end();
-}
-
 std::string kind_of(const cv::Mat& image) {
   const int bits = static_cast<int>(8 * image.elemSize1());
   return std::to_string(bits) + "-bit image with " + std::to_string(image.channels()) +
@@ -32,6 +22,16 @@ std::string kind_of(const cv::Mat& image) {
 }
 
 }  // namespace
+
+// In compressed data 0xff is always escaped, so that the end-of-image marker cannot appear there by
+// chance.
+bool is_truncated_jpeg(std::span<const std::uint8_t> file) {
+  if (file.size() < 2 || file[0] != 0xff || file[1] != 0xd8) return false;
+  constexpr std::uint8_t kEndOfImage[] = {0xff, 0xd9};
+  const auto tail = file.last(std::min<std::size_t>(file.size(), 4096));
+  return std::search(tail.begin(), tail.end(), std::begin(kEndOfImage), std::end(kEndOfImage)) ==
+         tail.end();
+}
 
 cv::Mat ImageDecoder::decode(std::span<const std::uint8_t> file, const std::string& where,
                              int imread_flags) {

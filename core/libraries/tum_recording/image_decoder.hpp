@@ -10,6 +10,10 @@
 
 namespace stillpoint::tum_recording {
 
+/// A JPEG file without an end, of which a decoder makes a whole image all the same: libjpeg fills
+/// what is missing with gray and only warns.
+bool is_truncated_jpeg(std::span<const std::uint8_t> file);
+
 /// Throws Error(kData) with `where` and the reason when an image is truncated, damaged or of the
 /// wrong kind. One per thread. Files are less than 2 GiB.
 class ImageDecoder {

@@ -21,19 +21,23 @@ ConfigNode scalar(std::string key, std::string value, const Location& where) {
   return node;
 }
 
-/// The two sources of recordings stand in for each other, so that every pipeline takes both kinds;
-/// another source gets what it is given. Empty: the type stays.
-std::string source_type_for(const fs::path& dataset, const ConfigNode& tree) {
+std::string source_type_in(const ConfigNode& tree) {
   const ConfigNode* source = tree.find("source");
   const ConfigNode* type = source ? source->find("type") : nullptr;
-  const std::string written = type ? type->scalar : "";
+  return type ? type->scalar : "";
+}
+
+/// The two sources of recordings stand in for each other, so that every pipeline takes both kinds;
+/// another source gets what it is given.
+std::string source_type_for(const fs::path& dataset, const std::string& written) {
   if (written == "tum_rgbd" && !bag_files(dataset).empty()) return "bag";
   std::error_code error;
   if (written == "bag" && fs::exists(dataset / "rgb.txt", error)) return "tum_rgbd";
-  return {};
+  return written;
 }
 
-/// `source: {path: DIR}` as if it were written on the command line.
+/// `source: {path: DIR}` as if it were written on the command line. Of an empty type, only the
+/// path.
 ConfigNode dataset_overlay(const fs::path& dataset, const std::string& type) {
   const Location where{"--dataset " + dataset.string()};
   ConfigNode source = empty_map(where);
@@ -49,10 +53,13 @@ ConfigNode dataset_overlay(const fs::path& dataset, const std::string& type) {
 
 ConfigNode command_line_overlay(const PipelineRequest& request, const ConfigNode& tree,
                                 FaultList& faults, ConfigFiles& files) {
-  ConfigNode overlay =
-      request.dataset.empty()
-          ? empty_map({})
-          : dataset_overlay(request.dataset, source_type_for(request.dataset, tree));
+  ConfigNode overlay = empty_map({});
+  if (!request.dataset.empty()) {
+    const std::string written = source_type_in(tree);
+    const std::string type = source_type_for(request.dataset, written);
+    overlay = dataset_overlay(type == "bag" ? bag_path(request.dataset) : request.dataset,
+                              type == written ? "" : type);
+  }
   for (const std::string& assignment : request.assignments) {
     ConfigNode change = parse_assignment(assignment, faults);
     load_named_sections(change, faults, files);
