@@ -5,6 +5,8 @@
 
 #include <nlohmann/json.hpp>
 #include <sstream>
+#include <utility>
+#include <vector>
 
 #include "evaluation/best.hpp"
 #include "evaluation/format.hpp"
@@ -38,13 +40,34 @@ Comparison of_three() {
 
 TEST(Comparison, TheBestOfThoseThatCoverAsMuchHasAStar) {
   const std::string table = comparison_table(of_three());
-  EXPECT_THAT(table, testing::ContainsRegex("stillpoint +100.0 +0.0[01][0-9]+[*]"));
-  EXPECT_THAT(table, testing::ContainsRegex("gave_up +38.8 +0.0010 "));
+  EXPECT_THAT(table, testing::ContainsRegex("stillpoint +100.0 +50 +0.0[01][0-9]+[*]"));
+  EXPECT_THAT(table, testing::ContainsRegex("gave_up +38.8 +20 +0.0010 "));
   std::vector<std::size_t> widths;
   std::istringstream lines(table);
   for (std::string line; std::getline(lines, line);) widths.push_back(width_of(line));
   ASSERT_EQ(widths.size(), 6u);
   EXPECT_THAT(widths, testing::Each(widths[0]));
+}
+
+TEST(Comparison, KeyFramesAloneGetNoStar) {
+  Comparison comparison;
+  comparison.contestants.push_back(wobbling("all", 0.03));
+  comparison.contestants.push_back(wobbling("half", 0.02));
+  comparison.contestants.push_back(wobbling("keyframes", 0.01));
+  for (const auto& [k, step] : {std::pair(1, 2), std::pair(2, 10)}) {
+    Trajectory thinned = comparison.contestants[static_cast<std::size_t>(k)].evaluation.estimate;
+    std::vector<StampedPose> kept;
+    for (std::size_t i = 0; i < 50; i += static_cast<std::size_t>(step))
+      kept.push_back(thinned.poses[i]);
+    thinned.poses = kept;
+    Contestant& one = comparison.contestants[static_cast<std::size_t>(k)];
+    one.evaluation = evaluate(one.evaluation.reference, thinned, {}, {});
+    one.evaluation.span.share = 1;
+    one.error.metres.rmse = k == 1 ? 0.02 : 0.01;
+  }
+  const std::string table = comparison_table(comparison);
+  EXPECT_THAT(table, testing::ContainsRegex("half +100.0 +25 +0.0200[*]"));
+  EXPECT_THAT(table, testing::ContainsRegex("keyframes +100.0 +5 +0.0100 "));
 }
 
 TEST(Best, IsAmongThoseThatCoverAsMuchAndReadsAsTheBest) {

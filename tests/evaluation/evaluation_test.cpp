@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "evaluation/report.hpp"
 #include "fixtures.hpp"
 #include "stillpoint/error.hpp"
 
@@ -44,6 +45,29 @@ TEST(Evaluation, ScaleIsFittedBySimilarityOnly) {
   EXPECT_NEAR(e.similarity.reference_from_estimate.scale, 1.25, kExact);
   EXPECT_LT(e.similarity.metres.max, kExact);
   EXPECT_GT(e.rigid.metres.rmse, 0.1);
+}
+
+TEST(Evaluation, APathThatIsNotLargerThanItsErrorDeterminesNoScale) {
+  Trajectory path = winding_path(200, 0.05), estimate = path;
+  const auto scale_of = [&](double extent, double straight) {
+    for (std::size_t i = 0; i < path.poses.size(); ++i) {
+      Eigen::Vector3d position = winding_path(200, 0.05).poses[i].world_from_camera.translation();
+      position.tail<2>() *= straight;
+      path.poses[i].world_from_camera.translation() = extent * position;
+      estimate.poses[i].world_from_camera.translation() = 0.5 * extent * position;
+      estimate.poses[i].world_from_camera.translation()[i % 3] += i % 2 == 0 ? 0.01 : -0.01;
+    }
+    return evaluate(path, estimate, {}, {});
+  };
+  const Evaluation wide = scale_of(1, 1);
+  EXPECT_NEAR(wide.scale.value(), 2, 0.01) << "wrong, but determined";
+  EXPECT_TRUE(wide.rigid_rotation_deg);
+  const Evaluation straight = scale_of(1, 0.001);
+  EXPECT_NEAR(straight.scale.value(), 2, 0.05);
+  EXPECT_FALSE(straight.rigid_rotation_deg);
+  const Evaluation at_rest = scale_of(0.005, 1);
+  EXPECT_FALSE(at_rest.scale);
+  EXPECT_FALSE(at_rest.rigid_rotation_deg);
 }
 
 // A circle disturbed by ±3 cm across its plane in turn: no rotation or shift can lessen that, so
@@ -131,6 +155,23 @@ TEST(Evaluation, RelativeErrorIsTheDriftPerSecond) {
 }
 
 // A scale that is wrong by a hundredth: a centimetre per metre, however fast the camera moves.
+TEST(Evaluation, PairsOfAnotherIntervalAreCounted) {
+  const Trajectory path = winding_path(400, 0.05);  // 20 s
+  Trajectory keyframes = path, interrupted = path;
+  keyframes.poses.clear();
+  for (std::size_t i = 0; i < path.poses.size(); i += 50)  // every 2.5 s: the closest is the same
+    keyframes.poses.push_back(path.poses[i]);
+  EXPECT_EQ(evaluate(path, path, {}, {}).relative->of_another_interval, 0u);
+  const RelativeError of_keyframes = evaluate(path, keyframes, {}, {}).relative.value();
+  EXPECT_EQ(of_keyframes.of_another_interval, of_keyframes.pairs);
+  interrupted.poses.erase(interrupted.poses.begin() + 100, interrupted.poses.begin() + 200);
+  // Those from 4.5 s on, whose closest pose is the last one before the gap.
+  const Evaluation e = evaluate(path, interrupted, {}, {});
+  EXPECT_EQ(e.relative->of_another_interval, 10u);
+  EXPECT_THAT(report_table(e),
+              testing::HasSubstr("RPE: 10 of 279 pairs are less than half of 1 s"));
+}
+
 TEST(Evaluation, RelativeErrorPerMetreDoesNotDependOnSpeed) {
   Trajectory reference{.name = "reference", .poses = {}}, estimate = reference;
   double way = 0;

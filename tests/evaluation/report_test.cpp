@@ -25,7 +25,7 @@ TEST(Report, TableShowsTheFiguresOfTheSquare) {
   const std::string table = report_table(of_square());
   EXPECT_THAT(table, HasSubstr("9 of 9 estimated poses"));
   EXPECT_THAT(table, HasSubstr("90.0 % of the frames (9 of 10)"));
-  EXPECT_THAT(table, HasSubstr("RMSE      mean    median      S.D.       min       max"));
+  EXPECT_THAT(table, HasSubstr("RMSE        mean      median        S.D.         min         max"));
 }
 
 TEST(Report, JsonHoldsTheFiguresOfTheTable) {
@@ -39,6 +39,27 @@ TEST(Report, JsonHoldsTheFiguresOfTheTable) {
   EXPECT_NEAR(json["rpe"]["translation_m"]["max"], 0.02, 1e-9);
   EXPECT_NEAR(json["rpe"]["translation_m"]["mean"], 2 * 0.02 / 7, 1e-9);
   EXPECT_NEAR(json["rpe"]["rotation_deg"]["max"], 0, 1e-9);
+}
+
+TEST(Report, FiguresThatPositionsDoNotDetermineAreLeftOut) {
+  Trajectory path = winding_path(100, 0.1), estimate = path;
+  for (std::size_t i = 0; i < 100; ++i) {
+    path.poses[i].world_from_camera.translation() *= 1e-3;
+    estimate.poses[i].world_from_camera.translation() *= i % 2 == 0 ? 2e-2 : -2e-2;
+  }
+  const Evaluation e = evaluate(path, estimate, {}, {});
+  EXPECT_THAT(report_table(e), testing::AllOf(HasSubstr("the path is too short or too straight"),
+                                              HasSubstr("scale –: the path is too short for it")));
+  EXPECT_TRUE(report_json(e)["ate"]["sim3_scale"].is_null());
+  EXPECT_TRUE(report_json(e)["ate"]["se3_deg"].is_null());
+}
+
+TEST(Report, LargeErrorsKeepTheirColumns) {
+  Trajectory path = winding_path(100, 0.1), estimate = path;
+  for (std::size_t i = 0; i < 100; ++i)
+    estimate.poses[i].world_from_camera.translation().x() += 1000.0 * static_cast<double>(i % 2);
+  EXPECT_THAT(report_table(evaluate(path, estimate, {}, {})),
+              testing::ContainsRegex("m +[0-9.]+ +[0-9.]+ +[0-9.]+ +[0-9.]+ +[0-9.]+ +[0-9.]+\n"));
 }
 
 TEST(Report, ShortTrajectoriesHaveNoRelativeErrorInEither) {

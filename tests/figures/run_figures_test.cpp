@@ -63,7 +63,7 @@ TEST(TrajectoryFigure, ASingleRunHasTheColoursOfItsErrorInMillimetres) {
   ASSERT_EQ(lines.size(), 1u);
   EXPECT_THAT(lines[0].values, Each(DoubleNear(20, 1e-9)));
   EXPECT_EQ(lines[0].points[10], Eigen::Vector2d(1, 2.02));
-  EXPECT_EQ(figure.rows[1].panels[0].title, "From the side");
+  EXPECT_EQ(figure.rows[1].panels[0].y.label, "z [m]");
 }
 
 TEST(TrajectoryFigure, SeveralHaveAColourEach) {

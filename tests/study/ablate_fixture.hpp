@@ -28,7 +28,8 @@ class AblateTest : public ::testing::Test {
 inline constexpr const char* kTiny =
     "version: 1\n"
     "sequences:\n"
-    "  - {name: tiny, scene: fr3_walking_xyz_empty, frames: 30}\n"
+    "  - {name: tiny, scene: fr3_walking_xyz_empty, frames: 30, set: [camera.width=320, "
+    "camera.height=240, camera.fx=267.7, camera.fy=269.6, camera.cx=159.8, camera.cy=123.6]}\n"
     "variants:\n"
     "  - {name: few, pipeline: orb_baseline, set: [tracker.features=600]}\n"
     "  - {name: many, pipeline: orb_baseline, set: [tracker.features=1000]}\n"

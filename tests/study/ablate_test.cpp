@@ -150,6 +150,34 @@ TEST_F(Ablate, AGridIsAVariantForEveryCombination) {
                     HasSubstr("\ns,more-features-1000-mode-threaded,")));
 }
 
+TEST_F(Ablate, ResultsOfAnEarlierStudyAreGoneAsSoonAsItIsRunAgain) {
+  const std::string study = kShort + "repeats: 3\n";
+  ASSERT_EQ(ablate(study).exit_code, 0);
+  std::string changed = study;
+  changed.replace(changed.find("=600"), 4, "=700").replace(changed.find("=1000"), 5, "=1100");
+  const fs::path file = folder_.write("study.yaml", changed);
+  Program program({"ablate", file.string(), "-o", out().string(), "--again"});
+  ASSERT_TRUE(program.wait_for("[1/6]"));
+  program.send(SIGINT);
+  EXPECT_EQ(program.finish().signal, SIGINT);
+  EXPECT_FALSE(fs::exists(out() / "runs/tiny/many/2/result.json"));
+}
+
+TEST_F(Ablate, NullOfAGridLeavesAStageOut) {
+  folder_.write("study.yaml",
+                "version: 1\n"
+                "sequences: [{name: s, scene: fr3_walking_xyz_empty, frames: 3}]\n"
+                "variants:\n"
+                "  - name: v\n"
+                "    pipeline: orb_baseline\n"
+                "    grid: {loop_closer: [null], tracker.features: [500]}\n");
+  const Outcome outcome =
+      call({"ablate", (folder_.path() / "study.yaml").string(), "-o", out().string()});
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_THAT(text_of(out() / "runs/s/v-loop_closer-null-features-500/0/pipeline.yaml"),
+              Not(HasSubstr("\nloop_closer:")));
+}
+
 TEST_F(Ablate, AMovedStudyIsNotRunAnew) {
   ASSERT_EQ(ablate(kShort).exit_code, 0);
   fs::rename(out(), folder_.path() / "elsewhere");

@@ -34,7 +34,7 @@ TEST_F(StudyFaults, AGridThatIsNoneIsRefusedWithItsPlace) {
   EXPECT_THAT(refusal("{tracker.features: []}"),
               HasSubstr("'tracker.features' of a grid needs its values"));
   EXPECT_THAT(refusal("{tracker.features: [[1]]}"),
-              HasSubstr("a value of a grid is a number or a word"));
+              HasSubstr("a value of a grid is a number, a word or null"));
   EXPECT_THAT(refusal("{tracker.featurs: [1]}"), HasSubstr("did you mean 'features'?"));
 }
 

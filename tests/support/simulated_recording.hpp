@@ -64,27 +64,36 @@ inline std::vector<std::string> with_small_images(std::vector<std::string> setti
   return settings;
 }
 
-/// Rendering takes a while and ctest gives each test a process of its own: the recording stays in
-/// the build folder until the simulator is newer.
-inline std::filesystem::path recording_of(const std::string& scene, int frames = kSimulatedFrames,
-                                          const std::vector<std::string>& settings = {}) {
+/// What takes a while is made once, since ctest gives each test a process of its own: it stays in
+/// the build folder until something that makes it is newer.
+inline std::filesystem::path made_once(const std::string& name,
+                                       std::filesystem::file_time_type newest,
+                                       const std::function<void(std::filesystem::path)>& make) {
   namespace fs = std::filesystem;
-  std::string all = std::to_string(frames);
-  for (const std::string& setting : settings) all += ' ' + setting;
-  const fs::path folder = fs::path(STILLPOINT_BINARY_DIR) / "tests/recordings" /
-                          (scene + '_' + std::to_string(std::hash<std::string>{}(all)));
+  const fs::path folder = fs::path(STILLPOINT_BINARY_DIR) / "tests/recordings" / name;
   const fs::path done = folder / "done";
   fs::create_directories(folder.parent_path());
   const FileLock lock(folder.string() + ".lock");
-  if (fs::exists(done) && fs::last_write_time(done) > newest_of_simulator()) return folder;
+  if (fs::exists(done) && fs::last_write_time(done) > newest) return folder;
   fs::remove_all(folder);
-  std::vector<std::string> arguments = {
-      "simulate", scene, "--frames", std::to_string(frames), "-o", folder.string()};
-  for (const std::string& setting : settings) arguments.insert(arguments.end(), {"--set", setting});
-  const Outcome outcome = call(std::move(arguments), {.program = simulator_file()});
-  if (outcome.exit_code != 0) throw std::runtime_error("simulate failed: " + outcome.err);
+  make(folder);
   std::ofstream(done) << "complete\n";
   return folder;
+}
+
+inline std::filesystem::path recording_of(const std::string& scene, int frames = kSimulatedFrames,
+                                          const std::vector<std::string>& settings = {}) {
+  std::string all = std::to_string(frames);
+  for (const std::string& setting : settings) all += ' ' + setting;
+  const std::string name = scene + '_' + std::to_string(std::hash<std::string>{}(all));
+  return made_once(name, newest_of_simulator(), [&](const std::filesystem::path& folder) {
+    std::vector<std::string> arguments = {
+        "simulate", scene, "--frames", std::to_string(frames), "-o", folder.string()};
+    for (const std::string& setting : settings)
+      arguments.insert(arguments.end(), {"--set", setting});
+    const Outcome outcome = call(std::move(arguments), {.program = simulator_file()});
+    if (outcome.exit_code != 0) throw std::runtime_error("simulate failed: " + outcome.err);
+  });
 }
 
 inline const std::filesystem::path& simulated_recording() {

@@ -14,6 +14,7 @@ namespace {
 
 constexpr std::size_t kFieldWidth = 10;  // a star included
 constexpr int kMetreDigits = 4;
+constexpr double kMinShareOfPoses = 0.25;  // of the run with most, to be compared with it
 
 using Figure = std::optional<double>;
 
@@ -25,39 +26,53 @@ struct Column {
   std::function<Figure(const Contestant&)> value;
 };
 
-std::vector<Column> columns() {
-  return {{"coverage", "%", 1, false,
-           [](const Contestant& c) { return Figure(100.0 * c.evaluation.span.share); }},
-          {"ATE RMSE", "m", kMetreDigits, true,
-           [](const Contestant& c) { return Figure(c.error.metres.rmse); }},
-          {"median", "m", kMetreDigits, true,
-           [](const Contestant& c) { return Figure(c.error.metres.median); }},
-          {"max", "m", kMetreDigits, true,
-           [](const Contestant& c) { return Figure(c.error.metres.max); }},
-          {"rotation", "deg", 3, true,
-           [](const Contestant& c) { return Figure(c.error.rotation_deg.rmse); }},
-          {"RPE", "m", kMetreDigits, true,
-           [](const Contestant& c) {
-             const auto& relative = c.evaluation.relative;
-             return relative ? Figure(relative->translation_m.rmse) : Figure();
-           }},
-          {"rotation", "deg", 3, true,
-           [](const Contestant& c) {
-             const auto& relative = c.evaluation.relative;
-             return relative ? Figure(relative->rotation_deg.rmse) : Figure();
-           }},
-          {"scale", "", kMetreDigits, false, [](const Contestant& c) {
-             return Figure(c.evaluation.similarity.reference_from_estimate.scale);
-           }}};
+/// That have a true pose.
+double poses_of(const Contestant& c) { return static_cast<double>(c.evaluation.pairs.size()); }
+
+/// Nothing where positions do not determine it, see Evaluation::rigid_rotation_deg.
+Figure rotation_of(const Contestant& c, AlignmentKind alignment) {
+  const bool by_positions =
+      alignment == AlignmentKind::kRigid || alignment == AlignmentKind::kSimilarity;
+  if (by_positions && !c.evaluation.rigid_rotation_deg) return std::nullopt;
+  return c.error.rotation_deg.rmse;
+}
+
+std::vector<Column> columns(AlignmentKind alignment) {
+  return {
+      {"coverage", "%", 1, false,
+       [](const Contestant& c) { return Figure(100.0 * c.evaluation.span.share); }},
+      {"poses", "", 0, false, [](const Contestant& c) { return Figure(poses_of(c)); }},
+      {"ATE RMSE", "m", kMetreDigits, true,
+       [](const Contestant& c) { return Figure(c.error.metres.rmse); }},
+      {"median", "m", kMetreDigits, true,
+       [](const Contestant& c) { return Figure(c.error.metres.median); }},
+      {"max", "m", kMetreDigits, true,
+       [](const Contestant& c) { return Figure(c.error.metres.max); }},
+      {"rotation", "deg", 3, true, [=](const Contestant& c) { return rotation_of(c, alignment); }},
+      {"RPE", "m", kMetreDigits, true,
+       [](const Contestant& c) {
+         const auto& relative = c.evaluation.relative;
+         return relative ? Figure(relative->translation_m.rmse) : Figure();
+       }},
+      {"rotation", "deg", 3, true,
+       [](const Contestant& c) {
+         const auto& relative = c.evaluation.relative;
+         return relative ? Figure(relative->rotation_deg.rmse) : Figure();
+       }},
+      {"scale", "", kMetreDigits, false, [](const Contestant& c) { return c.evaluation.scale; }}};
 }
 
 /// Of each contestant, whether its error is the smallest.
 std::vector<bool> smallest(const Comparison& comparison, const Column& column) {
+  double most = 0;
+  for (const Contestant& one : comparison.contestants) most = std::max(most, poses_of(one));
   std::vector<std::optional<RatedFigure>> figures;
   for (const Contestant& one : comparison.contestants) {
-    const Figure value = column.value(one);
-    figures.push_back(value ? std::optional(RatedFigure{*value, 100.0 * one.evaluation.span.share})
-                            : std::nullopt);
+    figures.emplace_back();
+    if (const Figure value = column.value(one))
+      figures.back() = {.value = *value,
+                        .coverage_percent = 100.0 * one.evaluation.span.share,
+                        .can_win = poses_of(one) >= kMinShareOfPoses * most};
   }
   return best_of(figures, column.is_error ? Better::kSmaller : Better::kNeither, column.digits);
 }
@@ -81,7 +96,7 @@ std::string left(const std::string& text, std::size_t width) {
 std::string comparison_table(const Comparison& comparison) {
   std::size_t width = 4;
   for (const Contestant& one : comparison.contestants) width = std::max(width, width_of(one.name));
-  const std::vector<Column> all = columns();
+  const std::vector<Column> all = columns(comparison.alignment);
   std::string titles = left("run", width), units = left("", width);
   for (const Column& column : all) {
     titles += right(std::string(column.title) + " ");

@@ -1,5 +1,6 @@
 #include "evaluation/evaluation.hpp"
 
+#include <Eigen/Eigenvalues>
 #include <utility>
 
 #include "evaluation/format.hpp"
@@ -9,6 +10,10 @@ namespace stillpoint::evaluation {
 namespace {
 
 constexpr std::size_t kMinPairs = 3;  // fewer positions do not determine an alignment
+// Least extent of the reference, as a standard deviation of positions, in RMSEs of the error after
+// Sim(3) alignment: about the inverse of the relative error of the scale, and of a rotation's error
+// in radians.
+constexpr double kMinExtent = 5;
 
 std::string range_text(const Trajectory& trajectory, double offset) {
   return fixed(trajectory.start() + offset, 3) + " to " + fixed(trajectory.end() + offset, 3) +
@@ -46,17 +51,38 @@ void require_times_of_both_or_neither(const Trajectory& reference, const Traject
                         "or shift the estimate with --offset");
 }
 
+/// Standard deviations of the reference's positions along its principal axes, by falling size, m.
+Eigen::Vector3d extent_of_reference(const Evaluation& e) {
+  Eigen::Matrix3Xd positions(3, e.pairs.size());
+  for (std::size_t i = 0; i < e.pairs.size(); ++i)
+    positions.col(static_cast<Eigen::Index>(i)) =
+        e.reference.poses[e.pairs[i].first].world_from_camera.translation();
+  positions.colwise() -= positions.rowwise().mean().eval();
+  const Eigen::Matrix3d covariance =
+      positions * positions.transpose() / static_cast<double>(e.pairs.size());
+  return Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(covariance, Eigen::EigenvaluesOnly)
+      .eigenvalues()
+      .cwiseMax(0)
+      .cwiseSqrt()
+      .reverse();
+}
+
 }  // namespace
 
 Evaluation evaluate(Trajectory reference, Trajectory estimate,
                     const std::vector<double>& frame_times, const EvaluationOptions& options) {
   require_times_of_both_or_neither(reference, estimate);
-  Evaluation e{options, std::move(reference), std::move(estimate), {}, {}, {}, {}, {}, {}};
+  Evaluation e{
+      .options = options, .reference = std::move(reference), .estimate = std::move(estimate)};
   e.pairs = associate(times_of(e.reference), times_of(e.estimate), options.max_difference,
                       options.offset);
   if (e.pairs.size() < kMinPairs) throw_too_few_pairs(e);
   e.rigid = absolute_error(e.reference, e.estimate, e.pairs, AlignmentKind::kRigid);
   e.similarity = absolute_error(e.reference, e.estimate, e.pairs, AlignmentKind::kSimilarity);
+  const Eigen::Vector3d extent = extent_of_reference(e);
+  const double least = kMinExtent * e.similarity.metres.rmse;
+  if (extent.norm() >= least) e.scale = e.similarity.reference_from_estimate.scale;
+  if (extent[1] >= least) e.rigid_rotation_deg = e.rigid.rotation_deg;
   e.relative = relative_error(e.reference, e.estimate, options.delta, options.offset);
   e.span = span_coverage(e.reference, e.estimate, options.offset);
   if (!frame_times.empty())

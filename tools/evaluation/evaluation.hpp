@@ -23,6 +23,12 @@ struct Evaluation {
   Trajectory reference, estimate;
   std::vector<TimePair> pairs;  ///< (reference, estimate)
   AbsoluteError rigid, similarity;
+  /// Scale of `similarity`: the estimate times this fits the reference. Nothing where positions do
+  /// not determine it: the path is not much larger than the error.
+  std::optional<double> scale;
+  /// Of `rigid`, between orientations, degrees. Nothing where positions do not determine the
+  /// alignment's rotation: the path is not much larger than the error, or nearly on a line.
+  std::optional<Statistics> rigid_rotation_deg;
   std::optional<RelativeError> relative;  ///< none when the recording is shorter than the delta
   SpanCoverage span;
   std::optional<FrameCoverage> frames;  ///< with a list of the recording's frames

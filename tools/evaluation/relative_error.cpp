@@ -14,6 +14,7 @@ namespace stillpoint::evaluation {
 namespace {
 
 constexpr double kReferenceIntervals = 2;  // a reference pose farther away in time is none
+constexpr double kMaxDeviation = 0.5;      // of a pair from delta, in deltas
 
 constexpr std::pair<DeltaUnit, const char*> kSymbols[] = {
     {DeltaUnit::kSeconds, "s"}, {DeltaUnit::kFrames, "f"}, {DeltaUnit::kMetres, "m"}};
@@ -32,9 +33,8 @@ std::vector<double> axis_of(const Trajectory& trajectory, DeltaUnit unit) {
   return axis;
 }
 
-// Pairs (i, j) of estimated poses that are `delta` apart.
-std::vector<TimePair> intervals(const Trajectory& estimate, const Delta& delta) {
-  const std::vector<double> axis = axis_of(estimate, delta.unit);
+// Pairs (i, j) of estimated poses that are about `delta` apart along the axis.
+std::vector<TimePair> intervals(const std::vector<double>& axis, const Delta& delta) {
   std::vector<TimePair> result;
   for (std::size_t i = 0; i < axis.size(); ++i) {
     const std::size_t j = closest(axis, axis[i] + delta.length);
@@ -65,9 +65,10 @@ std::optional<RelativeError> relative_error(const Trajectory& reference, const T
   const std::vector<double> reference_times = times_of(reference);
   const std::vector<double> estimate_times = times_of(estimate);
   const double max_difference = kReferenceIntervals * median_interval(reference);
+  const std::vector<double> axis = axis_of(estimate, delta.unit);
+  RelativeError result;
   std::vector<double> translations, rotations;
-  std::vector<MotionError> motions;
-  for (const auto& [i, j] : intervals(estimate, delta)) {
+  for (const auto& [i, j] : intervals(axis, delta)) {
     const double from_time = estimate_times[i] + offset, to_time = estimate_times[j] + offset;
     const StampedPose& from = reference.poses[closest(reference_times, from_time)];
     const StampedPose& to = reference.poses[closest(reference_times, to_time)];
@@ -78,11 +79,15 @@ std::optional<RelativeError> relative_error(const Trajectory& reference, const T
                        earlier_from_later(from, to);
     translations.push_back(error.translation().norm());
     rotations.push_back(rotation_angle(error) * 180.0 / std::numbers::pi);
-    motions.push_back({from_time, translations.back(), rotations.back()});
+    result.per_pair.push_back({from_time, translations.back(), rotations.back()});
+    result.of_another_interval +=
+        std::abs(axis[j] - axis[i] - delta.length) > kMaxDeviation * delta.length;
   }
   if (translations.size() < 2) return std::nullopt;
-  return RelativeError{translations.size(), statistics_of(translations), statistics_of(rotations),
-                       std::move(motions)};
+  result.pairs = translations.size();
+  result.translation_m = statistics_of(std::move(translations));
+  result.rotation_deg = statistics_of(std::move(rotations));
+  return result;
 }
 
 }  // namespace stillpoint::evaluation

@@ -33,6 +33,9 @@ struct MotionError {
 
 struct RelativeError {
   std::size_t pairs = 0;
+  /// Of these, whose interval is less than half a delta or more than one and a half: around losses,
+  /// and between key frames. A pose may be paired with itself there, which is no error at all.
+  std::size_t of_another_interval = 0;
   Statistics translation_m;
   Statistics rotation_deg;
   std::vector<MotionError> per_pair;  ///< by rising time

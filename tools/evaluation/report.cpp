@@ -10,7 +10,7 @@ namespace {
 
 constexpr int kLabelWidth = 30;
 constexpr int kUnitColumn = 26;
-constexpr int kColumnWidth = 10;
+constexpr int kColumnWidth = 12;
 constexpr int kDigits = 6;  // as the benchmark's scripts print
 
 std::string padded(const std::string& text, std::size_t width) {
@@ -72,9 +72,11 @@ nlohmann::ordered_json trajectory_json(const Trajectory& t) {
 }
 
 nlohmann::ordered_json relative_json(const Evaluation& e) {
-  nlohmann::ordered_json json = {{"delta", e.options.delta.length},
-                                 {"delta_unit", symbol_of(e.options.delta.unit)},
-                                 {"pairs", e.relative ? e.relative->pairs : 0}};
+  nlohmann::ordered_json json = {
+      {"delta", e.options.delta.length},
+      {"delta_unit", symbol_of(e.options.delta.unit)},
+      {"pairs", e.relative ? e.relative->pairs : 0},
+      {"pairs_of_another_interval", e.relative ? e.relative->of_another_interval : 0}};
   json["translation_m"] =
       e.relative ? statistics_json(e.relative->translation_m) : nlohmann::ordered_json();
   json["rotation_deg"] =
@@ -95,11 +97,12 @@ std::string report_table(const Evaluation& e) {
           std::to_string(e.estimate.poses.size()) + " estimated poses have a reference within " +
           fixed(e.options.max_difference, 3) + " s\n" + coverage_line(e) + "\n" + header_line();
   text += statistics_line(padded("ATE, SE(3)", kUnitColumn) + "m", e.rigid.metres) + "\n";
-  text +=
-      statistics_line(padded("ATE, SE(3), rotation", kUnitColumn) + "deg", e.rigid.rotation_deg) +
-      "\n";
+  const std::string rotation = padded("ATE, SE(3), rotation", kUnitColumn) + "deg";
+  text += e.rigid_rotation_deg
+              ? statistics_line(rotation, *e.rigid_rotation_deg) + "\n"
+              : padded(rotation, kLabelWidth) + "  the path is too short or too straight for it\n";
   text += statistics_line(padded("ATE, Sim(3)", kUnitColumn) + "m", e.similarity.metres) +
-          "   scale " + fixed(e.similarity.reference_from_estimate.scale, 4) + "\n";
+          "   scale " + (e.scale ? fixed(*e.scale, 4) : "–: the path is too short for it") + "\n";
   const std::string delta = delta_text(e.options.delta);
   if (!e.relative) return text + "RPE over " + delta + ": the trajectories are too short\n";
   const std::string rpe = "RPE, " + delta;
@@ -109,6 +112,10 @@ std::string report_table(const Evaluation& e) {
   text +=
       statistics_line(padded(rpe + ", rotation", kUnitColumn) + "deg", e.relative->rotation_deg) +
       "\n";
+  if (const std::size_t others = e.relative->of_another_interval)
+    text += "RPE: " + std::to_string(others) + " of " + std::to_string(e.relative->pairs) +
+            " pairs are less than half of " + delta +
+            " apart or more than one and a half times that, where poses are missing\n";
   return text;
 }
 
@@ -125,9 +132,10 @@ nlohmann::ordered_json report_json(const Evaluation& e) {
                              {"frame_count", e.frames->frames},
                              {"frames_with_pose", e.frames->with_pose}});
   json["ate"]["se3_m"] = statistics_json(e.rigid.metres);
-  json["ate"]["se3_deg"] = statistics_json(e.rigid.rotation_deg);
+  json["ate"]["se3_deg"] =
+      e.rigid_rotation_deg ? statistics_json(*e.rigid_rotation_deg) : nlohmann::ordered_json();
   json["ate"]["sim3_m"] = statistics_json(e.similarity.metres);
-  json["ate"]["sim3_scale"] = e.similarity.reference_from_estimate.scale;
+  json["ate"]["sim3_scale"] = e.scale ? nlohmann::ordered_json(*e.scale) : nlohmann::ordered_json();
   json["rpe"] = relative_json(e);
   return json;
 }

@@ -9,7 +9,7 @@
 
 namespace stillpoint::figures {
 
-/// Paths from above, from the side and along each axis over time, and the absolute error over time,
+/// Paths in the planes x–y and x–z and along each axis over time, and the absolute error over time,
 /// as wide as the page. At least one run; all have the same reference.
 Figure evaluation_figure(std::span<const evaluation::Contestant> runs);
 

@@ -70,11 +70,9 @@ std::optional<ColourScale> error_colours(std::span<const RunPath> runs) {
 Panel view_along(std::span<const RunPath> runs, int horizontal, int vertical) {
   Panel panel{"", {kAxisLabel[horizontal]}, {kAxisLabel[vertical]}, {}, true};
   const RunPath& longest = longest_of(runs);
-  if (!longest.truth.empty()) {
-    panel.title = vertical == 1 ? "From above" : "From the side";
+  if (!longest.truth.empty())
     panel.marks.emplace_back(Line{"truth", points_of(longest, longest.truth, horizontal, vertical),
                                   kReferenceGrey, kTruthPt});
-  }
   const std::optional<ColourScale> colours = error_colours(runs);
   for (std::size_t k = 0; k < runs.size(); ++k) {
     Points points = points_of(runs[k], runs[k].estimate, horizontal, vertical);

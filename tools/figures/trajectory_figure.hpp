@@ -23,8 +23,9 @@ struct RunPath {
   std::vector<double> errors_m() const;  ///< empty without truth
 };
 
-/// From above (x, y) and from the side (x, z), as wide as a column. A single run has the colours of
-/// its error, of several each has its own. At least one, with at least one pose.
+/// The planes x–y and x–z, as wide as a column: which of them is the floor is up to the world. A
+/// single run has the colours of its error, of several each has its own. At least one, with at
+/// least one pose.
 Figure trajectory_figure(std::span<const RunPath> runs);
 
 /// The two views for other figures; the colour scale of a single run comes with them.

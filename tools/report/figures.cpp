@@ -95,7 +95,7 @@ bool counts(const StageTimes& stage) {
 
 figures::RunTimes times_of(const NamedRun& run) {
   figures::RunTimes times{run.name, {}};
-  const double frames = std::max(run.data->frames.value_or(0), 1.0);
+  const double frames = std::max(run.data->processed_frames.value_or(0), 1.0);
   for (const StageTimes& stage : run.data->stages)
     if (counts(stage))
       times.stages.push_back({stage.stage,

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "report/thinning.hpp"
 #include "study/metrics.hpp"
@@ -65,10 +66,10 @@ Json stage_titles(const std::vector<RunData>& runs) {
   return titles;
 }
 
-/// Mean CPU time per frame of each stage, for bars that compare runs; ms.
+/// Mean CPU time per processed frame of each stage, for bars that compare runs; ms.
 Json stage_means(const RunData& run) {
   Json means = Json::array();
-  const double frames = std::max<double>(1.0, run.frames.value_or(0.0));
+  const double frames = std::max<double>(1.0, run.processed_frames.value_or(0.0));
   for (const StageTimes& stage : run.stages)
     means.push_back(
         {stage.stage,
@@ -156,20 +157,41 @@ Json distribution_json(const Distribution& d) {
   return json;
 }
 
-/// The time per frame as means over equal parts of the recording, the same ones for all stages.
+/// Equal parts of the recording.
+struct Parts {
+  std::uint32_t frames = 1;
+  std::size_t count = 1;
+  std::size_t of(std::uint32_t frame) const { return frame * count / frames; }
+};
+
+Parts parts_of(const std::vector<StageTimes>& stages, std::size_t most) {
+  Parts parts;
+  for (const StageTimes& stage : stages)
+    if (!stage.frame.empty()) parts.frames = std::max(parts.frames, stage.frame.back() + 1);
+  parts.count = std::min<std::size_t>(most, parts.frames);
+  return parts;
+}
+
+/// Of each part, the frames that were not dropped: those that some stage worked for.
+std::vector<double> processed_frames(const std::vector<StageTimes>& stages, const Parts& parts) {
+  std::set<std::uint32_t> processed;
+  for (const StageTimes& stage : stages) processed.insert(stage.frame.begin(), stage.frame.end());
+  std::vector<double> frames(parts.count);
+  for (const std::uint32_t frame : processed) frames[parts.of(frame)] += 1;
+  return frames;
+}
+
+/// The time per processed frame as means over parts, the same ones for all stages.
 Json stages_json(const RunData& run, std::size_t points) {
-  std::uint32_t last = 0;
-  for (const StageTimes& stage : run.stages)
-    if (!stage.frame.empty()) last = std::max(last, stage.frame.back());
-  const std::size_t parts = std::min<std::size_t>(points, last + 1);
+  const Parts parts = parts_of(run.stages, points);
+  const std::vector<double> frames = processed_frames(run.stages, parts);
   Json stages = Json::array();
   for (const StageTimes& stage : run.stages) {
-    std::vector<double> wall(parts), cpu(parts);
+    std::vector<double> wall(parts.count), cpu(parts.count);
     for (std::size_t i = 0; i < stage.frame.size(); ++i) {
-      const std::size_t part = stage.frame[i] * parts / (last + std::size_t{1});
-      const double frames = static_cast<double>(last + 1) / static_cast<double>(parts);
-      wall[part] += static_cast<double>(stage.wall_ms[i]) / frames;
-      cpu[part] += static_cast<double>(stage.cpu_ms[i]) / frames;
+      const std::size_t part = parts.of(stage.frame[i]);
+      wall[part] += static_cast<double>(stage.wall_ms[i]) / frames[part];
+      cpu[part] += static_cast<double>(stage.cpu_ms[i]) / frames[part];
     }
     Json json = {{"name", stage.stage},
                  {"title", title_of_stage(stage.stage)},
@@ -180,7 +202,7 @@ Json stages_json(const RunData& run, std::size_t points) {
     for (const double ms : cpu) json["cpu_ms"].push_back(quantised(ms, 0.01));
     stages.push_back(std::move(json));
   }
-  return {{"frames", last + 1}, {"parts", parts}, {"list", std::move(stages)}};
+  return {{"frames", parts.frames}, {"parts", parts.count}, {"list", std::move(stages)}};
 }
 
 Json facts_json(const RunData& run) {
@@ -202,9 +224,8 @@ Json statistics_of(const evaluation::Statistics& s) {
 }
 
 Json errors_json(const evaluation::Evaluation& e) {
-  Json json = {{"ate_m", statistics_of(e.rigid.metres)},
-               {"ate_deg", statistics_of(e.rigid.rotation_deg)},
-               {"scale", e.similarity.reference_from_estimate.scale}};
+  Json json = {{"ate_m", statistics_of(e.rigid.metres)}, {"scale", optional_json(e.scale)}};
+  if (e.rigid_rotation_deg) json["ate_deg"] = statistics_of(*e.rigid_rotation_deg);
   if (e.relative) {
     json["rpe_m"] = statistics_of(e.relative->translation_m);
     json["rpe_deg"] = statistics_of(e.relative->rotation_deg);

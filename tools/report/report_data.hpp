@@ -84,8 +84,8 @@ struct RunData {
 
   // Of summary.json; nothing without it.
   std::optional<double> coverage;  ///< 0 … 1
-  std::optional<double> frames, times_lost, loops_closed, keyframes, landmarks, dropped_frames,
-      frames_per_second, cpu_ms_per_frame, peak_memory_mib;
+  std::optional<double> frames, processed_frames, times_lost, loops_closed, keyframes, landmarks,
+      dropped_frames, frames_per_second, cpu_ms_per_frame, peak_memory_mib;
   std::string mode;
 
   /// Nothing: no truth, or nothing to compare.

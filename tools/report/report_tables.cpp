@@ -22,7 +22,7 @@ std::string note_of_figures(const study::Study& study) {
   return (study.repeats > 1
               ? "Median (smallest–largest) of " + std::to_string(study.repeats) + " runs."
               : std::string("One run of each.")) +
-         " Bold: the best, among variants that cover the same up to 1 %.";
+         " Bold: the best" + study::among_comparable();
 }
 
 }  // namespace

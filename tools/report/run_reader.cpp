@@ -36,6 +36,7 @@ void take_summary(RunData& run, const Json& json) {
   const std::pair<const char*, std::optional<double>*> figures[] = {
       {"coverage", &run.coverage},
       {"frames", &run.frames},
+      {"processed_frames", &run.processed_frames},
       {"times_lost", &run.times_lost},
       {"loops_closed", &run.loops_closed},
       {"keyframes", &run.keyframes},
@@ -44,8 +45,9 @@ void take_summary(RunData& run, const Json& json) {
       {"cpu_ms_per_frame", &run.cpu_ms_per_frame},
       {"peak_memory_mib", &run.peak_memory_mib}};
   for (const auto& [key, figure] : figures) *figure = number(json, key);
-  const auto processed = number(json, "processed_frames"), seconds = number(json, "wall_seconds");
-  if (processed && seconds && *seconds > 0.0) run.frames_per_second = *processed / *seconds;
+  const auto seconds = number(json, "wall_seconds");
+  if (run.processed_frames && seconds && *seconds > 0.0)
+    run.frames_per_second = *run.processed_frames / *seconds;
   run.mode = text(json, "mode");
   if (json.contains("versions")) run.made_by = "Stillpoint " + text(json["versions"], "stillpoint");
   run.complete = json.value("complete", false);

@@ -92,7 +92,7 @@ Table run_table(std::span<const RunData> runs) {
               .note = runs.size() > 1
                           ? "Bold: the best of its recording; of errors, among runs "
                             "that cover as much as the one that covers most, up to 1 %, "
-                            "and lost their way as rarely as any."
+                            "and lost tracking as rarely as any."
                           : "",
               .header = {"run"}};
   for (const Column& column : columns()) table.header.emplace_back(column.title);

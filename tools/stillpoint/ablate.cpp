@@ -16,6 +16,7 @@
 #include "stillpoint/engine/folder_lock.hpp"
 #include "stillpoint/error.hpp"
 #include "stillpoint/support/did_you_mean.hpp"
+#include "study/cell_folder.hpp"
 #include "study/cell_runner.hpp"
 #include "study/child_process.hpp"
 #include "study/claim.hpp"
@@ -105,7 +106,10 @@ class Ablation {
     const std::vector<PlannedCell> plan = plan_cells(study(), results.cells, output_, registry_);
     for (std::size_t i = 0; i < plan.size(); ++i) results.results[i] = valid_result(plan[i]);
     say_what_is_there(results);
-    if (!again_) refuse_to_replace(plan);
+    if (again_)
+      forget_outdated(plan);
+    else
+      refuse_to_replace(plan);
     write_text(output_ / "study.yaml", file_.effective_yaml);  // for reports before the end
     const CellFinished finished = [this](const Cell& cell, const CellResult& result,
                                          const StudyProgress& progress) {
@@ -205,7 +209,7 @@ class Ablation {
         results.results, [&](const auto& result) { return result && result->program != current; });
     if (older > 0)
       console_.line("warning: " + std::to_string(older) +
-                    " of them are of another build of the program; remove " +
+                    " of them were made by another build of the program; remove " +
                     (output_ / "runs").string() + " to run them again");
   }
 
@@ -215,9 +219,15 @@ class Ablation {
     if (count == 0) return;
     throw Error(Fault::kUsage,
                 std::to_string(count) + " of " + std::to_string(plan.size()) +
-                    " runs there were made from another pipeline, recording or seed, or by another "
-                    "version, and would be replaced",
+                    " runs there were made from another pipeline, recording or seed, with another "
+                    "network or plugin of yours, or by another version, and would be replaced",
                 output_.string(), kReplaceHint);
+  }
+
+  /// All of them at once: until they are made again they are missing, also for reports.
+  static void forget_outdated(const std::vector<PlannedCell>& plan) {
+    for (const PlannedCell& cell : plan)
+      if (has_outdated_result(cell)) CellFolder(cell.run).forget_result();
   }
 
   void report(const Cell& cell, const CellResult& result, const StudyProgress& progress) {

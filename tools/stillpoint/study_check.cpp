@@ -116,8 +116,8 @@ class StudyChecker {
 
   void check_sequence(std::size_t i) {
     const Sequence& sequence = study_.sequences[i];
-    check_name_in(names_of(study_.sequences), sequence.without_motion,
-                  place("sequences", i, "without_motion"), "sequence");
+    check_name_in(names_of(study_.sequences), sequence.empty_scene,
+                  place("sequences", i, "empty_scene"), "sequence");
     std::error_code error;
     if (!sequence.dataset.empty() &&
         !fs::is_regular_file(fs::path(sequence.dataset) / "groundtruth.txt", error))
@@ -125,6 +125,9 @@ class StudyChecker {
                   "'" + sequence.dataset +
                       (fs::is_directory(sequence.dataset, error)
                            ? "' has no groundtruth.txt, which the study compares with"
+                       : fs::is_regular_file(sequence.dataset, error)
+                           ? "' is no folder; 'stillpoint record PIPELINE --dataset BAG -o DIR' "
+                             "makes one of a bag, which then needs a groundtruth.txt"
                            : "' is no folder"));
     if (!sequence.scene.empty())
       collect("sequences", i, "scene", [&] { describe_scene(sequence); });

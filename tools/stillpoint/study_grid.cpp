@@ -19,17 +19,19 @@ bool is_axis(const ConfigNode& axis, FaultList& faults) {
     return false;
   }
   for (const ConfigNode& value : axis.children)
-    if (value.kind != Kind::kScalar) {
-      faults.add(value.location, "a value of a grid is a number or a word");
+    if (value.kind != Kind::kScalar && value.kind != Kind::kNull) {
+      faults.add(value.location, "a value of a grid is a number, a word or null");
       return false;
     }
   return true;
 }
 
 ConfigNode with_value(ConfigNode variant, const ConfigNode& axis, const ConfigNode& value) {
+  const std::string text = value.kind == Kind::kNull ? "null" : value.scalar;
   ConfigNode assignment = value;
   assignment.key.clear();
-  assignment.scalar = axis.key + "=" + value.scalar;
+  assignment.kind = Kind::kScalar;
+  assignment.scalar = axis.key + "=" + text;
   if (ConfigNode* set = variant.find("set")) {
     set->children.push_back(std::move(assignment));
   } else {
@@ -43,7 +45,7 @@ ConfigNode with_value(ConfigNode variant, const ConfigNode& axis, const ConfigNo
     variant.set(std::move(list));
   }
   if (ConfigNode* name = variant.find("name"))
-    name->scalar += "-" + last_word(axis.key) + "-" + value.scalar;
+    name->scalar += "-" + last_word(axis.key) + "-" + text;
   return variant;
 }
 

@@ -5,6 +5,7 @@
 #include <string>
 #include <utility>
 
+#include "stillpoint/engine/install_layout.hpp"
 #include "stillpoint/runtime/pipeline_tree.hpp"
 #include "stillpoint/support/model_lookup.hpp"
 #include "study/child_process.hpp"
@@ -105,9 +106,13 @@ std::vector<PlannedCell> plan_cells(const Study& study, const std::vector<Cell>&
   return plan;
 }
 
+// Plugins of the user are files that a pipeline names, by their folder.
 std::vector<fs::path> files_of_program(const Registry& registry) {
   std::vector<fs::path> files = {this_program()};
-  for (const PluginType& type : registry.types()) files.push_back(type.library);
+  const std::vector<fs::path> own = default_plugin_folders();
+  for (const PluginType& type : registry.types())
+    if (std::ranges::find(own, fs::path(type.library).parent_path()) != own.end())
+      files.push_back(type.library);
   return files;
 }
 

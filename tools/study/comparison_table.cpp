@@ -8,8 +8,9 @@ namespace {
 
 constexpr const char* kComparisonNote =
     "Ratios: median (quartiles); below 1 the variant has the smaller error, or takes less time. By "
-    "coverage: recordings on which one of the two failed, covered less or lost its way, and so is "
-    "the worse one. Effect: 1, the variant is always better; -1, always worse. p: Wilcoxon's "
+    "loss or coverage: recordings on which one of the two failed, lost tracking or covered less, "
+    "and so is the worse one. Effect: 1, the variant is always better; -1, always worse. p: "
+    "Wilcoxon's "
     "signed-rank test of the ATE, two-sided; corrected for the number of variants after Holm.";
 
 TableCell count_cell(std::size_t count) { return number_cell(static_cast<double>(count), 0); }
@@ -34,10 +35,9 @@ Table comparison_table(const Study& study, const std::vector<PairedComparison>& 
   if (comparisons.empty()) return {};
   Table table{.title = "Compared with " + study.baseline + ", recording by recording",
               .note = kComparisonNote,
-              .header = {"variant", "recordings", "better", "worse", "by coverage", "ATE ratio",
-                         "CPU ratio", "effect", "p", "corrected p"}};
-  for (const std::string& note :
-       {left_out_note(study), recordings_note(comparisons), dependence_note(study)})
+              .header = {"variant", "recordings", "better", "worse", "by loss or coverage",
+                         "ATE ratio", "CPU ratio", "effect", "p", "corrected p"}};
+  for (const std::string& note : {left_out_note(study), recordings_note(comparisons)})
     if (!note.empty()) table.note += " " + note;
   for (const PairedComparison& one : comparisons) {
     table.rows.push_back({{.text = study.variants[one.variant].name},

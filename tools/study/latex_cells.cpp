@@ -87,7 +87,7 @@ std::string brackets_note(const LatexTable& table) {
   return meanings.empty() ? "" : " In brackets: " + join(meanings, "; ") + ".";
 }
 
-std::string bold_note(const LatexTable& table, const char* note) {
+std::string bold_note(const LatexTable& table, const std::string& note) {
   return has(table, kBold) ? note : "";
 }
 

@@ -27,7 +27,7 @@ std::string latex_limit(const std::string& note);
 /// What stands in square brackets in the table; nothing of what does not.
 std::string brackets_note(const LatexTable& table);
 /// `note`, where something is bold.
-std::string bold_note(const LatexTable& table, const char* note);
+std::string bold_note(const LatexTable& table, const std::string& note);
 bool has_italics(const LatexTable& table);
 
 }  // namespace stillpoint::study

@@ -118,7 +118,7 @@ class LatexReport {
     }
     table.caption +=
         brackets_note(table) +
-        bold_note(table, " Bold: the smallest of its row, among those that cover the same.") +
+        bold_note(table, " Bold: the smallest of its row" + latex_text(among_comparable())) +
         dagger_note() + published_note(systems) + missing_note();
     return table;
   }
@@ -170,7 +170,7 @@ class LatexReport {
       add_error_rows(figures, sequence, systems, table.rows);
     table.caption +=
         brackets_note(table) +
-        bold_note(table, " Bold: the smallest of a sequence, among those that cover the same.") +
+        bold_note(table, " Bold: the smallest of a sequence" + latex_text(among_comparable())) +
         (has_italics(table) ? published_note(systems) : "") + missing_note();
     return table;
   }
@@ -208,19 +208,19 @@ class LatexReport {
 
   LatexTable comparison_table() const {
     std::string notes;
-    for (const std::string& note :
-         {left_out_note(study_), recordings_note(comparisons_), dependence_note(study_)})
+    for (const std::string& note : {left_out_note(study_), recordings_note(comparisons_)})
       if (!note.empty()) notes += " " + note;
     LatexTable table{
         .label = label("comparison"),
         .caption = "Compared with " + latex_text(study_.baseline) +
-                   ", recording by recording ($n$ of them; by coverage: those decided by a "
-                   "failure or the coverage). Ratios: median (quartiles); effect: matched-pairs "
+                   ", recording by recording ($n$ of them; by loss: those on which one of "
+                   "the two failed, lost tracking or covered less, and so is the worse one). "
+                   "Ratios: median (quartiles); effect: matched-pairs "
                    "rank-biserial correlation, 1 where the variant is always better; $p$: "
                    "Wilcoxon's signed-rank test of the absolute trajectory error, two-sided, "
                    "corrected after Holm.",
         .columns = "lrrrrrrrr",
-        .header = {"Variant", "$n$", "Better", "Worse", "By coverage", "ATE ratio", "CPU ratio",
+        .header = {"Variant", "$n$", "Better", "Worse", "By loss", "ATE ratio", "CPU ratio",
                    "Effect", "$p$"},
         .rows = {}};
     for (const PairedComparison& one : comparisons_) {

@@ -20,7 +20,8 @@ constexpr auto kNeither = evaluation::Better::kNeither;
 // Each stage has the key of its times in summary.json, followed by "_ms".
 constexpr std::array<Metric, kMetricCount> kMetrics = {{
     {"ate_m", "Absolute trajectory error, SE(3), RMSE", "ATE", "m", 4, kAlone, true},
-    {"sim3_scale", "Scale that Sim(3) alignment finds", "scale", "", 4, kAlone, true, kNeither},
+    {"sim3_scale", "Scale of the Sim(3) alignment: the estimate times this fits the truth", "scale",
+     "", 4, kAlone, true, kNeither},
     {"rpe_translation_m", "Relative pose error over 1 s, position, RMSE", "RPE", "m", 4, kAlone,
      true},
     {"rpe_rotation_deg", "Relative pose error over 1 s, rotation, RMSE", "RPE", "deg", 3, kAlone,
@@ -124,7 +125,7 @@ MetricValues measure_run(const std::filesystem::path& run, const std::filesystem
         evaluation::evaluate(evaluation::read_trajectory(recording / "groundtruth.txt"),
                              evaluation::read_trajectory(run / "trajectory.txt"), {}, {});
     set_figures(kErrorFigures[0], result.rigid.metres, values);
-    values[kScale] = result.similarity.reference_from_estimate.scale;
+    values[kScale] = result.scale;
     if (result.relative) {
       set_figures(kErrorFigures[1], result.relative->translation_m, values);
       set_figures(kErrorFigures[2], result.relative->rotation_deg, values);

@@ -48,28 +48,18 @@ class Pairs {
 
   std::vector<Pair> all() const {
     std::vector<Pair> pairs;
-    const int repeats = results_.study.repeats;
-    for (const std::vector<std::size_t>& sequences : recordings()) {
-      const int at_once = has_noise_of_its_own(sequences.front()) ? 1 : repeats;
-      for (int first = 0; first < repeats; first += at_once)
-        if (const auto pair = of_recording(sequences, first, first + at_once))
-          pairs.push_back(*pair);
-    }
+    for (const std::vector<std::size_t>& sequences : recordings())
+      if (const auto pair = of_recording(sequences)) pairs.push_back(*pair);
     return pairs;
   }
 
  private:
-  /// Each of its repeats; a recording on disk is the same for all.
-  bool has_noise_of_its_own(std::size_t sequence) const {
-    return results_.study.new_noise && !results_.study.sequences[sequence].scene.empty();
-  }
-
   /// Sequences that have the same images are one recording.
   std::vector<std::vector<std::size_t>> recordings() const {
     const std::vector<Sequence>& all = results_.study.sequences;
     std::vector<std::vector<std::size_t>> groups;
     for (std::size_t i = 0; i < all.size(); ++i) {
-      if (is_twin_without_motion(results_.study, i)) continue;
+      if (is_empty_scene(results_.study, i)) continue;
       const auto same = std::ranges::find_if(
           groups, [&](const auto& group) { return same_images(all[group.front()], all[i]); });
       if (same == groups.end())
@@ -80,11 +70,10 @@ class Pairs {
     return groups;
   }
 
-  std::optional<Pair> of_recording(const std::vector<std::size_t>& sequences, int first,
-                                   int end) const {
+  std::optional<Pair> of_recording(const std::vector<std::size_t>& sequences) const {
     std::vector<double> advantages, times;
     for (const std::size_t sequence : sequences)
-      for (int repeat = first; repeat < end; ++repeat) {
+      for (int repeat = 0; repeat < results_.study.repeats; ++repeat) {
         const CellResult* own = results_.find({sequence, variant_, repeat});
         const CellResult* other = results_.find({sequence, baseline_, repeat});
         if (!own || !other) continue;
@@ -161,13 +150,14 @@ std::vector<PairedComparison> compare_with_baseline(const StudyResults& results)
 std::string significance_note(const Study& study,
                               const std::vector<PairedComparison>& comparisons) {
   if (std::ranges::none_of(comparisons, &PairedComparison::is_significant)) return "";
-  return "†: differs from " + study.baseline + " over all recordings, corrected p < 0.05.";
+  return "†: differs from " + study.baseline +
+         " (signed-rank test across recordings, corrected p < 0.05).";
 }
 
 std::string left_out_note(const Study& study) {
   for (std::size_t sequence = 0; sequence < study.sequences.size(); ++sequence)
-    if (is_twin_without_motion(study, sequence))
-      return "Sequences without motion, which the dynamic penalty is measured with, take no part.";
+    if (is_empty_scene(study, sequence))
+      return "Empty scenes, which the dynamic penalty is measured with, take no part.";
   return "";
 }
 
@@ -180,15 +170,6 @@ std::string recordings_note(const std::vector<PairedComparison>& comparisons) {
          "with " +
          std::to_string(count) + (count == 1 ? " comparison" : " comparisons") + ", it takes " +
          std::to_string(needed) + " recordings to come below 0.05.";
-}
-
-std::string dependence_note(const Study& study) {
-  const bool simulated = std::ranges::any_of(
-      study.sequences, [](const Sequence& sequence) { return !sequence.scene.empty(); });
-  if (!simulated || !study.new_noise || study.repeats == 1) return "";
-  return "Repeats of a scene have noise of their own and count as recordings: p is smaller than "
-         "for "
-         "as many scenes.";
 }
 
 }  // namespace stillpoint::study

@@ -26,7 +26,7 @@ void Sequence::visit(OptionVisitor& v) {
   v("set", set, {.help = "changes of the scene, as in [source.seed=2]"});
   v("camera", camera,
     {.help = "a file, or a name from configs/cameras; empty: the recording's own"});
-  v("without_motion", without_motion,
+  v("empty_scene", empty_scene,
     {.help = "sequence that is the same without anything that moves; left out: NAME_empty"});
   v("original", original,
     {.help =

@@ -18,7 +18,7 @@ struct Sequence {
   int frames = 0;                ///< of the scene; 0: as many as it says
   std::vector<std::string> set;  ///< `key.sub=value` for the scene
   std::string camera;            ///< a file, or a name from configs/cameras; empty: the recording's
-  std::string without_motion;    ///< the sequence without anything that moves; empty: NAME_empty
+  std::string empty_scene;       ///< the sequence without anything that moves; empty: NAME_empty
   std::string original;          ///< see original_of
 
   void visit(OptionVisitor& visitor);

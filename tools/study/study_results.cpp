@@ -108,21 +108,20 @@ bool StudyResults::all_failed(std::size_t sequence, std::size_t variant) const {
   return without_result(sequence, variant).first == static_cast<std::size_t>(study.repeats);
 }
 
-std::optional<std::size_t> twin_without_motion(const Study& study, std::size_t sequence) {
+std::optional<std::size_t> empty_scene_of(const Study& study, std::size_t sequence) {
   const Sequence& own = study.sequences[sequence];
-  return index_of(study.sequences,
-                  own.without_motion.empty() ? own.name + "_empty" : own.without_motion);
+  return index_of(study.sequences, own.empty_scene.empty() ? own.name + "_empty" : own.empty_scene);
 }
 
-bool is_twin_without_motion(const Study& study, std::size_t sequence) {
+bool is_empty_scene(const Study& study, std::size_t sequence) {
   for (std::size_t other = 0; other < study.sequences.size(); ++other)
-    if (twin_without_motion(study, other) == sequence) return true;
+    if (empty_scene_of(study, other) == sequence) return true;
   return false;
 }
 
 std::optional<double> dynamic_penalty(const StudyResults& results, std::size_t sequence,
                                       std::size_t variant) {
-  const auto empty = twin_without_motion(results.study, sequence);
+  const auto empty = empty_scene_of(results.study, sequence);
   if (!empty) return std::nullopt;
   return ratio(results.spread(sequence, variant, kAte), results.spread(*empty, variant, kAte));
 }
@@ -147,7 +146,7 @@ std::optional<Spread> improvement_percent(const StudyResults& results, std::size
 
 namespace {
 
-/// Of the runs of the variant, the share that failed, lost their way or have no error.
+/// Of the runs of the variant, the share that failed, lost tracking or have no error.
 double share_in_trouble(const StudyResults& results, std::size_t sequence, std::size_t variant) {
   const auto [first, last] = results.cells_of(sequence, variant);
   int runs = 0, troubles = 0;
@@ -187,6 +186,11 @@ std::vector<bool> best_variants(const StudyResults& results, std::size_t sequenc
   }
   if (m.is_pose_error && !figures.empty()) leave_out_those_in_trouble(results, sequence, figures);
   return best_of(figures, m.better, m.digits);
+}
+
+std::string among_comparable() {
+  return ", among those that cover the same up to 1 % and failed or lost tracking as rarely as "
+         "any.";
 }
 
 }  // namespace stillpoint::study

@@ -48,10 +48,10 @@ struct StudyResults {
   bool all_failed(std::size_t sequence, std::size_t variant) const;
 };
 
-/// The sequence that shows the same scene without anything that moves; nothing without one.
-std::optional<std::size_t> twin_without_motion(const Study& study, std::size_t sequence);
-/// Whether another sequence of the study names this one as the same scene without motion.
-bool is_twin_without_motion(const Study& study, std::size_t sequence);
+/// The sequence along the same camera path without anything that moves; nothing without one.
+std::optional<std::size_t> empty_scene_of(const Study& study, std::size_t sequence);
+/// Whether it is that of another sequence.
+bool is_empty_scene(const Study& study, std::size_t sequence);
 
 /// ATE on a sequence ÷ ATE on the sequence without anything that moves, in the same study, with the
 /// same variant; medians of the repeats. Nothing without such a sequence.
@@ -67,8 +67,10 @@ std::optional<Spread> improvement_percent(const StudyResults& results, std::size
                                           std::size_t variant);
 
 /// Of each variant, whether it has the best median on a sequence, as evaluation::best_of says. An
-/// error is not the best where a larger share of the runs failed, lost their way or have no error
+/// error is not the best where a larger share of the runs failed, lost tracking or have no error
 /// than of another variant.
 std::vector<bool> best_variants(const StudyResults& results, std::size_t sequence, MetricId metric);
+/// The same for captions, behind "the best".
+std::string among_comparable();
 
 }  // namespace stillpoint::study

@@ -117,10 +117,18 @@ Table penalty_table(const StudyResults& results) {
     if (!value) return TableCell{.text = kNothing};
     TableCell cell = number_cell(*value, 2);
     cell.text += coverage_note(results, sequence, variant);
+    const std::size_t empty = *empty_scene_of(results.study, sequence);
+    const std::string covered = partial_coverage(results, empty, variant, "–");
+    if (!covered.empty()) cell.text += ", empty scene " + covered + " %";
+    const Spread with_motion = *results.spread(sequence, variant, kAte);
+    const Spread without = *results.spread(empty, variant, kAte);
+    cell.text += count_note(without.count < with_motion.count ? without : with_motion,
+                            results.study.repeats);
     return cell;
   };
   return without_empty_rows(
-      matrix(results.study, "Dynamic penalty: ATE ÷ ATE on the twin without motion", penalty));
+      matrix(results.study,
+             "Dynamic penalty: ATE ÷ ATE along the same camera path in the empty scene", penalty));
 }
 
 /// Of a study with one sequence: all figures of a variant in a row.

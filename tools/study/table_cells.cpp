@@ -15,7 +15,7 @@ TableCell spread_cell(const std::optional<Spread>& spread, int digits) {
   return cell;
 }
 
-int ratio_digits(const Spread& ratio) { return ratio.median < 0.1 ? 4 : 2; }
+int ratio_digits(const Spread& ratio) { return ratio.first_quartile < 0.1 ? 4 : 2; }
 
 TableCell ratio_cell(const std::optional<Spread>& ratio) {
   if (!ratio) return {.text = kNothing};

@@ -44,8 +44,8 @@ export async function recordingView(report, recording) {
                 all.length > most ? `The first ${most} of ${all.length} variants are drawn.` : ''].filter(Boolean);
   const note = what.length ? el('p', {class: 'quiet'}, what.join(' ')) : null;
   return el('div', {}, legend, note, el('div', {class: 'pair'},
-    figure('From above', pathPlot(lines(0, 1), true, 'x [m]', 'y [m]')),
-    figure('From the side', pathPlot(lines(0, 2), true, 'x [m]', 'z [m]'))),
+    figure('x–y', pathPlot(lines(0, 1), true, 'x [m]', 'y [m]')),
+    figure('x–z', pathPlot(lines(0, 2), true, 'x [m]', 'z [m]'))),
     figure('Absolute trajectory error', seriesChart(errorsOf(runs), runs.map((r, i) => (
       {label: r.variant, colour: kind(i)})), {height: 220, xName: 'time [s]', yName: 'ATE [mm]'})));
 }

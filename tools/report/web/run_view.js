@@ -19,7 +19,7 @@ export function planar(trace, which, a, b) {
           error: which === 'estimate' && trace.e ? scaled(trace.e, 1e-4) : undefined};
 }
 
-const views = [['From above', 0, 1, 'x [m]', 'y [m]'], ['From the side', 0, 2, 'x [m]', 'z [m]']];
+const views = [['x–y', 0, 1, 'x [m]', 'y [m]'], ['x–z', 0, 2, 'x [m]', 'z [m]']];
 
 function trajectoryFigures(run) {
   if (!run.trace.t.length) return [el('p', {class: 'quiet'}, 'No frame was tracked.')];
