@@ -7,6 +7,7 @@
 #include "decision_objects/class_selection.hpp"
 #include "decision_objects/probability.hpp"
 #include "decision_objects/weight_image.hpp"
+#include "stillpoint/support/did_you_mean.hpp"
 
 namespace stillpoint::decision_objects {
 namespace {
@@ -97,9 +98,17 @@ void Bayes::Options::visit(OptionVisitor& v) {
 Bayes::Bayes(const Options& options, const StageContext& context)
     : options_(options), beliefs_(options.objects), field_(options.unlabelled.field) {
   policies_.fill(options.other);
-  for (const auto& [name, policy] : options.classes)
-    if (const int id = find_class(context.classes, name); id >= 0)
-      policies_[static_cast<std::size_t>(id)] = policy;
+  bool is_any_known = false;
+  for (const auto& [name, policy] : options.classes) {
+    const int id = find_class(context.classes, name);
+    if (id < 0) continue;
+    policies_[static_cast<std::size_t>(id)] = policy;
+    is_any_known = true;
+  }
+  if (!is_any_known && !context.classes.empty() && !options.classes.empty())
+    context.log(LogLevel::kWarning, "decision.classes has none of the segmenter's classes (" +
+                                        join(context.classes) +
+                                        "): all are treated as decision.other");
 }
 
 StaticWeights Bayes::decide(const Frame& frame, const Segmentation& segmentation,

@@ -4,6 +4,7 @@
 #include <stillpoint/sdk.hpp>
 
 #include "simulation/simulator.hpp"
+#include "stillpoint/support/rectifier.hpp"
 
 namespace stillpoint::source_simulation {
 
@@ -18,7 +19,7 @@ class SimulationSource final : public Source {
 
  private:
   simulation::Simulator simulator_;
-  std::shared_ptr<const Camera> camera_;
+  Rectifier rectifier_;  // depth as of a recording, to the last bit
   int next_ = 0;
 };
 

@@ -1,12 +1,19 @@
 #include "arrays.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <memory>
 #include <utility>
+#include <vector>
+
+#include "stillpoint/support/median.hpp"
 
 namespace stillpoint::python {
 namespace {
 
-constexpr double kLargestSkew = 1e-3;  // of a rotation matrix from an orthonormal one
+constexpr double kLargestSkew = 1e-3;      // of a rotation matrix from an orthonormal one
+constexpr float kFarthestMedian = 200.0F;  // metres; a room's is above that in millimetres
+constexpr int kStep = 8;                   // pixels between those looked at
 
 std::string shape_text(const py::array& array) {
   std::string text;
@@ -55,6 +62,20 @@ cv::Mat depth_image(const py::array& array) {
   if (array.ndim() != 2 || !(raw || py::isinstance<py::array_t<float>>(array)))
     refuse("depth", wanted, array);
   return view(array, raw ? CV_16UC1 : CV_32FC1, "depth", wanted);
+}
+
+void require_metres(const cv::Mat& depth) {
+  if (depth.type() != CV_32FC1) return;
+  std::vector<float> measured;
+  for (int y = 0; y < depth.rows; y += kStep)
+    for (int x = 0; x < depth.cols; x += kStep)
+      if (const float z = depth.at<float>(y, x); z > 0) measured.push_back(z);
+  const float middle = median(std::move(measured));
+  if (middle >= kFarthestMedian)
+    throw py::value_error("half of the first depth image lies beyond " +
+                          std::to_string(std::lround(std::min(middle, 1e9F))) +
+                          " m: float32 depth is in metres; give other units as uint16, whose unit "
+                          "is the camera's depth_factor");
 }
 
 py::object to_array(const cv::Mat& image) {

@@ -33,6 +33,7 @@ class PythonEngine {
   FrameReportPtr process(double time, const py::array& bgr, const py::array& depth) {
     const cv::Mat color = color_image(bgr);
     const cv::Mat measured = depth_image(depth);
+    if (std::exchange(is_first_, false)) require_metres(measured);
     const py::gil_scoped_release released;
     Frame frame = rectifier_.frame(time, color, measured);
     if (frame.bgr.data == color.data) frame.bgr = color.clone();  // the array stays its owner's
@@ -43,6 +44,7 @@ class PythonEngine {
  private:
   Rectifier rectifier_;
   Engine engine_;
+  bool is_first_ = true;  // the next frame
 };
 
 using NamedCamera = std::variant<CameraModel, std::string>;
@@ -125,7 +127,7 @@ void bind_camera(py::module_& module) {
                           "A sensor as it records: pinhole, Brown-Conrady distortion, depth\n"
                           "registered to the colour image.")
       .def(py::init([](int width, int height, double fx, double fy, double cx, double cy,
-                       const std::vector<double>& distortion, double depth_factor, double min_depth,
+                       double depth_factor, const std::vector<double>& distortion, double min_depth,
                        double max_depth, double depth_noise, double surface_noise,
                        const std::vector<double>& crop) {
              CameraModel model{.name = "camera",
@@ -146,16 +148,16 @@ void bind_camera(py::module_& module) {
              return model;
            }),
            "Pixel (0, 0) is the centre of the top left pixel. `distortion`: k1, k2, p1, p2[, k3].\n"
-           "`depth_factor`: value of one metre in a depth image of uint16. Depth outside of\n"
+           "`depth_factor`: value of one metre in a depth image of uint16, 1000 for millimetres;\n"
+           "those of float32 are in metres, whatever it is. Depth outside of\n"
            "`min_depth` to `max_depth` (m) is not used. `depth_noise`, `surface_noise`: standard\n"
            "deviations at 1 m (m), of a point feature and of the sensor itself. `crop`: x, y, "
            "width, height (px) of the\n"
            "part of the undistorted image to use.",
            py::kw_only(), py::arg("width"), py::arg("height"), py::arg("fx"), py::arg("fy"),
-           py::arg("cx"), py::arg("cy"), py::arg("distortion") = standard.distortion,
-           py::arg("depth_factor") = standard.depth_factor,
-           py::arg("min_depth") = standard.min_depth, py::arg("max_depth") = standard.max_depth,
-           py::arg("depth_noise") = standard.depth_noise,
+           py::arg("cx"), py::arg("cy"), py::arg("depth_factor"),
+           py::arg("distortion") = standard.distortion, py::arg("min_depth") = standard.min_depth,
+           py::arg("max_depth") = standard.max_depth, py::arg("depth_noise") = standard.depth_noise,
            py::arg("surface_noise") = standard.surface_noise, py::arg("crop") = standard.crop);
 }
 

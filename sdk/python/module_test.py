@@ -7,7 +7,7 @@ import unittest
 import numpy as np
 import stillpoint
 
-CAMERA = dict(width=320, height=240, fx=200.0, fy=200.0, cx=159.5, cy=119.5)
+CAMERA = dict(width=320, height=240, fx=200.0, fy=200.0, cx=159.5, cy=119.5, depth_factor=5000.0)
 DISTANCE, STEP = 2.0, 0.01  # metres: to the wall, per frame along it
 
 
@@ -169,6 +169,14 @@ class Refusals(unittest.TestCase):
         self.refuses(stillpoint.Error, "320 x 200 pixels, but camera 'camera' has 320 x 240",
                      lambda: slam.process(0, image(0)[:200], DEPTH))
         self.assertEqual(slam.process(0, image(0), DEPTH).index, 0)
+
+    def test_depth_in_millimetres(self):
+        millimetres = np.full((240, 320), 1e3 * DISTANCE, np.float32)
+        slam = engine()
+        self.refuses(ValueError, "lies beyond 2000 m: float32 depth is in metres",
+                     lambda: slam.process(0, image(0), millimetres))
+        without_factor = {key: CAMERA[key] for key in CAMERA if key != "depth_factor"}
+        self.refuses(TypeError, "incompatible", lambda: stillpoint.Camera(**without_factor))
 
     def test_time_that_runs_backwards(self):
         slam = after(3)

@@ -195,9 +195,9 @@ TEST(LiveOpenNi, GoesOnWhenItIsPluggedInAgain) {
   const std::string dummy = STILLPOINT_DUMMY_DEVICE;
   if (!fs::exists(dummy)) GTEST_SKIP() << "OpenNI 2 has no driver DummyDevice here";
   const TemporaryFolder folder;
-  const fs::path camera = folder.write(
-      "small.yaml",
-      "camera: {name: small, width: 320, height: 240, fx: 260, fy: 260, cx: 159.5, cy: 119.5}\n");
+  const fs::path camera = folder.write("small.yaml",
+                                       "camera: {name: small, width: 320, height: 240, fx: 260, "
+                                       "fy: 260, cx: 159.5, cy: 119.5, depth_factor: 5000}\n");
   std::vector<std::string> arguments = {
       "run", "orb_baseline", "--camera", camera.string(), "-o", (folder.path() / "out").string()};
   for (const char* setting : {"source.type=openni2", "source.device=Dummy", "source.width=320",

@@ -45,7 +45,7 @@ class PipelineConfigTest : public testing::Test {
 };
 
 constexpr const char* kSource = "version: 1\nsource: {type: tum_rgbd, path: data}\n";
-constexpr const char* kCamera = "camera: {fx: 100, fy: 100, cx: 50, cy: 50}\n";
+constexpr const char* kCamera = "camera: {fx: 100, fy: 100, cx: 50, cy: 50, depth_factor: 5000}\n";
 
 TEST_F(PipelineConfigTest, LeftOutSectionsAreEmpty) {
   write("p.yaml", kSource);
@@ -196,8 +196,9 @@ TEST_F(PipelineConfigTest, CameraPrecedence) {
   fs::create_directories("data");
   write("plain.yaml", kSource);
   write("named.yaml", std::string(kSource) + kCamera);
-  write("data/camera.yaml", "camera: {fx: 200, fy: 200, cx: 50, cy: 50}\n");
-  write("other.yaml", "version: 1\ncamera: {fx: 300, fy: 300, cx: 50, cy: 50}\n");
+  write("data/camera.yaml", "camera: {fx: 200, fy: 200, cx: 50, cy: 50, depth_factor: 5000}\n");
+  write("other.yaml",
+        "version: 1\ncamera: {fx: 300, fy: 300, cx: 50, cy: 50, depth_factor: 5000}\n");
   EXPECT_EQ(load({.pipeline = "plain.yaml"}).camera->fx, 200);
   EXPECT_EQ(load({.pipeline = "named.yaml"}).camera->fx, 100);
   EXPECT_EQ(load({.pipeline = "named.yaml", .camera = "other.yaml"}).camera->fx, 300);

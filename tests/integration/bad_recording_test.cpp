@@ -55,15 +55,18 @@ class BadRecording : public ::testing::Test {
 };
 
 TEST_F(BadRecording, MissingFolder) {
-  expect_refused(folder_.path() / "nowhere",
-                 "nowhere: no such folder; give the folder that holds rgb.txt and depth.txt");
+  expect_refused(
+      folder_.path() / "nowhere",
+      "nowhere: no such folder; give the folder that holds rgb.txt and depth.txt, or a bag "
+      "(.bag, .mcap, .db3)");
 }
 TEST_F(BadRecording, FileInsteadOfAFolder) {
   expect_refused(recording_.path() / "rgb.txt", "rgb.txt: is not a folder; give the folder");
 }
 TEST_F(BadRecording, MissingLists) {
   fs::remove(at("depth.txt"));
-  expect_refused("has rgb.txt but no depth.txt; a recording in the format of the TUM RGB-D");
+  expect_refused(
+      "has rgb.txt but no depth.txt; a recording is a folder in the format of the TUM RGB-D");
   fs::remove(at("rgb.txt"));
   expect_refused("has neither rgb.txt and depth.txt nor associations.txt");
 }

@@ -62,6 +62,10 @@ TEST(CommandLine, OptionsThatDoNotExistGetASuggestion) {
               HasSubstr("stillpoint plugins list: no option '--jsno'; did you mean '--json'?"));
   EXPECT_THAT(refusal({"run", "orb_baseline", "-x"}),
               HasSubstr("no option '-x'; 'stillpoint run --help' lists them"));
+  EXPECT_THAT(refusal({"run", "stillpoint", "walk"}),
+              HasSubstr("'walk' was not expected; a recording is given as '--dataset walk'"));
+  EXPECT_THAT(refusal({"run", "stillpoint", "--view", "9000"}),
+              HasSubstr("'9000' was not expected; a port is given as '--view=9000'"));
   EXPECT_THAT(refusal({"run"}), HasSubstr("Run 'stillpoint run --help' for help."));
 }
 

@@ -138,10 +138,10 @@ TEST(PluginsCheck, BagsPass) {
 /// camera.
 TEST(PluginsCheck, ACameraOfOpenNi2Passes) {
   const TemporaryFolder folder;
-  const fs::path camera =
-      folder.write("camera.yaml",
-                   "version: 1\n"
-                   "camera: {width: 320, height: 240, fx: 260, fy: 260, cx: 159.5, cy: 119.5}\n");
+  const fs::path camera = folder.write("camera.yaml",
+                                       "version: 1\n"
+                                       "camera: {width: 320, height: 240, fx: 260, fy: 260, cx: "
+                                       "159.5, cy: 119.5, depth_factor: 5000}\n");
   if (!fs::exists(plugin_library(kShippedPlugins, "source_openni2")))
     GTEST_SKIP() << "source_openni2 is not built here";
   const Outcome outcome =

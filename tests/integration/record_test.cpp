@@ -48,7 +48,7 @@ class Record : public ::testing::Test {
                "source: {type: simulation, people: [], balls: [], frames: " +
                    std::to_string(frames) +
                    "}\ncamera: {width: 320, height: 240, fx: 267.7, fy: 269.6, "
-                   "cx: 159.8, cy: 123.6}\n")
+                   "cx: 159.8, cy: 123.6, depth_factor: 5000}\n")
         .string();
   }
   /// The trajectory that `stillpoint run` finds, inline.
@@ -155,6 +155,21 @@ TEST_F(Record, WritesOverNothing) {
   EXPECT_EQ(file.exit_code, 2);
   EXPECT_THAT(file.err, HasSubstr("there is something already"));
   EXPECT_EQ(text_of(mcap), "precious");
+}
+
+TEST_F(Record, OneThatFailsBeforeItsFirstFrameLeavesNothing) {
+  const RecordingCopy original(1);
+  folder_.write("other.yaml",
+                "camera: {width: 320, height: 240, fx: 260, fy: 260, cx: 160, cy: 120, "
+                "depth_factor: 5000}\n");
+  for (const char* target : {"out", "out.mcap"}) {
+    const Outcome outcome =
+        record_to(folder_.path() / target, {"orb_baseline", "--dataset", original.path().string(),
+                                            "--camera", (folder_.path() / "other.yaml").string()});
+    EXPECT_EQ(outcome.exit_code, 3) << outcome.err;
+    EXPECT_THAT(outcome.out, ::testing::Not(HasSubstr("files")));
+    EXPECT_FALSE(fs::exists(folder_.path() / target));
+  }
 }
 
 TEST_F(Record, CtrlCLeavesAWholeRecording) {

@@ -49,8 +49,9 @@ TEST_F(RunIntoFolder, EarlierRunInTheFolderStaysWhenThisOneCannotBegin) {
 // Of a camera whose images have another size, only the first frame shows it.
 TEST_F(RunIntoFolder, EarlierRunInTheFolderStaysWhenNoFrameIsUsable) {
   const TemporaryFolder folder;
-  const fs::path camera = folder.write(
-      "small.yaml", "camera: {width: 320, height: 240, fx: 262, fy: 262, cx: 160, cy: 120}\n");
+  const fs::path camera = folder.write("small.yaml",
+                                       "camera: {width: 320, height: 240, fx: 262, fy: 262, cx: "
+                                       "160, cy: 120, depth_factor: 5000}\n");
   std::vector<std::string> arguments = {
       "--dataset",
       simulated_recording().string(),

@@ -43,11 +43,12 @@ TEST(SteeredRun, DoesWhatTheButtonsOfThePageSay) {
   SKIP_WITHOUT_BROWSER();
   const TemporaryFolder folder;
   const fs::path out = folder.path() / "out";
-  const fs::path pipeline = folder.write(
-      "endless.yaml",
-      "version: 1\nextends: orb_baseline\n"
-      "source: {type: simulation, people: [], balls: [], frames: 3000}\n"
-      "camera: {width: 320, height: 240, fx: 267.7, fy: 269.6, cx: 159.8, cy: 123.6}\n");
+  const fs::path pipeline =
+      folder.write("endless.yaml",
+                   "version: 1\nextends: orb_baseline\n"
+                   "source: {type: simulation, people: [], balls: [], frames: 3000}\n"
+                   "camera: {width: 320, height: 240, fx: 267.7, fy: 269.6, cx: 159.8, cy: 123.6, "
+                   "depth_factor: 5000}\n");
   Program program({"run", pipeline.string(), "-o", out.string(), "--view=0"});
   const std::string told = program.wait_for_line("live view at ");
   const std::size_t url = told.find("http://");

@@ -15,7 +15,7 @@ PROGRAM, FOLDER = sys.argv[1], pathlib.Path(sys.argv[2])
 FRAMES = 24
 SCENE = f"""version: 1
 source: {{type: simulation, frames: {FRAMES}, people: [], balls: []}}
-camera: {{name: small, width: 320, height: 240, fx: 267.7, fy: 269.6, cx: 159.8, cy: 123.6}}
+camera: {{name: small, width: 320, height: 240, fx: 267.7, fy: 269.6, cx: 159.8, cy: 123.6, depth_factor: 5000}}
 """
 RECORDED = f"version: 1\nsource: {{type: tum_rgbd, path: {FOLDER / 'recording'}}}\n"
 CAMERA = "--camera", FOLDER / "recording/camera.yaml"

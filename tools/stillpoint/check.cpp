@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "commands.hpp"
+#include "pipeline_warnings.hpp"
 
 namespace stillpoint {
 
@@ -20,6 +21,8 @@ void add_check(CLI::App& app) {
     const LateCalls late = watch_loading();
     Registry registry;
     const PipelineConfig config = load_pipeline(arguments->request, registry);
+    for (const std::string& warning : warnings_of(config))
+      std::cerr << "warning: " << warning << '\n';
     if (arguments->print)
       std::cout << config.effective_yaml;
     else

@@ -67,12 +67,28 @@ std::vector<std::string> option_names(const CLI::App& command) {
   return names;
 }
 
+/// What a word without an option was meant as; empty: not known.
+std::string remedy_for(const std::string& word, const std::vector<std::string>& known) {
+  const auto has = [&](const char* option) {
+    return std::ranges::find(known, option) != known.end();
+  };
+  const bool is_number = word.find_first_not_of("0123456789") == std::string::npos;
+  if (is_number && has("--view")) return "a port is given as '--view=" + word + "'";
+  if (has("--dataset")) return "a recording is given as '--dataset " + word + "'";
+  return "";
+}
+
 /// CLI11 would only say which words were not expected.
 void check_options(const CLI::App& app) {
   const auto [command, name] = chosen_command(app);
   const std::vector<std::string> known = option_names(*command);
   for (const std::string& word : app.remaining(true)) {
-    if (word.size() < 2 || word[0] != '-') continue;
+    if (word.empty()) continue;
+    if (word[0] != '-') {
+      const std::string remedy = remedy_for(word, known);
+      if (remedy.empty()) continue;
+      throw Error(Fault::kUsage, "'" + word + "' was not expected", name, remedy);
+    }
     const std::string option = word.substr(0, word.find('='));
     if (std::ranges::find(known, option) != known.end())
       throw Error(Fault::kUsage, "option '" + option + "' stands before the command", name,

@@ -16,6 +16,7 @@
 #include "interrupt.hpp"
 #include "progress.hpp"
 #include "recorders.hpp"
+#include "shell_word.hpp"
 #include "stillpoint/engine/engine.hpp"
 #include "stillpoint/engine/make_stages.hpp"
 #include "stillpoint/engine/stage_error.hpp"
@@ -84,8 +85,9 @@ void print(const RecordingTotals& totals, const RecordArguments& arguments) {
   std::cout << '\n';
   if (fs::exists(arguments.output)) std::cout << "files     " << target << '\n';
   if (totals.recorded > 0) {
-    std::cout << "run       stillpoint run PIPELINE --dataset " << target;
-    if (fs::is_directory(arguments.output)) std::cout << " --camera " << target << "/camera.yaml";
+    std::cout << "run       stillpoint run PIPELINE --dataset " << shell_word(target);
+    if (fs::is_directory(arguments.output))
+      std::cout << " --camera " << shell_word(target + "/camera.yaml");
     std::cout << '\n';
   }
   std::cout << std::flush;

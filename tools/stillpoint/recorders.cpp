@@ -48,6 +48,14 @@ void FolderRecorder::frame(const FrameReport& report) {
                  .depth = raw_depth(frame.depth, sensor_.depth_factor)});
 }
 
+// By their names: whatever else is there is not the recorder's.
+void FolderRecorder::ended_before_first_frame(const RunSummary&) {
+  std::error_code ignored;
+  for (const char* name :
+       {"rgb.txt", "depth.txt", "associations.txt", "groundtruth.txt", "rgb", "depth", ""})
+    std::filesystem::remove(folder_ / name, ignored);
+}
+
 /// Sources give images without distortion, and cropped.
 void FolderRecorder::write_camera(const Camera& camera) const {
   AtomicFile file(folder_ / "camera.yaml");

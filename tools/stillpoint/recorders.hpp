@@ -22,6 +22,8 @@ class FolderRecorder final : public Output {
   /// Depth is written in units of `sensor`. Throws Error(kUsage) when the folder cannot be made.
   FolderRecorder(std::filesystem::path folder, CameraModel sensor);
   void frame(const FrameReport& report) override;
+  /// Leaves nothing behind.
+  void ended_before_first_frame(const RunSummary& summary) override;
 
  private:
   void write_camera(const Camera& camera) const;
@@ -40,7 +42,8 @@ class McapRecorder final : public Output {
   explicit McapRecorder(const std::filesystem::path& file);
   void frame(const FrameReport& report) override;
   void finish(const RunSummary& summary) override;
-  void ended_before_first_frame(const RunSummary& summary) override { finish(summary); }
+  /// Leaves nothing behind: the file begins with the first frame.
+  void ended_before_first_frame(const RunSummary&) override {}
 
  private:
   ros2_messages::McapWriter writer_;

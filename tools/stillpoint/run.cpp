@@ -17,10 +17,12 @@
 #include "evaluation/origin.hpp"
 #include "interrupt.hpp"
 #include "map_saver.hpp"
+#include "pipeline_warnings.hpp"
 #include "progress.hpp"
 #include "run_folder.hpp"
 #include "run_results.hpp"
 #include "run_table.hpp"
+#include "shell_word.hpp"
 #include "stillpoint/engine/engine.hpp"
 #include "stillpoint/engine/make_stages.hpp"
 #include "stillpoint/engine/stage_error.hpp"
@@ -47,8 +49,8 @@ void print_files(const RunFolder& folder, const fs::path& ground_truth) {
   std::cout << '\n';
   const fs::path trajectory = folder.path() / "trajectory.txt";
   if (!ground_truth.empty() && fs::exists(trajectory))
-    std::cout << "  compare   stillpoint evaluate --reference " << ground_truth.string()
-              << " --estimate " << trajectory.string() << '\n';
+    std::cout << "  compare   stillpoint evaluate --reference " << shell_word(ground_truth.string())
+              << " --estimate " << shell_word(trajectory.string()) << '\n';
 }
 
 template <class Function>
@@ -121,20 +123,6 @@ bool run_and_print(Stages stages, const PipelineConfig& config, RunFolder& folde
   return table->complete();
 }
 
-/// What is allowed, but seldom meant.
-void warn_of_labels(const PipelineConfig& config, const RunFolder& folder) {
-  const bool latest = config.segmentation.schedule == SegmentationOptions::Schedule::kLatest;
-  if (latest && config.segmenter && !config.propagator)
-    folder.log(
-        LogLevel::kWarning,
-        "schedule 'latest' without a propagator: labels of earlier frames are used where they "
-        "were in those; 'propagator: {type: flow_depth}' moves them to the current frame");
-  if (!latest && config.segmentation.interval_seconds > 0)
-    folder.log(LogLevel::kWarning,
-               "segmentation.interval_seconds means nothing with schedule 'wait': every frame is "
-               "segmented");
-}
-
 /// Between what the run reads, what it writes elsewhere, and the files of its folder.
 void require_no_conflicts(const RunArguments& arguments, const PipelineConfig& config,
                           const RunFolder& folder) {
@@ -168,7 +156,7 @@ int run(const RunArguments& arguments) {
   const LateCalls late(config.runtime.stage_timeout, [&folder](const std::string& text) {
     folder.log(LogLevel::kWarning, text + "; Ctrl-C stops the run");
   });
-  warn_of_labels(config, folder);
+  for (const std::string& warning : warnings_of(config)) folder.log(LogLevel::kWarning, warning);
   Stages stages = make_stages(config, folder.path(), [&](LogLevel level, std::string_view text) {
     folder.log(level, text);
     if (level == LogLevel::kInfo) console.note(std::string(text));

@@ -1,15 +1,21 @@
 #include "tum_recording/recording.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cctype>
+#include <cstdio>
+#include <utility>
 
 #include "stillpoint/error.hpp"
+#include "stillpoint/support/median.hpp"
 #include "tum_recording/pairing.hpp"
 
 namespace stillpoint::tum_recording {
 namespace {
 
 namespace fs = std::filesystem;
+
+constexpr double kLongestInterval = 2.0;  // seconds between two images of a moving camera
 
 fs::path find_associations(const fs::path& folder) {
   for (const char* name :
@@ -24,6 +30,37 @@ std::vector<double> stamps(const std::vector<StampedImage>& images) {
   return times;
 }
 
+std::string seconds(double time) {
+  std::array<char, 64> text{};
+  std::snprintf(text.data(), text.size(), "%.3f", time);
+  return text.data();
+}
+
+std::string range(const std::vector<StampedImage>& images) {
+  if (images.empty()) return "none";
+  return seconds(images.front().time) + " to " + seconds(images.back().time);
+}
+
+[[noreturn]] void throw_no_pair(const Recording& recording, double max_difference) {
+  throw Error(Fault::kData,
+              "no colour image has a depth image within " + seconds(max_difference) +
+                  " s; colour images: " + range(recording.color) +
+                  ", depth images: " + range(recording.depth),
+              recording.folder.string(),
+              "times are seconds on one clock; then max_difference or time_offset");
+}
+
+/// Drivers count milliseconds or nanoseconds.
+void check_rate(Recording& recording) {
+  std::vector<double> intervals;
+  for (std::size_t i = 1; i < recording.pairs.size(); ++i)
+    intervals.push_back(recording.pairs[i].color.time - recording.pairs[i - 1].color.time);
+  const double interval = median(std::move(intervals));
+  if (interval > kLongestInterval)
+    recording.warnings.push_back(recording.folder.string() + ": images are " + seconds(interval) +
+                                 " s apart; times are seconds, and these look like another unit");
+}
+
 void read_lists(Recording& recording, const RecordingOptions& options) {
   recording.color = read_image_list(recording.folder / "rgb.txt", recording.warnings);
   recording.depth = read_image_list(recording.folder / "depth.txt", recording.warnings);
@@ -31,11 +68,7 @@ void read_lists(Recording& recording, const RecordingOptions& options) {
   for (const IndexPair& pair :
        pair_by_time(stamps(recording.color), stamps(recording.depth), options.max_difference))
     recording.pairs.push_back({recording.color[pair.color], recording.depth[pair.depth]});
-  if (recording.pairs.empty())
-    throw Error(
-        Fault::kData,
-        "no colour image has a depth image within " + std::to_string(options.max_difference) + " s",
-        recording.folder.string(), "change max_difference or time_offset");
+  if (recording.pairs.empty()) throw_no_pair(recording, options.max_difference);
 }
 
 bool names_depth(std::string text) {
@@ -95,7 +128,8 @@ void read_associations(Recording& recording) {
 Recording open_recording(const fs::path& folder, const RecordingOptions& options) {
   if (!fs::is_directory(folder))
     throw Error(Fault::kData, fs::exists(folder) ? "is not a folder" : "no such folder",
-                folder.string(), "give the folder that holds rgb.txt and depth.txt");
+                folder.string(),
+                "give the folder that holds rgb.txt and depth.txt, or a bag (.bag, .mcap, .db3)");
   Recording recording{.folder = folder};
   const bool has_rgb = fs::is_regular_file(folder / "rgb.txt");
   const bool has_depth = fs::is_regular_file(folder / "depth.txt");
@@ -106,13 +140,16 @@ Recording open_recording(const fs::path& folder, const RecordingOptions& options
                 has_rgb     ? "has rgb.txt but no depth.txt"
                 : has_depth ? "has depth.txt but no rgb.txt"
                             : "has neither rgb.txt and depth.txt nor associations.txt",
-                folder.string(), "a recording in the format of the TUM RGB-D benchmark is needed");
+                folder.string(),
+                "a recording is a folder in the format of the TUM RGB-D benchmark, or a bag (.bag, "
+                ".mcap, .db3); 'stillpoint import' converts other data sets");
   if (!associations.empty() && (!has_lists || options.prefer == PairsFrom::kAssociations)) {
     recording.pairs_from = associations;
     read_associations(recording);
   } else {
     read_lists(recording, options);
   }
+  check_rate(recording);
   if (fs::is_regular_file(folder / "groundtruth.txt"))
     recording.ground_truth = folder / "groundtruth.txt";
   return recording;

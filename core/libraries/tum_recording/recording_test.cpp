@@ -46,7 +46,16 @@ TEST(Recording, AddsTheTimeOffsetToDepth) {
   EXPECT_EQ(open_recording(folder.path(), {.time_offset = -0.5}).pairs.size(), 2u);
   EXPECT_THAT(error_text(Fault::kData, [&] { open_recording(folder.path()); }),
               AllOf(HasSubstr("no colour image has a depth image within"),
-                    HasSubstr("change max_difference or time_offset")));
+                    HasSubstr("colour images: 1.000 to 2.000, depth images: 1.500 to 2.500"),
+                    HasSubstr("times are seconds on one clock")));
+}
+
+TEST(Recording, TimesInAnotherUnitAreWarnedOf) {
+  const TemporaryFolder folder;
+  folder.write("rgb.txt", "1000.0 a\n1033.3 b\n1066.7 c\n");
+  folder.write("depth.txt", "1000.0 d\n1033.3 e\n1066.7 f\n");
+  EXPECT_THAT(open_recording(folder.path()).warnings,
+              ElementsAre(HasSubstr("images are 33.400 s apart; times are seconds")));
 }
 
 TEST(Recording, ReadsAssociationsInEitherOrder) {

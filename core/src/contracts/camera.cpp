@@ -27,7 +27,10 @@ void CameraModel::visit(OptionVisitor& v) {
   v("distortion", distortion,
     {.min = -1e6, .max = 1e6, .help = "Brown–Conrady k1, k2, p1, p2[, k3]; empty for none"});
   v("depth_factor", depth_factor,
-    {.min = 1e-6, .max = 1e9, .help = "depth image value of one metre"});
+    {.min = 1e-6,
+     .max = 1e9,
+     .help = "depth image value of one metre: 1000 for millimetres, 5000 in the format of TUM",
+     .required = true});
   v("min_depth", min_depth,
     {.min = 0, .max = 1e6, .unit = "m", .help = "nearer measurements are dropped"});
   v("max_depth", max_depth,

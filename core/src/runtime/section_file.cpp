@@ -10,15 +10,30 @@
 
 namespace stillpoint {
 
+namespace {
+
+const ConfigNode* of_orb_slam(const ConfigNode& tree) {
+  const ConfigNode* focal_length = tree.find("Camera.fx");
+  return focal_length ? focal_length : tree.find("Camera1.fx");
+}
+
+}  // namespace
+
 ConfigNode load_section(const std::filesystem::path& file, const std::string& name,
                         FaultList& faults, ConfigFiles& files) {
   ConfigNode tree = load_config_file(file, name + "s", faults, {}, files);
   substitute_environment(tree, faults);
   remove_nulls(tree);
+  if (const ConfigNode* settings = of_orb_slam(tree)) {
+    faults.add(settings->key_location,
+               "this is a settings file of ORB-SLAM; write 'camera: {width: …, height: …, fx: …, "
+               "fy: …, cx: …, cy: …, depth_factor: …}'");
+    return {};
+  }
   for (const ConfigNode& section : tree.children)
     if (section.key != name && section.key != "version")
       faults.add(section.key_location, "unknown section '" + section.key + "' in a " + name +
-                                           " file; expected '" + name + "'");
+                                           " file; all keys stand below '" + name + ":'");
   const ConfigNode* found = tree.find(name);
   if (found && found->kind == ConfigNode::Kind::kMap) return *found;
   if (faults.empty())

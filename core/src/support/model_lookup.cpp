@@ -54,10 +54,11 @@ fs::path find_model(const std::string& file, const void* own_code) {
     if (is_file(candidate)) return candidate;
     searched.push_back(candidate.string());
   }
-  throw Error(Fault::kUsage, "the network's file does not exist; searched: " + join(searched), file,
-              "stillpoint-get-models (tools/get_models of the sources) fetches networks of "
-              "configs/segmenters, whose files say where others come from; add folders with "
-              "STILLPOINT_MODEL_PATH");
+  throw Error(
+      Fault::kUsage, "the network's file does not exist; searched: " + join(searched), file,
+      "'stillpoint-get-models --help' (tools/get_models of the sources) lists those that it "
+      "fetches; where another one comes from, its file in configs/segmenters says; "
+      "STILLPOINT_MODEL_PATH names more folders to search");
 }
 
 }  // namespace stillpoint

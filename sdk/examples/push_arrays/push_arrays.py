@@ -8,7 +8,8 @@ import numpy as np
 import stillpoint
 
 FOCAL, WALL, PLATE, COUNT = 400.0, 2.0, 1.0, 90  # px, metres, metres, frames
-camera = stillpoint.Camera(width=640, height=480, fx=FOCAL, fy=FOCAL, cx=319.5, cy=239.5)
+camera = stillpoint.Camera(width=640, height=480, fx=FOCAL, fy=FOCAL, cx=319.5, cy=239.5,
+                           depth_factor=1000)  # of depth images of uint16, in millimetres
 
 
 def painting(height, width, seed):

@@ -37,8 +37,8 @@ void write_recording(const fs::path& folder) {
     cv::imwrite(depth_file(folder, i).string(), depth);
     times << 10 + recording().frame(i)->time << '\n';
   }
-  std::ofstream(folder / "camera.yaml")
-      << "camera: {width: 320, height: 240, fx: 262.4, fy: 262.4, cx: 159.5, cy: 119.5}\n";
+  std::ofstream(folder / "camera.yaml") << "camera: {width: 320, height: 240, fx: 262.4, fy: "
+                                           "262.4, cx: 159.5, cy: 119.5, depth_factor: 5000}\n";
 }
 
 /// A recording for each test, to be damaged.

@@ -1,0 +1,14 @@
+// What a pipeline file may say, but is seldom meant to.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "stillpoint/engine/pipeline_config.hpp"
+
+namespace stillpoint {
+
+/// A sentence each, for `run` and `check`.
+std::vector<std::string> warnings_of(const PipelineConfig& config);
+
+}  // namespace stillpoint
