@@ -121,15 +121,24 @@ py::object world_from_camera(const FrameReport& report) {
   return to_array(report.result.world_from_camera);
 }
 
+void warn_of_depth_factor() {
+  if (PyErr_WarnEx(PyExc_UserWarning,
+                   "Camera: no depth_factor is given: depth images of uint16 count as 5000 for a "
+                   "metre, the format of TUM; millimetres need depth_factor=1000",
+                   1) != 0)
+    throw py::error_already_set();
+}
+
 void bind_camera(py::module_& module) {
   const CameraModel standard;
   py::class_<CameraModel>(module, "Camera",
                           "A sensor as it records: pinhole, Brown-Conrady distortion, depth\n"
                           "registered to the colour image.")
       .def(py::init([](int width, int height, double fx, double fy, double cx, double cy,
-                       double depth_factor, const std::vector<double>& distortion, double min_depth,
-                       double max_depth, double depth_noise, double surface_noise,
+                       std::optional<double> depth_factor, const std::vector<double>& distortion,
+                       double min_depth, double max_depth, double depth_noise, double surface_noise,
                        const std::vector<double>& crop) {
+             if (!depth_factor) warn_of_depth_factor();
              CameraModel model{.name = "camera",
                                .width = width,
                                .height = height,
@@ -138,7 +147,7 @@ void bind_camera(py::module_& module) {
                                .cx = cx,
                                .cy = cy,
                                .distortion = distortion,
-                               .depth_factor = depth_factor,
+                               .depth_factor = depth_factor.value_or(CameraModel().depth_factor),
                                .min_depth = min_depth,
                                .max_depth = max_depth,
                                .depth_noise = depth_noise,
@@ -149,13 +158,14 @@ void bind_camera(py::module_& module) {
            }),
            "Pixel (0, 0) is the centre of the top left pixel. `distortion`: k1, k2, p1, p2[, k3].\n"
            "`depth_factor`: value of one metre in a depth image of uint16, 1000 for millimetres;\n"
-           "those of float32 are in metres, whatever it is. Depth outside of\n"
+           "without it 5000, as in the format of TUM, with a warning. Depth images of float32 are\n"
+           "in metres, whatever it is. Depth outside of\n"
            "`min_depth` to `max_depth` (m) is not used. `depth_noise`, `surface_noise`: standard\n"
            "deviations at 1 m (m), of a point feature and of the sensor itself. `crop`: x, y, "
            "width, height (px) of the\n"
            "part of the undistorted image to use.",
            py::kw_only(), py::arg("width"), py::arg("height"), py::arg("fx"), py::arg("fy"),
-           py::arg("cx"), py::arg("cy"), py::arg("depth_factor"),
+           py::arg("cx"), py::arg("cy"), py::arg("depth_factor") = py::none(),
            py::arg("distortion") = standard.distortion, py::arg("min_depth") = standard.min_depth,
            py::arg("max_depth") = standard.max_depth, py::arg("depth_noise") = standard.depth_noise,
            py::arg("surface_noise") = standard.surface_noise, py::arg("crop") = standard.crop);

@@ -175,8 +175,11 @@ class Refusals(unittest.TestCase):
         slam = engine()
         self.refuses(ValueError, "lies beyond 2000 m: float32 depth is in metres",
                      lambda: slam.process(0, image(0), millimetres))
+
+    def test_cameras_without_a_depth_factor(self):
         without_factor = {key: CAMERA[key] for key in CAMERA if key != "depth_factor"}
-        self.refuses(TypeError, "incompatible", lambda: stillpoint.Camera(**without_factor))
+        with self.assertWarnsRegex(UserWarning, "millimetres need depth_factor=1000"):
+            stillpoint.Camera(**without_factor)
 
     def test_time_that_runs_backwards(self):
         slam = after(3)

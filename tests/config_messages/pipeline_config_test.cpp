@@ -266,6 +266,18 @@ TEST_F(PipelineConfigTest, CameraFilesAreWrittenAndRead) {
   EXPECT_EQ(read.distortion, camera.distortion);
 }
 
+TEST_F(PipelineConfigTest, ACameraWithoutTheUnitOfItsDepthIsWarnedOf) {
+  write("c.yaml", "camera: {fx: 100, fy: 100, cx: 50, cy: 50}\n");
+  write("p.yaml", std::string(kSource) + "camera: c.yaml\n");
+  const auto says_so = ::testing::ElementsAre(::testing::HasSubstr("no depth_factor: 5000"));
+  EXPECT_THAT(load({.pipeline = "p.yaml"}).warnings, says_so);
+  std::vector<std::string> warnings;
+  EXPECT_EQ(load_camera("c.yaml", &warnings).depth_factor, 5000);
+  EXPECT_THAT(warnings, says_so);
+  write("p.yaml", std::string(kSource) + kCamera);
+  EXPECT_TRUE(load({.pipeline = "p.yaml"}).warnings.empty());
+}
+
 TEST_F(PipelineConfigTest, ConstructorFailuresNameTheStage) {
   write("p.yaml", std::string(kSource) + "outputs: [{type: trajectory}]\n");
   const PipelineConfig config = load({.pipeline = "p.yaml"});

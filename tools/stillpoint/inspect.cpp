@@ -3,6 +3,7 @@
 #include <iostream>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "commands.hpp"
 #include "inspection/audit_report.hpp"
@@ -21,10 +22,14 @@ struct InspectArguments {
 
 /// The camera that is named, or the one that lies beside the recording.
 std::optional<CameraModel> camera_for(const InspectArguments& arguments) {
-  if (!arguments.camera.empty()) return load_camera(arguments.camera);
+  std::string file = arguments.camera;
   const auto beside = bag_path(arguments.recording) / "camera.yaml";
-  if (std::filesystem::is_regular_file(beside)) return load_camera(beside.string());
-  return std::nullopt;
+  if (file.empty() && std::filesystem::is_regular_file(beside)) file = beside.string();
+  if (file.empty()) return std::nullopt;
+  std::vector<std::string> warnings;
+  CameraModel camera = load_camera(file, &warnings);
+  for (const std::string& warning : warnings) std::cerr << "warning: " << warning << '\n';
+  return camera;
 }
 
 template <class Audit>

@@ -17,7 +17,7 @@ std::vector<std::string> sections_without_effect(const PipelineConfig& config) {
 }  // namespace
 
 std::vector<std::string> warnings_of(const PipelineConfig& config) {
-  std::vector<std::string> warnings;
+  std::vector<std::string> warnings = config.warnings;
   if (const std::vector<std::string> sections = sections_without_effect(config); !sections.empty())
     warnings.push_back("there is no decision, so that tracking uses nothing of " + join(sections) +
                        "; 'decision: {type: bayes}' weighs what they find");

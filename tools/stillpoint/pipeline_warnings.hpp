@@ -8,7 +8,7 @@
 
 namespace stillpoint {
 
-/// A sentence each, for `run` and `check`.
+/// A sentence each, for `run` and `check`; those of the configuration included.
 std::vector<std::string> warnings_of(const PipelineConfig& config);
 
 }  // namespace stillpoint

@@ -29,8 +29,7 @@ void CameraModel::visit(OptionVisitor& v) {
   v("depth_factor", depth_factor,
     {.min = 1e-6,
      .max = 1e9,
-     .help = "depth image value of one metre: 1000 for millimetres, 5000 in the format of TUM",
-     .required = true});
+     .help = "depth image value of one metre: 1000 for millimetres, 5000 in the format of TUM"});
   v("min_depth", min_depth,
     {.min = 0, .max = 1e6, .unit = "m", .help = "nearer measurements are dropped"});
   v("max_depth", max_depth,

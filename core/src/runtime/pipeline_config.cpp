@@ -8,6 +8,7 @@
 #include "stillpoint/engine/config_lookup.hpp"
 #include "stillpoint/engine/stage_guard.hpp"
 #include "stillpoint/runtime/pipeline_tree.hpp"
+#include "stillpoint/runtime/section_file.hpp"
 #include "stillpoint/runtime/yaml_option_reader.hpp"
 #include "stillpoint/support/did_you_mean.hpp"
 
@@ -51,7 +52,7 @@ class PipelineReader {
     PipelineConfig config;
     read_version();
     search_plugins(request.plugin_folders);
-    if (section("camera")) read_options(config.camera.emplace(), "camera");
+    read_camera(config);
     config.recording = recording_of(tree_);
     if (!request.pushed) read_source(config);
     read_options(config.segmentation, "segmentation");
@@ -68,6 +69,14 @@ class PipelineReader {
 
  private:
   const ConfigNode* section(const char* name) const { return tree_.find(name); }
+
+  void read_camera(PipelineConfig& config) {
+    const ConfigNode* camera = section("camera");
+    if (!camera) return;
+    read_options(config.camera.emplace(), "camera");
+    if (const std::string warning = warning_of_camera(*camera); !warning.empty())
+      config.warnings.push_back(warning);
+  }
 
   void read_version() {
     const ConfigNode* version = section("version");

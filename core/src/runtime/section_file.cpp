@@ -59,12 +59,21 @@ void load_named_sections(ConfigNode& tree, FaultList& faults, ConfigFiles& files
   }
 }
 
-CameraModel load_camera(const std::string& name_or_file) {
+// Most cameras of today give millimetres, and nothing but lengths tells that the unit is wrong.
+std::string warning_of_camera(const ConfigNode& camera) {
+  if (camera.find("depth_factor")) return "";
+  return "the camera has no depth_factor: 5000, the format of TUM, is taken; depth images in "
+         "millimetres need 'depth_factor: 1000'";
+}
+
+CameraModel load_camera(const std::string& name_or_file, std::vector<std::string>* warnings) {
   FaultList faults;
   ConfigFiles files;
   const ConfigNode section =
       load_section(find_config(name_or_file, "cameras"), "camera", faults, files);
   faults.throw_if_any();
+  if (const std::string warning = warning_of_camera(section); warnings && !warning.empty())
+    warnings->push_back(warning);
   CameraModel camera;
   YamlOptionReader reader(&section, "camera");
   camera.visit(reader);

@@ -121,6 +121,9 @@ struct PipelineConfig {
   std::vector<OutputSpec> outputs;
   RuntimeOptions runtime;
 
+  /// What the file should say, but leaves out; a sentence each.
+  std::vector<std::string> warnings;
+
   /// The complete file: every option of every stage with its value, paths absolute, nothing
   /// inherited. Loading it gives the same configuration.
   std::string effective_yaml;
@@ -131,8 +134,10 @@ struct PipelineConfig {
 /// Throws ConfigError with every fault found, or Error when there is no such file.
 STILLPOINT_EXPORT PipelineConfig load_pipeline(const PipelineRequest& request, Registry& registry);
 
-/// A camera by name from configs/cameras, or from a file with a `camera:` section.
-STILLPOINT_EXPORT CameraModel load_camera(const std::string& name_or_file);
+/// A camera by name from configs/cameras, or from a file with a `camera:` section. `warnings`: as
+/// of a PipelineConfig.
+STILLPOINT_EXPORT CameraModel load_camera(const std::string& name_or_file,
+                                          std::vector<std::string>* warnings = nullptr);
 
 /// The text of a camera file.
 STILLPOINT_EXPORT std::string camera_yaml(CameraModel camera);

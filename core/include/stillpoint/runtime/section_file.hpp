@@ -14,6 +14,9 @@ namespace stillpoint {
 ConfigNode load_section(const std::filesystem::path& file, const std::string& name,
                         FaultList& faults, ConfigFiles& files);
 
+/// Of a `camera:` section; empty: it says all it should.
+std::string warning_of_camera(const ConfigNode& camera);
+
 /// Where a tree says `camera: NAME` or `segmenter: NAME`, puts the section of that file in its
 /// place. NAME is a file, relative to the one that says it, or a name from the config folders.
 void load_named_sections(ConfigNode& tree, FaultList& faults, ConfigFiles& files);
