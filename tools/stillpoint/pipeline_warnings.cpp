@@ -19,7 +19,7 @@ std::vector<std::string> sections_without_effect(const PipelineConfig& config) {
 std::vector<std::string> warnings_of(const PipelineConfig& config) {
   std::vector<std::string> warnings = config.warnings;
   if (const std::vector<std::string> sections = sections_without_effect(config); !sections.empty())
-    warnings.push_back("there is no decision, so that tracking uses nothing of " + join(sections) +
+    warnings.push_back("there is no decision, so that tracking does not use: " + join(sections) +
                        "; 'decision: {type: bayes}' weighs what they find");
   const bool latest = config.segmentation.schedule == SegmentationOptions::Schedule::kLatest;
   if (latest && config.segmenter && !config.propagator)
