@@ -49,6 +49,20 @@ TEST(Classes, AreCheckedAtTheStart) {
   EXPECT_NO_THROW(Bayes({}, with_classes("")));
 }
 
+TEST(BayesTest, ClassesThatItDoesNotKnowAreWarnedOf) {
+  StageContext context;
+  context.classes = {"background", "human"};
+  std::string warning;
+  context.log = [&](LogLevel, std::string_view text) { warning = text; };
+  Bayes decision({}, context);
+  EXPECT_NE(warning.find("none of the segmenter's classes"), std::string::npos) << warning;
+  context = with_classes("person");
+  warning.clear();
+  context.log = [&](LogLevel, std::string_view text) { warning = text; };
+  Bayes known({}, context);
+  EXPECT_EQ(warning, "");
+}
+
 TEST(ObjectVote, WhoWalksIsRemovedWhoStandsIsKept) {
   ObjectVote decision({}, with_classes());
   const StaticWeights walks =

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <opencv2/imgproc.hpp>
+#include <span>
 
 #include "stillpoint/support/image_codec.hpp"
 #include "tum_recording/image_decoder.hpp"
@@ -19,8 +20,14 @@ cv::Mat rows_of(const V4l2Image& image, int type, cv::Size size) {
   return {size, type, const_cast<std::uint8_t*>(image.bytes.data()), stride};
 }
 
+/// Without the zeros that drivers fill their buffers up with.
+std::span<const std::uint8_t> without_padding(std::span<const std::uint8_t> bytes) {
+  while (!bytes.empty() && bytes.back() == 0) bytes = bytes.first(bytes.size() - 1);
+  return bytes;
+}
+
 cv::Mat decoded(const V4l2Image& image) {
-  if (tum_recording::is_truncated_jpeg(image.bytes)) return {};
+  if (tum_recording::is_truncated_jpeg(without_padding(image.bytes))) return {};
   try {
     return decode_image(image.bytes);
   } catch (const cv::Exception&) {

@@ -64,8 +64,8 @@ cv::Mat depth_image(const py::array& array) {
   return view(array, raw ? CV_16UC1 : CV_32FC1, "depth", wanted);
 }
 
-void require_metres(const cv::Mat& depth) {
-  if (depth.type() != CV_32FC1) return;
+bool is_in_metres(const cv::Mat& depth) {
+  if (depth.type() != CV_32FC1) return true;
   std::vector<float> measured;
   for (int y = 0; y < depth.rows; y += kStep)
     for (int x = 0; x < depth.cols; x += kStep)
@@ -76,6 +76,7 @@ void require_metres(const cv::Mat& depth) {
                           std::to_string(std::lround(std::min(middle, 1e9F))) +
                           " m: float32 depth is in metres; give other units as uint16, whose unit "
                           "is the camera's depth_factor");
+  return middle > 0;
 }
 
 py::object to_array(const cv::Mat& image) {

@@ -21,8 +21,9 @@ cv::Mat color_image(const py::array& array);
 /// A view of an H x W array of uint16 (as recorded) or float32 (metres). Valid while the array is.
 cv::Mat depth_image(const py::array& array);
 
-/// Throws ValueError when a float32 depth image is obviously in millimetres.
-void require_metres(const cv::Mat& depth);
+/// Whether a depth image has measurements. Throws ValueError when one of float32 is obviously in
+/// millimetres.
+bool is_in_metres(const cv::Mat& depth);
 
 /// A read-only array that shares an image's pixels. An empty image is None.
 py::object to_array(const cv::Mat& image);

@@ -33,7 +33,7 @@ class PythonEngine {
   FrameReportPtr process(double time, const py::array& bgr, const py::array& depth) {
     const cv::Mat color = color_image(bgr);
     const cv::Mat measured = depth_image(depth);
-    if (std::exchange(is_first_, false)) require_metres(measured);
+    if (!is_unit_known_) is_unit_known_ = is_in_metres(measured);
     const py::gil_scoped_release released;
     Frame frame = rectifier_.frame(time, color, measured);
     if (frame.bgr.data == color.data) frame.bgr = color.clone();  // the array stays its owner's
@@ -44,7 +44,7 @@ class PythonEngine {
  private:
   Rectifier rectifier_;
   Engine engine_;
-  bool is_first_ = true;  // the next frame
+  bool is_unit_known_ = false;  // of depth images: one with measurements was in metres
 };
 
 using NamedCamera = std::variant<CameraModel, std::string>;

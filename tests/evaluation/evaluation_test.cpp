@@ -154,7 +154,6 @@ TEST(Evaluation, RelativeErrorIsTheDriftPerSecond) {
               kExact);
 }
 
-// A scale that is wrong by a hundredth: a centimetre per metre, however fast the camera moves.
 TEST(Evaluation, PairsOfAnotherIntervalAreCounted) {
   const Trajectory path = winding_path(400, 0.05);  // 20 s
   Trajectory keyframes = path, interrupted = path;
@@ -172,6 +171,7 @@ TEST(Evaluation, PairsOfAnotherIntervalAreCounted) {
               testing::HasSubstr("RPE: 10 of 279 pairs are less than half of 1 s"));
 }
 
+// A scale that is wrong by a hundredth: a centimetre per metre, however fast the camera moves.
 TEST(Evaluation, RelativeErrorPerMetreDoesNotDependOnSpeed) {
   Trajectory reference{.name = "reference", .poses = {}}, estimate = reference;
   double way = 0;

@@ -44,6 +44,13 @@ TEST(CommandLine, SaysItsVersionAndAllExitCodes) {
     EXPECT_THAT(call({"run", "--help"}).out, HasSubstr(code));
 }
 
+TEST(CommandLine, CheckWarnsOfStagesThatNothingUses) {
+  const Outcome outcome = call({"check", "orb_baseline", "--set", "segmenter=person"});
+  EXPECT_EQ(outcome.exit_code, 0);
+  EXPECT_THAT(outcome.err,
+              HasSubstr("there is no decision, so that tracking does not use: segmenter"));
+}
+
 TEST(CommandLine, OptionsThatDoNotExistGetASuggestion) {
   const auto refusal = [](std::vector<std::string> words) {
     const Outcome outcome = call(std::move(words));

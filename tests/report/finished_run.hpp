@@ -12,13 +12,14 @@
 
 namespace stillpoint::testing {
 
-/// Of the program, its libraries and its plugins.
-inline std::filesystem::file_time_type newest_of_program() {
+/// Of what the run is made by, and from.
+inline std::filesystem::file_time_type newest_of_run() {
   namespace fs = std::filesystem;
-  const fs::path library = fs::path(STILLPOINT_BINARY_DIR) / "lib";
-  auto newest = fs::last_write_time(program_file());
-  for (const fs::path& folder : {library, library / "stillpoint", library / "stillpoint/plugins"})
-    for (const auto& file : fs::directory_iterator(folder))
+  auto newest = std::max(fs::last_write_time(program_file()),
+                         fs::last_write_time(recording_with_people() / "done"));
+  for (const fs::path& folder :
+       {fs::path(STILLPOINT_BINARY_DIR) / "lib", fs::path(STILLPOINT_SOURCE_DIR) / "configs"})
+    for (const auto& file : fs::recursive_directory_iterator(folder))
       if (file.is_regular_file()) newest = std::max(newest, file.last_write_time());
   return newest;
 }
@@ -35,7 +36,7 @@ inline const std::filesystem::path& finished_run() {
                 "--set", "runtime.mode=inline"});
       if (outcome.exit_code != 0) throw std::runtime_error("run failed: " + outcome.err);
     };
-    const std::filesystem::path original = made_once("finished_run", newest_of_program(), make);
+    const std::filesystem::path original = made_once("finished_run", newest_of_run(), make);
     const std::filesystem::path path = folder.path() / "a run";
     std::filesystem::copy(original, path, std::filesystem::copy_options::recursive);
     std::filesystem::remove(path / "done");

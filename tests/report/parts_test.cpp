@@ -238,6 +238,20 @@ TEST(PictureChoice, AWorstFrameThatWasNotDrawnIsShownAsRecorded) {
   EXPECT_FALSE(run.pictures.front().recorded);
 }
 
+TEST(PageJson, DroppedFramesTakeNoTime) {
+  ReportData data;
+  data.runs.resize(1);
+  data.runs[0].frames = 4;
+  data.runs[0].processed_frames = 2;
+  StageTimes& stage = data.runs[0].stages.emplace_back();
+  stage = {.stage = "track", .calls = 2, .frame = {0, 3}, .wall_ms = {20, 20}, .cpu_ms = {10, 10}};
+  stage.cpu.mean = 10;
+  const nlohmann::json parts = run_json(data.runs[0], 1)["stages"]["list"][0];
+  EXPECT_EQ(parts["cpu_ms"][0], 1000);  // hundredths of a millisecond
+  EXPECT_EQ(parts["wall_ms"][0], 2000);
+  EXPECT_EQ(report_json(data, "")["runs"][0]["stages"][0][1], 10.0);
+}
+
 TEST(PageJson, StagesOfThePipelineHaveTitles) {
   ReportData data;
   data.runs.resize(1);

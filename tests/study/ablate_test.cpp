@@ -150,8 +150,22 @@ TEST_F(Ablate, AGridIsAVariantForEveryCombination) {
                     HasSubstr("\ns,more-features-1000-mode-threaded,")));
 }
 
+TEST_F(Ablate, OneThatIsStoppedBeforeItsFirstRunLeavesWhatIsThere) {
+  ASSERT_EQ(ablate(kShort).exit_code, 0);
+  const std::string tables = text_of(out() / "results.md"), study = text_of(out() / "study.yaml");
+  std::string longer = kShort;
+  longer.replace(longer.find("frames: 5"), 9, "frames: 800");
+  const fs::path file = folder_.write("study.yaml", longer);
+  Program program({"ablate", file.string(), "-o", out().string(), "--again"});
+  ASSERT_TRUE(program.wait_for("simulating"));
+  program.send(SIGINT);
+  EXPECT_EQ(program.finish().signal, SIGINT);
+  EXPECT_EQ(text_of(out() / "results.md"), tables);
+  EXPECT_EQ(text_of(out() / "study.yaml"), study);
+}
+
 TEST_F(Ablate, ResultsOfAnEarlierStudyAreGoneAsSoonAsItIsRunAgain) {
-  const std::string study = kShort + "repeats: 3\n";
+  const std::string study = std::string(kTiny) + "repeats: 3\n";
   ASSERT_EQ(ablate(study).exit_code, 0);
   std::string changed = study;
   changed.replace(changed.find("=600"), 4, "=700").replace(changed.find("=1000"), 5, "=1100");

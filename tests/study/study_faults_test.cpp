@@ -83,6 +83,14 @@ TEST_F(StudyFaults, WithoutAStudyItSaysWhereTheyAreListed) {
                                      "--list' prints"));
 }
 
+TEST_F(StudyFaults, ABagIsNoRecordingOfAStudy) {
+  const std::string bag = folder_.write("walk.bag", "").string();
+  const Outcome outcome = ablate("version: 1\nsequences: [{name: walk, dataset: " + bag +
+                                 "}]\nvariants: [{name: a, pipeline: orb_baseline}]\n");
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_THAT(outcome.err, HasSubstr("'stillpoint record PIPELINE --dataset BAG -o DIR'"));
+}
+
 TEST_F(StudyFaults, NamesEveryFaultOfAStudyWithItsPlace) {
   const Outcome outcome = ablate(
       "version: 1\n"

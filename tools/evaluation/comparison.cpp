@@ -119,9 +119,15 @@ nlohmann::ordered_json comparison_json(const Comparison& comparison) {
   for (const Contestant& one : comparison.contestants) {
     nlohmann::ordered_json json = {{"name", one.name}};
     json.update(report_json(one.evaluation));
-    json["aligned"] = {{"position_m", statistics_json(one.error.metres)},
-                       {"rotation_deg", statistics_json(one.error.rotation_deg)},
-                       {"scale", one.error.reference_from_estimate.scale}};
+    const bool is_turned = rotation_of(one, comparison.alignment).has_value();
+    const bool is_scaled = comparison.alignment == AlignmentKind::kSimilarity;
+    using Json = nlohmann::ordered_json;
+    json["aligned"] = {
+        {"position_m", statistics_json(one.error.metres)},
+        {"rotation_deg", is_turned ? statistics_json(one.error.rotation_deg) : Json()},
+        {"scale", is_scaled && !one.evaluation.scale
+                      ? Json()
+                      : Json(one.error.reference_from_estimate.scale)}};
     list.push_back(std::move(json));
   }
   return list;

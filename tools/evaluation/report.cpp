@@ -98,9 +98,9 @@ std::string report_table(const Evaluation& e) {
           fixed(e.options.max_difference, 3) + " s\n" + coverage_line(e) + "\n" + header_line();
   text += statistics_line(padded("ATE, SE(3)", kUnitColumn) + "m", e.rigid.metres) + "\n";
   const std::string rotation = padded("ATE, SE(3), rotation", kUnitColumn) + "deg";
-  text += e.rigid_rotation_deg
-              ? statistics_line(rotation, *e.rigid_rotation_deg) + "\n"
-              : padded(rotation, kLabelWidth) + "  the path is too short or too straight for it\n";
+  text += e.rigid_rotation_deg ? statistics_line(rotation, *e.rigid_rotation_deg) + "\n"
+                               : padded(rotation, kLabelWidth) +
+                                     "  –: the path is too short or too straight for it\n";
   text += statistics_line(padded("ATE, Sim(3)", kUnitColumn) + "m", e.similarity.metres) +
           "   scale " + (e.scale ? fixed(*e.scale, 4) : "–: the path is too short for it") + "\n";
   const std::string delta = delta_text(e.options.delta);

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <iostream>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "commands.hpp"
@@ -85,10 +86,10 @@ class Ablation {
     int signal = 0;
     {
       const Interrupt interrupt([this](const std::string& line) { console_.line(line); });
-      const StudyResults results = run_cells(interrupt.token());
-      write(results);
+      const std::optional<StudyResults> results = run_cells(interrupt.token());
+      if (results) write(*results);
       signal = Interrupt::signal();
-      if (signal == 0) return throw_if_failed(results);
+      if (signal == 0) return throw_if_failed(*results);
     }
     say_how_it_goes_on();
     std::raise(signal);  // so that a calling script sees that it was interrupted
@@ -97,12 +98,13 @@ class Ablation {
  private:
   const Study& study() const { return file_.study; }
 
-  StudyResults run_cells(const std::stop_token& stop) {
+  /// Nothing when it was stopped before the first run: what is there stays that of the last call.
+  std::optional<StudyResults> run_cells(const std::stop_token& stop) {
     StudyResults results{
         .study = study(), .cells = cells_of(study()), .results = {}, .command = command_};
     results.results.resize(results.cells.size());
     if (with_slurm_) ask_slurm();
-    if (!record_scenes(stop)) return results;
+    if (!record_scenes(stop)) return std::nullopt;
     const std::vector<PlannedCell> plan = plan_cells(study(), results.cells, output_, registry_);
     for (std::size_t i = 0; i < plan.size(); ++i) results.results[i] = valid_result(plan[i]);
     say_what_is_there(results);

@@ -13,8 +13,8 @@ constexpr double kSameCamera = 0.03;
 bool is_calibrated(const CameraInfoMessage& camera) { return camera.intrinsics[0] != 0.0; }
 
 bool cameras_differ(const CameraInfoMessage& a, const CameraInfoMessage& b) {
-  if (a.width != b.width || a.height != b.height) return true;
   if (!is_calibrated(a) || !is_calibrated(b)) return false;
+  if (a.width != b.width || a.height != b.height) return true;
   const auto same = [&](double of_a, double of_b) {
     return std::abs(of_a - of_b) <= kSameCamera * a.width;
   };

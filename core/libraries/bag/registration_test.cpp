@@ -46,6 +46,7 @@ TEST(Registration, IsNotThatOfCamerasThatDiffer) {
 TEST(Registration, IsThatOfOneCameraWithTwoCalibrations) {
   EXPECT_TRUE(registered(camera(535.4), camera(525)));
   EXPECT_TRUE(registered(camera(535.4), CameraInfoMessage{.width = 640, .height = 480}));
+  EXPECT_TRUE(registered(camera(535.4), CameraInfoMessage{})) << "an empty one";
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 #include "stillpoint/runtime/yaml_option_reader.hpp"
 
 #include <algorithm>
+#include <array>
 
 #include "stillpoint/runtime/option_parsing.hpp"
 #include "stillpoint/support/did_you_mean.hpp"
@@ -154,12 +155,32 @@ void YamlOptionReader::expect(const ConfigNode*& node, ConfigNode::Kind kind,
   node = nullptr;
 }
 
+namespace {
+
+/// Keys of earlier versions, and what they are now.
+constexpr std::array<std::array<const char*, 3>, 4> kRenamed = {{
+    {"keyframe_max_frames", "keyframe_max_seconds", ", in seconds: 30 frames are 1"},
+    {"interval", "interval_seconds", ", in seconds: 3 frames are 0.1"},
+    {"latency", "latency_seconds", ", in seconds: 3 frames are 0.1"},
+    {"without_motion", "empty_scene", ""},
+}};
+
+std::string renamed(const std::string& key, const std::vector<std::string>& known) {
+  for (const auto& [earlier, now, unit] : kRenamed)
+    if (key == earlier && std::ranges::find(known, now) != known.end())
+      return std::string("; it is now '") + now + "'" + unit;
+  return "";
+}
+
+}  // namespace
+
 void YamlOptionReader::report_unknown_keys() {
   const Scope& scope = scopes_.back();
   if (!scope.node || scope.node->kind != ConfigNode::Kind::kMap) return;
   for (const ConfigNode& child : scope.node->children) {
     if (std::ranges::find(scope.known, child.key) != scope.known.end()) continue;
-    std::string hint = did_you_mean(child.key, scope.known);
+    std::string hint = renamed(child.key, scope.known);
+    if (hint.empty()) hint = did_you_mean(child.key, scope.known);
     if (hint.empty()) hint = scope.known.empty() ? "" : "; known: " + join(scope.known);
     faults_.add(child.key_location, scope.path + ": unknown key '" + child.key + "'" + hint);
   }
