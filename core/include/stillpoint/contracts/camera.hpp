@@ -64,7 +64,7 @@ struct STILLPOINT_EXPORT CameraModel {
   double cy = 239.5;  ///< px
   /// Brown–Conrady k1, k2, p1, p2[, k3]; empty or all zero: none.
   std::vector<double> distortion;
-  double depth_factor = 5000.0;  ///< depth image value of one metre; this is the format of TUM
+  double depth_factor = 5000.0;  ///< depth image value of one metre
   double min_depth = 0.3;        ///< metres; nearer measurements are dropped
   double max_depth = 10.0;       ///< metres; farther measurements are dropped
   double depth_noise = 0.02;     ///< metres at 1 m, see Camera
