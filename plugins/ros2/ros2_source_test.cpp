@@ -194,15 +194,6 @@ TEST_F(Ros2SourceTest, TellsWhileItGoesOnWhatIsMissing) {
   EXPECT_EQ(source().left_out(), 1U);
 }
 
-TEST(MissingFrames, AreCountedByTheShorterIntervals) {
-  MissingFrames frames;
-  for (const int i : {0, 2, 4, 5, 7, 9, 10, 12, 14, 16}) frames.add(7.0 + i / 30.0);
-  EXPECT_EQ(frames.count(), 7U);
-  MissingFrames few;
-  for (const int i : {0, 1, 20}) few.add(i / 30.0);
-  EXPECT_EQ(few.count(), 0U);
-}
-
 TEST_F(Ros2SourceTest, PairsStampsThatDiffer) {
   options_.approximate = true;
   info();

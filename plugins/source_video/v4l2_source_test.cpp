@@ -198,7 +198,15 @@ TEST(V4l2Pixels, OfMotionJpeg) {
   EXPECT_TRUE(bgr_of({.bytes = jpeg}, V4L2_PIX_FMT_MJPEG, {2 * kWidth, kHeight}).empty());
   EXPECT_TRUE(
       bgr_of({.bytes = std::span(jpeg).first(20)}, V4L2_PIX_FMT_MJPEG, {kWidth, kHeight}).empty());
-  const std::vector<std::uint8_t> cut = truncated(jpeg_of_noise());
+}
+
+// Some drivers fill the rest of their buffers with zeros.
+TEST(V4l2Pixels, ZerosBehindMotionJpegSayNothingOfIt) {
+  std::vector<std::uint8_t> whole = jpeg_of_noise();
+  std::vector<std::uint8_t> cut = truncated(whole);
+  EXPECT_TRUE(bgr_of({.bytes = cut}, V4L2_PIX_FMT_MJPEG, {kWidth, kHeight}).empty());
+  for (std::vector<std::uint8_t>* jpeg : {&whole, &cut}) jpeg->resize(100'000);
+  EXPECT_FALSE(bgr_of({.bytes = whole}, V4L2_PIX_FMT_MJPEG, {kWidth, kHeight}).empty());
   EXPECT_TRUE(bgr_of({.bytes = cut}, V4L2_PIX_FMT_MJPEG, {kWidth, kHeight}).empty());
 }
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <csignal>
+#include <cstdlib>
 #include <filesystem>
 #include <regex>
 #include <sstream>
@@ -106,6 +107,35 @@ TEST_F(Record, ARecordingOfARecordingIsTheSame) {
     }
   EXPECT_FALSE(fs::exists(out() / "labels"));
   EXPECT_EQ(trajectory_of_recording(), trajectory(pipeline_for(original)));
+}
+
+/// What follows this word at the begin of a line.
+std::string line_of(const std::string& text, const std::string& word) {
+  const std::size_t begin = text.find(word + "   ");
+  if (begin == std::string::npos) return "no line '" + word + "' in " + text;
+  const std::size_t command = text.find("stillpoint ", begin);
+  return text.substr(command, text.find('\n', command) - command);
+}
+
+// In a folder whose name a shell would take for something else.
+TEST_F(Record, TheCommandsThatItAndTheRunPrintCanBeTyped) {
+  const fs::path folder = folder_.path() / "it's $HOME";
+  const Outcome recorded = record_to(
+      folder,
+      {"orb_baseline", "--dataset", simulated_recording().string(), "--set", "source.limit=5"});
+  const auto typed = [&](std::string line, const std::string& more) {
+    EXPECT_THAT(line, ::testing::StartsWith("stillpoint "));
+    line.replace(0, 10, "'" + program_file().string() + "'");
+    if (const auto name = line.find("PIPELINE"); name != std::string::npos)
+      line.replace(name, 8, "orb_baseline");
+    const fs::path out_file = folder_.path() / "out.txt";
+    EXPECT_EQ(std::system((line + more + " > '" + out_file.string() + "' 2>&1").c_str()), 0)
+        << line;
+    return text_of(out_file);
+  };
+  const std::string run =
+      typed(line_of(recorded.out, "run"), " -o '" + (folder_.path() / "a b").string() + "'");
+  EXPECT_THAT(typed(line_of(run, "compare"), ""), HasSubstr("ATE"));
 }
 
 // As a folder, and as an MCAP file, which the source `bag` reads.

@@ -10,26 +10,22 @@
 
 namespace stillpoint {
 
-namespace {
-
-const ConfigNode* of_orb_slam(const ConfigNode& tree) {
+bool is_of_orb_slam(const ConfigNode& tree, FaultList& faults) {
   const ConfigNode* focal_length = tree.find("Camera.fx");
-  return focal_length ? focal_length : tree.find("Camera1.fx");
+  if (!focal_length) focal_length = tree.find("Camera1.fx");
+  if (!focal_length) return false;
+  faults.add(focal_length->key_location,
+             "this is a settings file of ORB-SLAM; for a camera file, write 'camera: {width: …, "
+             "height: …, fx: …, fy: …, cx: …, cy: …, depth_factor: …}'");
+  return true;
 }
-
-}  // namespace
 
 ConfigNode load_section(const std::filesystem::path& file, const std::string& name,
                         FaultList& faults, ConfigFiles& files) {
   ConfigNode tree = load_config_file(file, name + "s", faults, {}, files);
   substitute_environment(tree, faults);
   remove_nulls(tree);
-  if (const ConfigNode* settings = of_orb_slam(tree)) {
-    faults.add(settings->key_location,
-               "this is a settings file of ORB-SLAM; write 'camera: {width: …, height: …, fx: …, "
-               "fy: …, cx: …, cy: …, depth_factor: …}'");
-    return {};
-  }
+  if (is_of_orb_slam(tree, faults)) return {};
   for (const ConfigNode& section : tree.children)
     if (section.key != name && section.key != "version")
       faults.add(section.key_location, "unknown section '" + section.key + "' in a " + name +

@@ -8,7 +8,8 @@
 using namespace stillpoint;
 
 int main() try {
-  const CameraModel model{.name = "mine", .fx = 400, .fy = 400, .cx = 319.5, .cy = 239.5};
+  const CameraModel model{
+      .name = "mine", .fx = 400, .fy = 400, .cx = 319.5, .cy = 239.5, .depth_factor = 1000};  // mm
   const Rectifier rectifier(model);           // undistorts, scales depth
   const double distance = 2.0, step = 0.005;  // metres
 

@@ -108,12 +108,14 @@ class Cluster:
                 stdout=output, stderr=subprocess.STDOUT, stdin=subprocess.DEVNULL))
 
     def wait_for(self, condition, seconds=30):
+        """What it gives once that is true."""
         end = time.monotonic() + seconds
-        while not condition():
+        while not (result := condition()):
             if time.monotonic() > end:
                 raise TimeoutError("".join(
                     f"== {file.name}\n{file.read_text(errors='replace')}" for file in self.folder.glob("*.out")))
             time.sleep(0.05)
+        return result
 
 
 def command(*words):
