@@ -7,6 +7,7 @@
 #include <string>
 
 #include "evaluation/trajectory.hpp"
+#include "stillpoint/support/temporary_folder.hpp"
 
 namespace stillpoint::evaluation {
 
@@ -25,17 +26,14 @@ inline Trajectory winding_path(int count, double interval) {
 /// A file that lives as long as the object.
 class TemporaryFile {
  public:
-  TemporaryFile(const std::string& name, const std::string& text)
-      : path_(std::filesystem::path(STILLPOINT_BINARY_DIR) / ("evaluation_test_" + name)) {
+  TemporaryFile(const std::string& name, const std::string& text) : path_(folder_.path() / name) {
     std::ofstream(path_) << text;
   }
-  ~TemporaryFile() { std::filesystem::remove(path_); }
-  TemporaryFile(const TemporaryFile&) = delete;
-  TemporaryFile& operator=(const TemporaryFile&) = delete;
 
   const std::filesystem::path& path() const { return path_; }
 
  private:
+  TemporaryFolder folder_;
   std::filesystem::path path_;
 };
 

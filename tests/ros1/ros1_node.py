@@ -103,6 +103,7 @@ def worst_error(poses, truth, map_from_room, base_from_camera, offset=0.0):
 
 def check_poses(inbox, map_from_room, truth, tf_buffer):
     poses = inbox.messages["pose"]
+    inbox.wait("pose", lambda _: len(poses) >= FRAMES, "the last pose comes")
     error = worst_error(poses, truth, map_from_room, BASE_FROM_CAMERA)
     expect(len(poses) == FRAMES and error < LIMIT, f"all poses of the base are right, to {error * 1000:.1f} mm")
     expect(all(pose.header.frame_id == "map" for pose in poses), "they are in the map")

@@ -1,44 +1,26 @@
 // Writes small recordings in the format of the TUM RGB-D benchmark into a temporary folder.
 #pragma once
 
-#include <unistd.h>
-#include <atomic>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <opencv2/core.hpp>
 #include <string>
 
+#include "stillpoint/support/temporary_folder.hpp"
 #include "support/image_io.hpp"
 
 namespace stillpoint::testing {
 
 /// A folder of its own under the system's temporary folder, removed at the end.
-class TemporaryFolder {
+class TemporaryFolder : public stillpoint::TemporaryFolder {
  public:
-  TemporaryFolder() {
-    static std::atomic<int> counter = 0;
-    path_ = std::filesystem::temp_directory_path() /
-            ("stillpoint_test_" + std::to_string(getpid()) + "_" + std::to_string(counter++));
-    std::filesystem::create_directories(path_);
-  }
-  ~TemporaryFolder() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
-  }
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-
-  const std::filesystem::path& path() const { return path_; }
-
   std::filesystem::path write(const std::string& name, const std::string& text) const {
-    std::filesystem::create_directories((path_ / name).parent_path());
-    std::ofstream(path_ / name, std::ios::binary) << text;
-    return path_ / name;
+    const std::filesystem::path file = path() / name;
+    std::filesystem::create_directories(file.parent_path());
+    std::ofstream(file, std::ios::binary) << text;
+    return file;
   }
-
- private:
-  std::filesystem::path path_;
 };
 
 /// A time stamp as the benchmark writes it.
