@@ -10,7 +10,7 @@
 
 namespace stillpoint::orb_slam {
 
-/// Registers one frame after the other to the depth of recent key frames.
+/// Registers one frame after the other to the depth of earlier ones.
 class DepthRegistration {
  public:
   /// Solves the frame's pose from its landmarks and an additional cost term.
@@ -36,8 +36,10 @@ class DepthRegistration {
   /// The depth has refined the pose, but key frames cover too few of the surfaces in view.
   bool shows_new_surfaces() const;
 
-  /// The frame has become a key frame.
-  void add_keyframe(KeyFrameId keyframe) { references_.add(keyframe, view()); }
+  /// Later frames may be registered to this one, which is seen from beside a key frame, or is one.
+  void add_reference(KeyFrameId keyframe, const Pose& keyframe_from_camera = Pose::Identity()) {
+    references_.add(keyframe, keyframe_from_camera, view());
+  }
 
  private:
   const DepthView& view();

@@ -4,7 +4,9 @@
 
 #include <utility>
 
+#include "orb_slam/orb_extractor.hpp"
 #include "orb_slam/test_round_trip.hpp"
+#include "orb_slam/test_scene.hpp"
 
 namespace stillpoint::orb_slam {
 namespace {
@@ -58,6 +60,46 @@ TEST_F(LoopMatchTest, SameMapSameBits) {
   ASSERT_TRUE(a && b);
   EXPECT_EQ(a->world_from_camera.matrix(), b->world_from_camera.matrix());
   EXPECT_EQ(a->same, b->same);
+}
+
+/// With a landmark for each feature that has depth.
+void add_keyframe(MapEdit& edit, const FramePtr& frame, const Pose& world_from_camera) {
+  const auto id = static_cast<KeyFrameId>(edit.map().keyframe_id_end());
+  const ObservedFrame seen = observe(frame, OrbExtractor(OrbOptions{}).extract(frame->gray));
+  edit.add_keyframe({.id = id,
+                     .frame = frame->index,
+                     .time = frame->time,
+                     .world_from_camera = world_from_camera,
+                     .camera = frame->camera,
+                     .features = seen.features,
+                     .track_weights = seen.track_weights,
+                     .map_weights = seen.map_weights,
+                     .landmarks = std::vector<LandmarkId>(seen.features->size(), kNoId)});
+  for (std::uint32_t f = 0; f < seen.features->size(); ++f) {
+    const cv::Point2f p = seen.features->keypoints[f].pt;
+    const float depth = seen.features->depth[f];
+    if (depth <= 0) continue;
+    const LandmarkId landmark = edit.add_landmark(
+        {.position_in_world = world_from_camera * frame->camera->unproject(p.x, p.y, depth),
+         .reference = id,
+         .created_by = id});
+    edit.add_observation(landmark, {id, f});
+    refresh_landmark(edit, landmark);
+  }
+}
+
+// What was on one level of the pyramid is two levels higher or lower.
+TEST(LoopMatch, IsFoundFromAnotherDistance) {
+  const TestScene scene;
+  const Pose drift = pose_at({0.1, 0.05, -0.1});
+  for (const double z : {-1.0, 1.0}) {
+    MapEdit edit{SparseMap{}};
+    add_keyframe(edit, scene.render(Pose::Identity(), 0), Pose::Identity());
+    add_keyframe(edit, scene.render(pose_at({0, 0, z}), 300), drift * pose_at({0, 0, z}));
+    const auto loop = match_loop(std::move(edit).finish(), 1, 0);
+    ASSERT_TRUE(loop) << z;
+    EXPECT_LT(metres_between(loop->world_from_camera, pose_at({0, 0, z})), 0.02);
+  }
 }
 
 // The same poster hangs in two places: its points fit, nothing around them does.

@@ -111,6 +111,11 @@ void ObservedFrame::drop_temporary() {
   std::fill(temporary.begin(), temporary.end(), std::nullopt);
 }
 
+int ObservedFrame::usable_count() const {
+  return static_cast<int>(std::ranges::count_if(
+      track_weights, [](std::uint8_t weight) { return weight >= kMinWeight; }));
+}
+
 int ObservedFrame::matched() const {
   return static_cast<int>(
       std::count_if(landmarks.begin(), landmarks.end(), [](LandmarkId id) { return id != kNoId; }));

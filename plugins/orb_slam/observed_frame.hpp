@@ -46,6 +46,7 @@ struct ObservedFrame {
   void drop_outliers();
   /// Removes the temporary points.
   void drop_temporary();
+  int usable_count() const;  ///< features that are used at all
   int matched() const;       ///< features with a landmark
   int inlier_count() const;  ///< those whose landmark is no outlier
 };

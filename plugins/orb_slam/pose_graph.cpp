@@ -83,6 +83,20 @@ class EdgeError {
   Matrix6d root_;
 };
 
+KeyFrameId this_or_older(const SparseMap& map, KeyFrameId id) {
+  while (!map.keyframe(id)) --id;  // the first one is never removed
+  return id;
+}
+
+// Culling takes the ends of closed loops first: both sides see the same landmarks.
+PoseEdge between_living(const SparseMap& map, const PoseEdge& edge) {
+  const KeyFrameId a = this_or_older(map, edge.a), b = this_or_older(map, edge.b);
+  const auto relative = [&](KeyFrameId from, KeyFrameId to) {
+    return map.world_from_keyframe(from).inverse() * map.world_from_keyframe(to);
+  };
+  return {a, b, relative(a, edge.a) * edge.a_from_b * relative(edge.b, b)};
+}
+
 class PoseGraph {
  public:
   explicit PoseGraph(const SparseMap& map) : state_of_(map.keyframe_id_end(), nullptr) {
@@ -103,7 +117,7 @@ class PoseGraph {
   void add(const PoseEdge& edge, const Matrix6d& covariance = Matrix6d::Zero()) {
     PoseState* a = state_of_[edge.a];
     PoseState* b = state_of_[edge.b];
-    if (!a || !b) return;
+    if (a == b) return;
     auto* cost = new ceres::AutoDiffCostFunction<EdgeError, 6, 4, 3, 4, 3>(  // owned by problem_
         new EdgeError(edge.a_from_b, covariance));
     problem_.AddResidualBlock(cost, nullptr, a->rotation.coeffs().data(), a->translation.data(),
@@ -160,7 +174,7 @@ std::vector<MovedKeyFrame> optimise_pose_graph(const SparseMap& map,
       if (c.shared >= kMinShared && c.keyframe < id && c.keyframe != keyframe->parent)
         graph.add(edge_between(map, c.keyframe, id));
   }
-  for (const PoseEdge& loop : loops) graph.add(loop);
+  for (const PoseEdge& loop : loops) graph.add(between_living(map, loop));
   if (!graph.solve(std::move(stop))) return {};
   return graph.result();
 }

@@ -17,8 +17,9 @@ struct PoseEdge {
 };
 
 /// Optimises the essential graph: the spanning tree, pairs of key frames that share at least 100
-/// landmarks, both as the map has them now, and `loops`. The first key frame stays. Gives the best
-/// so far when `stop` is requested; empty when there is no solution.
+/// landmarks, both as the map has them now, and `loops`, where a key frame that has been removed
+/// gives way to the nearest older one. The first key frame stays. Gives the best so far when `stop`
+/// is requested; empty when there is no solution.
 std::vector<MovedKeyFrame> optimise_pose_graph(const SparseMap& map,
                                                std::span<const PoseEdge> loops,
                                                std::stop_token stop);

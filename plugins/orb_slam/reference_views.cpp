@@ -41,7 +41,7 @@ ReferenceViews::Neighbours ReferenceViews::around(const DepthView& current,
   std::vector<Candidate> candidates;
   for (const View& view : views_) {
     if (view.keyframe >= map.keyframe_id_end()) continue;
-    const Pose pose = map.world_from_keyframe(view.keyframe);
+    const Pose pose = map.world_from_keyframe(view.keyframe) * view.keyframe_from_camera;
     const double share = overlap(current, view.view, pose.inverse() * world_from_camera);
     if (share >= kMinOverlap) candidates.push_back({share, &view, pose});
   }
@@ -60,8 +60,8 @@ ReferenceViews::Neighbours ReferenceViews::around(const DepthView& current,
   return neighbours;
 }
 
-void ReferenceViews::add(KeyFrameId keyframe, DepthView view) {
-  views_.push_back({keyframe, std::move(view)});
+void ReferenceViews::add(KeyFrameId keyframe, const Pose& keyframe_from_camera, DepthView view) {
+  views_.push_back({keyframe, keyframe_from_camera, std::move(view)});
   if (views_.size() > kMaxViews) views_.pop_front();
 }
 

@@ -1,4 +1,4 @@
-// Depth views of recent key frames, to register against where landmarks are too few.
+// Earlier depth views, to register against where landmarks are too few.
 #pragma once
 
 #include <deque>
@@ -8,7 +8,7 @@
 
 namespace stillpoint::orb_slam {
 
-/// The depth views of recent key frames.
+/// The depth views of recent key frames, or of frames near key frames.
 class ReferenceViews {
  public:
   /// The views that overlap most with what the camera sees from a pose; at most two. Key frames
@@ -20,12 +20,13 @@ class ReferenceViews {
   Neighbours around(const DepthView& current, const Pose& world_from_camera,
                     const SparseMap& map) const;
 
-  /// The view of a new key frame; the oldest is forgotten when there are too many.
-  void add(KeyFrameId keyframe, DepthView view);
+  /// A view from beside a key frame; the oldest is forgotten when there are too many.
+  void add(KeyFrameId keyframe, const Pose& keyframe_from_camera, DepthView view);
 
  private:
   struct View {
     KeyFrameId keyframe;
+    Pose keyframe_from_camera;
     DepthView view;
   };
   std::deque<View> views_;

@@ -30,10 +30,11 @@ class Relocaliser {
   PlaceIndex places_;
 };
 
-/// Share of the landmarks in view, occluded ones left out, that must be inliers to a relocalised
-/// pose: a thing that has been moved looks as it did, and matches where it was, but not what is
-/// around it. More is asked out of reach of the last tracked pose, where somebody may have carried
-/// the camera. `metres` from that pose, `seconds` after it.
+/// Share of the landmarks in view, occluded ones left out, or of the features where these are
+/// fewer, that must be inliers to a relocalised pose: a thing that has been moved looks as it did,
+/// and matches where it was, but not what is around it. More is asked out of reach of the last
+/// tracked pose, where somebody may have carried the camera. `metres` from that pose, `seconds`
+/// after it.
 double required_support(double metres, double seconds);
 
 }  // namespace stillpoint::orb_slam

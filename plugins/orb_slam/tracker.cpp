@@ -21,6 +21,8 @@ constexpr double kMinMotionShare = 0.5;
 constexpr int kManyFeatures = 500;
 constexpr double kMinMatchedShare = 0.1;
 constexpr double kRecentSeconds = 1.0;  // afterwards the camera may be anywhere
+constexpr double kSteadySeconds = 0.5;  // that a velocity may be taken to last
+constexpr double kViewInterval = 0.5;   // seconds between remembered views, while localising
 constexpr double kSettled = 0.2;        // seconds without a key frame after relocalisation
 
 /// Its features, with their depths.
@@ -82,7 +84,8 @@ bool OrbTracker::start() {
               current_.map_weights[i] >= kMinMapWeight;
   current_.world_from_camera = Pose::Identity();
   current_.reference = kNoId;
-  return points >= options_.min_start_points || surfaces_suffice();
+  last_used_depth_ = points < options_.min_start_points;
+  return !last_used_depth_ || surfaces_suffice();
 }
 
 // Whether the surfaces in view alone would constrain a pose.
@@ -105,7 +108,7 @@ void OrbTracker::follow_map(const SparseMap& map) {
 
 void OrbTracker::predict_pose() {
   prediction_.reset();
-  if (velocity_.has_value())
+  if (velocity_.has_value() && seconds_since_last() <= kSteadySeconds)
     prediction_ = velocity_.predict(last_.world_from_camera, seconds_since_last());
   current_.world_from_camera = prediction_.value_or(last_.world_from_camera);
 }
@@ -144,6 +147,7 @@ bool OrbTracker::track_by_appearance(const SparseMap& map) {
 
 bool OrbTracker::relocalise(const SparseMap& map) {
   prediction_.reset();
+  if (state_ == TrackState::kTracking) relocaliser_.begin(last_.reference);
   const auto holds = [&] {
     depth_registration_.discard();
     return track_local_map(map) && is_supported(map);
@@ -160,7 +164,8 @@ bool OrbTracker::is_supported(const SparseMap& map) const {
       current_.world_from_camera.translation() - last_.world_from_camera.translation();
   const double least =
       last_.frame ? required_support(way.norm(), seconds_since_last()) : required_support(0, 0);
-  return inliers_ >= least * count_unoccluded(current_, map, visible_);
+  const int possible = std::min(count_unoccluded(current_, map, visible_), current_.usable_count());
+  return inliers_ >= least * possible;
 }
 
 bool OrbTracker::track_local_map(const SparseMap& map) {
@@ -191,10 +196,8 @@ bool OrbTracker::track_with_depth(const SparseMap& map) {
     current_.reference = kNoId;  // of a place that was not accepted
   }
   const int matches = match_last_frame(map);
-  const auto usable = std::ranges::count_if(
-      current_.track_weights, [](auto weight) { return weight >= ObservedFrame::kMinWeight; });
-  if (!last_used_depth_ && usable >= kManyFeatures &&
-      matches < kMinMatchedShare * static_cast<double>(usable))
+  const int usable = current_.usable_count();
+  if (!last_used_depth_ && usable >= kManyFeatures && matches < kMinMatchedShare * usable)
     return false;
   if (!register_depth(map)) return false;
   current_.drop_outliers();
@@ -271,12 +274,22 @@ TrackResult OrbTracker::tracked(const SparseMap& map, TrackHints hints) {
   }
   result.reference = current_.reference;
   result.reference_from_camera = current_.reference_from_camera;
+  if (hints.localise_only) remember_view();
 
   update_velocity();
   state_ = TrackState::kTracking;
-  last_used_depth_ = depth_registration_.refined();
+  if (!map.empty()) last_used_depth_ = depth_registration_.refined();
   last_ = std::move(current_);
   return result;
+}
+
+// A map from a file has no depth images, and localising adds no key frames.
+void OrbTracker::remember_view() {
+  if (!options_.register_depth || bridged_ || depth_registration_.refined() ||
+      current_.frame->time - last_view_at_ < kViewInterval)
+    return;
+  depth_registration_.add_reference(current_.reference, current_.reference_from_camera);
+  last_view_at_ = current_.frame->time;
 }
 
 // Temporary points are no better known than the frame that measured them.
@@ -302,7 +315,6 @@ TrackResult OrbTracker::not_tracked(TrackState state) {
   result.features = static_cast<int>(current_.features->size());
   current_.clear_matches();
   result.tracked = tracked_features(current_);
-  if (state_ == TrackState::kTracking) relocaliser_.begin(last_.reference);
   state_ = state;
   velocity_.reset();
   return result;
@@ -329,7 +341,7 @@ KeyFrame OrbTracker::make_keyframe(KeyFrameId id) {
             [](const auto& a, const auto& b) { return a.landmark < b.landmark; });
   evidence_.clear();
   last_keyframe_at_ = current_.frame->time;
-  if (options_.register_depth) depth_registration_.add_keyframe(keyframe.id);
+  if (options_.register_depth) depth_registration_.add_reference(keyframe.id);
   return keyframe;
 }
 

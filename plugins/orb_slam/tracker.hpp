@@ -48,6 +48,7 @@ class OrbTracker final : public Tracker {
 
   TrackResult tracked(const SparseMap& map, TrackHints hints);
   TrackResult not_tracked(TrackState state);
+  void remember_view();
   PoseUncertainty uncertainty(const SparseMap& map) const;
   void update_velocity();
   KeyFrame make_keyframe(KeyFrameId id);
@@ -72,6 +73,7 @@ class OrbTracker final : public Tracker {
   std::optional<double> relocalised_at_;      // seconds, the last time; none: never
   std::optional<KeyFrameId> first_keyframe_;  // of this recording: others came with the map
   double last_keyframe_at_ = -1e300;          // seconds, the newest key frame of this recording
+  double last_view_at_ = -1e300;              // seconds, the newest view of remember_view()
   std::vector<LandmarkId> visible_;           // landmarks that should be seen in this frame
   EvidenceByLandmark evidence_;
 };

@@ -20,8 +20,8 @@ class TrackerTest : public testing::Test {
  protected:
   TrackResult step(FramePtr frame, const StaticWeights& weights = {}) {
     const auto id = static_cast<KeyFrameId>(map_.keyframe_id_end());
-    TrackResult result =
-        tracker_.track(tracker_.prepare(std::move(frame)), weights, map_, {.next_keyframe = id});
+    TrackResult result = tracker_.track(tracker_.prepare(std::move(frame)), weights, map_,
+                                        {.next_keyframe = id, .localise_only = localise_only_});
     if (result.keyframe) {
       EXPECT_EQ(result.keyframe->id, id);
       map_ = mapper_.insert(std::move(map_), *result.keyframe);
@@ -62,6 +62,7 @@ class TrackerTest : public testing::Test {
   OrbLocalMapper mapper_{OrbLocalMapper::Options{}, StageContext{}};
   SparseMap map_;
   std::uint32_t next_ = 0;
+  bool localise_only_ = false;
 };
 
 }  // namespace stillpoint::orb_slam

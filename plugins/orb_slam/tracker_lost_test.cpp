@@ -26,6 +26,47 @@ TEST_F(LostCamera, DepthTracksOnAfterAMomentWithoutIt) {
   EXPECT_EQ(see(55, false).state, TrackState::kLost) << "after a second it may be anywhere";
 }
 
+/// A corner of a room with pictures on its walls.
+FramePtr textured_corner(std::uint32_t index) {
+  static const cv::Mat texture = [] {
+    cv::Mat image(480, 640, CV_8UC1);
+    cv::RNG(3).fill(image, cv::RNG::UNIFORM, 0, 256);
+    cv::GaussianBlur(image, image, {}, 2);
+    cv::normalize(image, image, 0, 255, cv::NORM_MINMAX);
+    return image;
+  }();
+  auto frame = std::make_shared<Frame>(
+      *render_planes({kAhead, kRight, kFloor}, Pose::Identity(), index, 0.002));
+  frame->gray = texture;
+  return frame;
+}
+
+// As while the exposure settles: depth comes before texture.
+TEST_F(LostCamera, AMapBegunOnSurfacesGoesOnWhenTextureAppears) {
+  const FramePtr dark = render_planes({kAhead, kRight, kFloor}, Pose::Identity(), next_++, 0.002);
+  ASSERT_EQ(step(dark).features, 0);
+  for (int i = 0; i < 3; ++i) {
+    const TrackResult result = step(textured_corner(next_++));
+    EXPECT_GT(result.features, 600);
+    expect_at(result, Pose::Identity());
+  }
+}
+
+// In a map from a file, which has no depth images.
+TEST_F(LostCamera, DepthTracksOnInALoadedMap) {
+  for (int i = 0; i < 10; ++i) step(textured_corner(next_++));
+  tracker_ = OrbTracker{OrbTracker::Options{}};
+  localise_only_ = true;
+  for (int i = 0; i < 3; ++i) expect_at(step(textured_corner(next_++)), Pose::Identity());
+  for (int i = 0; i < 10; ++i) {
+    const Pose truth = pose_at({-0.01 * i, 0, 0.005 * i});
+    const TrackResult result = step(render_planes({kAhead, kRight, kFloor}, truth, next_++, 0.002));
+    expect_at(result, truth);
+    EXPECT_TRUE(result.depth_registered);
+    EXPECT_FALSE(result.keyframe);
+  }
+}
+
 TEST_F(LostCamera, BlackFrameIsLostAndThenFoundAgain) {
   for (int i = 0; i < 5; ++i) expect_at(step(pose_at({0.02 * i, 0, 0})), pose_at({0.02 * i, 0, 0}));
   for (int i = 0; i < 3; ++i) {
