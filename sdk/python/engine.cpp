@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <string>
 #include <utility>
@@ -24,7 +25,8 @@ namespace {
 
 using GilReleased = py::call_guard<py::gil_scoped_release>;
 
-/// An engine with the camera of the images that it is given.
+/// An engine with the camera of the images that it is given. Its threads may be many: process(),
+/// finish() and trajectory() wait for each other.
 class PythonEngine {
  public:
   PythonEngine(const CameraModel& camera, EngineSetup setup)
@@ -37,31 +39,59 @@ class PythonEngine {
     const py::gil_scoped_release released;
     Frame frame = rectifier_.frame(time, color, measured);
     if (frame.bgr.data == color.data) frame.bgr = color.clone();  // the array stays its owner's
+    const std::lock_guard lock(mutex_);
     return engine_.process(std::move(frame));
+  }
+  void finish() {
+    const std::lock_guard lock(mutex_);
+    engine_.finish();
+  }
+  std::vector<StampedPose> trajectory() {
+    const std::lock_guard lock(mutex_);
+    return engine_.trajectory();
   }
   Engine& engine() { return engine_; }
 
  private:
   Rectifier rectifier_;
+  std::mutex mutex_;  // never waited for with the GIL
   Engine engine_;
   bool is_unit_known_ = false;  // of depth images: one with measurements was in metres
 };
 
+/// The end of an engine waits for its threads, without holding up those of Python.
+struct DeleteWithoutGil {
+  void operator()(PythonEngine* engine) const {
+    const py::gil_scoped_release released;
+    delete engine;
+  }
+};
+using PythonEnginePtr = std::unique_ptr<PythonEngine, DeleteWithoutGil>;
+
 using NamedCamera = std::variant<CameraModel, std::string>;
 
-std::unique_ptr<PythonEngine> make_engine(const std::string& pipeline, const NamedCamera& camera,
-                                          const std::vector<std::string>& settings,
-                                          const std::filesystem::path& output,
-                                          const std::filesystem::path& load_map,
-                                          bool localise_only) {
-  const py::gil_scoped_release released;
-  const auto* model = std::get_if<CameraModel>(&camera);
-  EngineSetup setup{.request = {.pipeline = pipeline, .assignments = settings, .pushed = true},
-                    .output_directory = output,
-                    .localise_only = localise_only};
-  if (!load_map.empty()) setup.known_map = stillpoint::load_map(load_map);
-  return std::make_unique<PythonEngine>(model ? *model : load_camera(std::get<std::string>(camera)),
-                                        std::move(setup));
+void warn(const std::string& text) {
+  if (PyErr_WarnEx(PyExc_UserWarning, text.c_str(), 1) != 0) throw py::error_already_set();
+}
+
+PythonEnginePtr make_engine(const std::string& pipeline, const NamedCamera& camera,
+                            const std::vector<std::string>& settings,
+                            const std::filesystem::path& output,
+                            const std::filesystem::path& load_map, bool localise_only) {
+  std::vector<std::string> warnings;
+  PythonEnginePtr engine;
+  {
+    const py::gil_scoped_release released;
+    const auto* model = std::get_if<CameraModel>(&camera);
+    EngineSetup setup{.request = {.pipeline = pipeline, .assignments = settings, .pushed = true},
+                      .output_directory = output,
+                      .localise_only = localise_only};
+    if (!load_map.empty()) setup.known_map = stillpoint::load_map(load_map);
+    engine.reset(new PythonEngine(
+        model ? *model : load_camera(std::get<std::string>(camera), &warnings), std::move(setup)));
+  }
+  for (const std::string& text : warnings) warn(text);
+  return engine;
 }
 
 py::array_t<double> landmarks(PythonEngine& self) {
@@ -82,6 +112,15 @@ py::tuple keyframes(PythonEngine& self) {
   for (KeyFrameId id = 0; id < map->keyframe_id_end(); ++id)
     if (const KeyFrame* keyframe = map->keyframe(id))
       poses.push_back({keyframe->time, keyframe->world_from_camera});
+  return to_arrays(poses);
+}
+
+py::tuple trajectory(PythonEngine& self) {
+  std::vector<StampedPose> poses;
+  {
+    const py::gil_scoped_release released;
+    poses = self.trajectory();
+  }
   return to_arrays(poses);
 }
 
@@ -122,11 +161,9 @@ py::object world_from_camera(const FrameReport& report) {
 }
 
 void warn_of_depth_factor() {
-  if (PyErr_WarnEx(PyExc_UserWarning,
-                   "Camera: no depth_factor is given: depth images of uint16 count as 5000 for a "
-                   "metre, the format of TUM; millimetres need depth_factor=1000",
-                   1) != 0)
-    throw py::error_already_set();
+  warn(
+      "Camera: no depth_factor is given: depth images of uint16 count as 5000 for a metre, the "
+      "format of TUM; millimetres need depth_factor=1000");
 }
 
 void bind_camera(py::module_& module) {
@@ -214,10 +251,9 @@ void bind_report(py::module_& module) {
 }
 
 void bind_engine_class(py::module_& module) {
-  py::class_<PythonEngine>(
+  py::class_<PythonEngine, PythonEnginePtr>(
       module, "Engine",
-      "One run of a pipeline over images that are handed to process(), one after the other, from\n"
-      "one thread.")
+      "One run of a pipeline over images that are handed to process(), one after the other.")
       .def(
           py::init(&make_engine),
           "`pipeline`: a file, or a name from configs/pipelines. `camera`: a Camera, or a file or\n"
@@ -234,12 +270,10 @@ void bind_engine_class(py::module_& module) {
           "before that of the last frame. `bgr`: H x W x 3, uint8. `depth`: H x W, registered to\n"
           "bgr; uint16 as recorded, or float32 in metres. Raises Error for a frame that cannot be\n"
           "used, which then counts for nothing, and when a stage has failed.")
-      .def(
-          "finish", [](PythonEngine& self) { self.engine().finish(); }, GilReleased(),
-          "Completes the maps and writes the outputs. Once; no frame may follow.")
-      .def(
-          "trajectory", [](PythonEngine& self) { return to_arrays(self.engine().trajectory()); },
-          "(times N, poses N x 4 x 4) of the frames that were tracked, by what the map says now.")
+      .def("finish", &PythonEngine::finish, GilReleased(),
+           "Completes the maps and writes the outputs. Once; no frame may follow.")
+      .def("trajectory", &trajectory,
+           "(times N, poses N x 4 x 4) of the frames that were tracked, by what the map says now.")
       .def("keyframes", &keyframes, "(times N, poses N x 4 x 4) of the key frames.")
       .def("landmarks", &landmarks, "N x 3: points of the sparse map, metres in the world.")
       .def("dense_map", &dense_map,

@@ -2,6 +2,7 @@
 import gc
 import os
 import tempfile
+import threading
 import unittest
 
 import numpy as np
@@ -66,6 +67,21 @@ class Tracking(unittest.TestCase):
         slam = stillpoint.Engine("orb_baseline", stillpoint.Camera(**CAMERA))
         after(30, slam).finish()
         np.testing.assert_allclose(slam.trajectory()[1][:, 0, 3], STEP * np.arange(30), atol=5e-3)
+
+    def test_other_threads_may_look(self):
+        slam, lengths, ended = engine(), [], threading.Event()
+
+        def look():
+            while not ended.is_set():
+                lengths.append(len(slam.trajectory()[0]))
+
+        looking = threading.Thread(target=look)
+        looking.start()
+        after(30, slam)
+        ended.set()
+        looking.join()
+        self.assertEqual(lengths, sorted(lengths))
+        self.assertEqual(len(slam.trajectory()[0]), 30)
 
     def test_no_pose_is_none(self):
         report = engine().process(0, np.zeros((240, 320, 3), np.uint8), DEPTH)
@@ -181,6 +197,13 @@ class Refusals(unittest.TestCase):
         without_factor = {key: CAMERA[key] for key in CAMERA if key != "depth_factor"}
         with self.assertWarnsRegex(UserWarning, "millimetres need depth_factor=1000"):
             stillpoint.Camera(**without_factor)
+
+    def test_camera_files_without_a_depth_factor(self):
+        with tempfile.NamedTemporaryFile("w", suffix=".yaml") as file:
+            file.write("camera: {width: 320, height: 240, fx: 200, fy: 200, cx: 159.5, cy: 119.5}\n")
+            file.flush()
+            with self.assertWarnsRegex(UserWarning, "depth_factor"):
+                stillpoint.Engine("orb_baseline", file.name)
 
     def test_time_that_runs_backwards(self):
         slam = after(3)

@@ -152,6 +152,9 @@ TEST(Rectifier, RefusesImagesOfAnotherSizeOrType) {
   expect_fault([&] { rectifier.frame(0, cv::Mat(240, 320, CV_8UC3), depth); }, Fault::kData,
                "the colour image has 320 x 240 pixels, but camera 'fr1' has 640 x 480; choose the "
                "camera of these images");
+  expect_fault([&] { rectifier.frame(0, cv::Mat(), depth); }, Fault::kData,
+               "the colour image is empty; look whether its file could be read, or what the driver "
+               "gave");
   expect_fault([&] { rectifier.frame(0, bgr, cv::Mat(480, 640, CV_64FC1)); }, Fault::kData,
                "the depth image is of CV_64FC1; it must be of CV_16UC1");
 }

@@ -3,7 +3,7 @@
 #include <memory>
 
 #include "commands.hpp"
-#include "pipeline_warnings.hpp"
+#include "stillpoint/engine/pipeline_warnings.hpp"
 
 namespace stillpoint {
 

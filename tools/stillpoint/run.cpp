@@ -17,7 +17,6 @@
 #include "evaluation/origin.hpp"
 #include "interrupt.hpp"
 #include "map_saver.hpp"
-#include "pipeline_warnings.hpp"
 #include "progress.hpp"
 #include "run_folder.hpp"
 #include "run_results.hpp"
@@ -25,6 +24,7 @@
 #include "shell_word.hpp"
 #include "stillpoint/engine/engine.hpp"
 #include "stillpoint/engine/make_stages.hpp"
+#include "stillpoint/engine/pipeline_warnings.hpp"
 #include "stillpoint/engine/stage_error.hpp"
 #include "stillpoint/engine/stage_guard.hpp"
 

@@ -5,6 +5,7 @@
 
 #include "stillpoint/engine/folder_lock.hpp"
 #include "stillpoint/engine/make_stages.hpp"
+#include "stillpoint/engine/pipeline_warnings.hpp"
 #include "stillpoint/engine/registry.hpp"
 #include "stillpoint/runtime/pipeline.hpp"
 #include "stillpoint/support/trajectory.hpp"
@@ -20,6 +21,27 @@ void make_folder(const std::filesystem::path& folder) {
                 "choose another output_directory");
 }
 
+void require_same_layout(std::string_view abi) {
+  if (abi == kAbiTag) return;
+  throw Error(Fault::kUsage,
+              "the program was compiled with " + std::string(abi) + ", Stillpoint with " + kAbiTag,
+              "engine",
+              "compile both with the same standard library, Eigen, OpenCV and processor flags "
+              "(-march=native and -mavx change how Eigen lays out its objects)");
+}
+
+/// Until the end of a run, however it ends.
+class UntilEnd {
+ public:
+  explicit UntilEnd(std::unique_ptr<FolderLock>& lock) : lock_(lock) {}
+  ~UntilEnd() { lock_.reset(); }
+  UntilEnd(const UntilEnd&) = delete;
+  UntilEnd& operator=(const UntilEnd&) = delete;
+
+ private:
+  std::unique_ptr<FolderLock>& lock_;
+};
+
 }  // namespace
 
 void log_to_stderr(LogLevel level, std::string_view text) {
@@ -27,9 +49,13 @@ void log_to_stderr(LogLevel level, std::string_view text) {
   if (level == LogLevel::kError) std::cerr << "error: " + std::string(text) + '\n';
 }
 
-Engine::Engine(EngineSetup setup) {
+Engine::Engine(EngineSetup setup, std::string_view abi) {
+  require_same_layout(abi);
   Registry registry;
   const PipelineConfig config = load_pipeline(setup.request, registry);
+  for (const std::string& warning : warnings_of(config)) setup.log(LogLevel::kWarning, warning);
+  if (setup.localise_only && setup.known_map.empty())
+    setup.log(LogLevel::kWarning, "localise_only without a known map: nothing can be tracked");
   if (!setup.output_directory.empty()) {
     make_folder(setup.output_directory);
     lock_ = std::make_unique<FolderLock>(setup.output_directory);
@@ -41,18 +67,27 @@ Engine::Engine(EngineSetup setup) {
 }
 
 Engine::Engine(Stages stages, const RuntimeOptions& runtime,
-               const SegmentationOptions& segmentation, std::shared_ptr<PaceClock> clock)
-    : pipeline_(
-          std::make_unique<Pipeline>(std::move(stages), runtime, segmentation, std::move(clock))) {}
+               const SegmentationOptions& segmentation, std::shared_ptr<PaceClock> clock,
+               std::string_view abi) {
+  require_same_layout(abi);
+  pipeline_ =
+      std::make_unique<Pipeline>(std::move(stages), runtime, segmentation, std::move(clock));
+}
 
 Engine::~Engine() = default;
 Engine::Engine(Engine&&) noexcept = default;
 
 FrameReportPtr Engine::process(Frame frame) { return pipeline_->push(std::move(frame)); }
 
-void Engine::run(std::stop_token stop) { pipeline_->run(std::move(stop)); }
+void Engine::run(std::stop_token stop) {
+  const UntilEnd locked(lock_);
+  pipeline_->run(std::move(stop));
+}
 
-void Engine::finish() { pipeline_->finish(); }
+void Engine::finish() {
+  const UntilEnd locked(lock_);
+  pipeline_->finish();
+}
 
 std::shared_ptr<const SparseMap> Engine::map() const { return pipeline_->map(); }
 

@@ -241,8 +241,9 @@ void Pipeline::end_threads() {
 }
 
 void Pipeline::finish_outputs() {
-  if (poses_.empty() && !stop_.requested()) keep_failure_of(before_outputs_);
-  const bool begun = !poses_.empty() || !stop_.requested();
+  // A source without frames is a whole recording; where none is pushed, there is no run.
+  const bool begun = !poses_.empty() || (feed_ && !stop_.requested());
+  if (begun && poses_.empty()) keep_failure_of(before_outputs_);
   const MapStore::Snapshot map = mapping_.snapshot();
   SourceReport source;
   if (feed_) keep_failure_of([&] { source = feed_->report(); });

@@ -5,6 +5,7 @@
 #define BOOST_DLL_USE_STD_FS
 #include <boost/dll/shared_library.hpp>
 #include <deque>
+#include <mutex>
 #include <system_error>
 
 #include "../loader_message.hpp"
@@ -43,7 +44,9 @@ boost::dll::shared_library load(const fs::path& file, std::string& reason) {
 /// Holds libraries until the process ends: exceptions, control blocks and registered prototypes
 /// point into their code, also while static objects are destroyed.
 std::shared_ptr<const void> keep_loaded(const boost::dll::shared_library& library) {
+  static std::mutex mutex;
   static auto& libraries = *new std::deque<boost::dll::shared_library>;
+  const std::lock_guard lock(mutex);
   libraries.push_back(library);
   return std::make_shared<const boost::dll::shared_library>(library);
 }

@@ -134,6 +134,9 @@ cv::Mat Rectifier::rectified_depth(const cv::Mat& recorded, Metres metres) const
 
 void Rectifier::check(const cv::Mat& image, const char* name,
                       std::initializer_list<int> types) const {
+  if (image.empty())
+    throw Error(Fault::kData, std::string("the ") + name + " image is empty", "",
+                "look whether its file could be read, or what the driver gave");
   if (image.size() != cv::Size(model_.width, model_.height))
     throw Error(Fault::kData,
                 std::string("the ") + name + " image has " + size_text(image.size()) +

@@ -48,6 +48,7 @@ class IcpTracker final : public Tracker {
   TrackResult track(PreparedFramePtr prepared, const StaticWeights& weights, const SparseMap& map,
                     TrackHints hints) override {
     const auto& current = static_cast<const PreparedSurface&>(*prepared);
+    if (!reference_ && !map.empty()) return {.state = TrackState::kLost};  // a map of another run
     if (!reference_) return hints.localise_only ? TrackResult{} : started(current, hints);
     const Pose guess = reference_from_last_ * motion_;
     const auto found =

@@ -166,7 +166,7 @@ void Session::begin(SparseMap known_map) {
       .known_map = std::move(known_map),
       .localise_only = options_.localise_only,
       .log = [warn = options_.warn](LogLevel level, std::string_view text) {
-        if (level != LogLevel::kInfo) warn(std::string(text));
+        if (level >= LogLevel::kWarning) warn(std::string(text));
       }});
   const std::lock_guard lock(mutex_);
   engine_.swap(engine);  // the old one ends when the lock is gone: its threads may take a while

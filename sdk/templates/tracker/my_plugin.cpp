@@ -83,6 +83,10 @@ stillpoint::TrackResult MyPlugin::track(stillpoint::PreparedFramePtr prepared,
   const stillpoint::FeaturesPtr features = current.features;
   const std::vector<std::uint8_t> of_features = at_features(weights.track, *features);
   stillpoint::TrackResult result{.features = static_cast<int>(features->size())};
+  if (!reference_ && !map.empty()) {  // of another run: where in it the camera is, is not known
+    result.state = stillpoint::TrackState::kLost;
+    return result;
+  }
   if (!reference_) {
     int usable = 0;
     for (std::size_t i = 0; i < features->size(); ++i)

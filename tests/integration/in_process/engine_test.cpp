@@ -1,4 +1,5 @@
 // Frames of one's own through a shipped pipeline: the same as `stillpoint run` makes of them.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -126,6 +127,27 @@ TEST(PushedRecording, TwoEnginesDoNotWriteIntoOneFolder) {
   EXPECT_THROW(Engine(setup_of(folder.path(), "inline")), Error);
   first.reset();
   EXPECT_NO_THROW(Engine(setup_of(folder.path(), "inline")));
+}
+
+TEST(PushedRecording, AfterTheEndItsFolderIsFree) {
+  const TemporaryFolder folder;
+  Engine first(setup_of(folder.path(), "inline"));
+  first.finish();
+  const Engine second(setup_of(folder.path(), "inline"));
+}
+
+TEST(PushedRecording, WarningsGoToTheLog) {
+  std::vector<std::string> warnings;
+  EngineSetup setup = setup_of({}, "inline");
+  setup.request.assignments.emplace_back("decision=null");
+  setup.localise_only = true;
+  setup.log = [&](LogLevel level, std::string_view text) {
+    if (level == LogLevel::kWarning) warnings.emplace_back(text);
+  };
+  const Engine engine(std::move(setup));
+  EXPECT_THAT(warnings,
+              ::testing::ElementsAre(::testing::StartsWith("there is no decision"),
+                                     ::testing::StartsWith("localise_only without a known map")));
 }
 
 TEST(PushedRecording, FaultsOfThePipelineAreToldBeforeAnythingIsMade) {

@@ -148,6 +148,20 @@ TEST_P(PushedFrames, AnEngineThatIsLeftFinishesItsOutputs) {
   EXPECT_EQ(f_.output->poses.size(), 1u);
 }
 
+TEST_P(PushedFrames, WithoutAnyAnOutputIsNotAskedToFinish) {
+  Engine engine = this->engine();
+  engine.finish();
+  EXPECT_TRUE(f_.output->before_first_frame);
+}
+
+TEST_P(PushedFrames, AProgramOfAnotherLayoutIsRefused) {
+  const std::string message = message_of(
+      [&] { Engine(f_.stages(), runtime(GetParam()), {}, nullptr, "other"); }, Fault::kUsage);
+  EXPECT_NE(message.find("the program was compiled with other, Stillpoint with libstdc++"),
+            std::string::npos)
+      << message;
+}
+
 TEST_P(PushedFrames, AreNotMixedWithRunsAndNotWantedAfterTheEnd) {
   Engine engine = this->engine();
   engine.process(make_frame(0));

@@ -29,9 +29,9 @@ STILLPOINT_EXPORT void log_to_stderr(LogLevel level, std::string_view text);
 /// What an engine is made from, a pipeline file above all.
 struct EngineSetup {
   PipelineRequest request;
-  /// Created when missing, and locked: no other engine or run can use it meanwhile. The pipeline's
-  /// outputs write into it, the dense map into its folder `map`. Empty: no outputs, and the dense
-  /// map is not saved.
+  /// Created when missing, and locked until the end: no other engine or run can use it. The
+  /// pipeline's outputs write into it, the dense map into its folder `map`. Empty: no outputs, and
+  /// the dense map is not saved.
   std::filesystem::path output_directory;
   SparseMap known_map;         ///< to begin with, see load_map(); empty: the first frame begins one
   bool localise_only = false;  ///< the known map stays as it is
@@ -39,19 +39,21 @@ struct EngineSetup {
   std::function<void(LogLevel, std::string_view)> log = log_to_stderr;
 };
 
-/// One run of a pipeline. process(), run(), finish() and poses() are called from one thread, which
-/// is thread 1 of the paper's Fig. 2, tracking; `runtime.mode: threaded` has the others behind it.
+/// One run of a pipeline. process(), run(), finish(), poses() and trajectory() are called from one
+/// thread, which is thread 1 of the paper's Fig. 2, tracking; `runtime.mode: threaded` has the
+/// others behind it.
 ///
 /// A failure of a stage, on any thread, ends the run: process(), run() or finish() throws an Error
 /// that names the stage and the frame. What was computed until then stays available.
 class STILLPOINT_EXPORT Engine {
  public:
   /// Throws ConfigError with every fault of the configuration, or Error when a stage cannot be
-  /// made.
-  explicit Engine(EngineSetup setup);
+  /// made. `abi` is left as it is: it says how the calling program was compiled, and Error(kUsage)
+  /// is thrown where its objects have another layout than the library's.
+  explicit Engine(EngineSetup setup, std::string_view abi = kAbiTag);
   /// From objects. `clock` is what `pace: sensor` goes by; null: the steady clock.
   Engine(Stages stages, const RuntimeOptions& runtime, const SegmentationOptions& segmentation,
-         std::shared_ptr<PaceClock> clock = nullptr);
+         std::shared_ptr<PaceClock> clock = nullptr, std::string_view abi = kAbiTag);
   /// Without finish() before, stops like Ctrl-C: outputs are finished, failures are not reported.
   ~Engine();
   Engine(Engine&&) noexcept;

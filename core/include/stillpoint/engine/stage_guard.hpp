@@ -24,7 +24,8 @@ namespace stillpoint {
 /// Threads that a plugin has made itself are for ThreadWatch.
 ///
 /// Locks and memory that the plugin held are not released: results can be saved, but the run cannot
-/// go on. If saving hangs as well, the process ends after half a minute.
+/// go on. In case saving hangs as well, the process is ended after half a minute: a program that
+/// goes on destroys the guard once it has saved.
 class STILLPOINT_EXPORT StageGuard {
  public:
   StageGuard();

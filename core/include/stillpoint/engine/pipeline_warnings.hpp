@@ -5,10 +5,11 @@
 #include <vector>
 
 #include "stillpoint/engine/pipeline_config.hpp"
+#include "stillpoint/export.hpp"
 
 namespace stillpoint {
 
-/// A sentence each, for `run` and `check`; those of the configuration included.
-std::vector<std::string> warnings_of(const PipelineConfig& config);
+/// A sentence each; those of the configuration included.
+STILLPOINT_EXPORT std::vector<std::string> warnings_of(const PipelineConfig& config);
 
 }  // namespace stillpoint

@@ -1,4 +1,4 @@
-#include "pipeline_warnings.hpp"
+#include "stillpoint/engine/pipeline_warnings.hpp"
 
 #include "stillpoint/support/did_you_mean.hpp"
 
