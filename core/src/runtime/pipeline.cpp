@@ -242,8 +242,9 @@ void Pipeline::end_threads() {
 
 void Pipeline::finish_outputs() {
   // A source without frames is a whole recording; where none is pushed, there is no run.
-  const bool begun = !poses_.empty() || (feed_ && !stop_.requested());
-  if (begun && poses_.empty()) keep_failure_of(before_outputs_);
+  const auto has_begun = [&] { return !poses_.empty() || (feed_ && !stop_.requested()); };
+  if (has_begun() && poses_.empty()) keep_failure_of(before_outputs_);
+  const bool begun = has_begun();
   const MapStore::Snapshot map = mapping_.snapshot();
   SourceReport source;
   if (feed_) keep_failure_of([&] { source = feed_->report(); });
