@@ -15,6 +15,7 @@ namespace stillpoint::testing {
 /// A folder of its own under the system's temporary folder, removed at the end.
 class TemporaryFolder : public stillpoint::TemporaryFolder {
  public:
+  TemporaryFolder() {}  // not defaulted: with clang 14, none could be const then
   std::filesystem::path write(const std::string& name, const std::string& text) const {
     const std::filesystem::path file = path() / name;
     std::filesystem::create_directories(file.parent_path());
