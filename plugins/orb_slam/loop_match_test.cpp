@@ -63,29 +63,36 @@ TEST_F(LoopMatchTest, SameMapSameBits) {
 }
 
 /// With a landmark for each feature that has depth.
-void add_keyframe(MapEdit& edit, const FramePtr& frame, const Pose& world_from_camera) {
-  const auto id = static_cast<KeyFrameId>(edit.map().keyframe_id_end());
-  const ObservedFrame seen = observe(frame, OrbExtractor(OrbOptions{}).extract(frame->gray));
-  edit.add_keyframe({.id = id,
-                     .frame = frame->index,
-                     .time = frame->time,
-                     .world_from_camera = world_from_camera,
-                     .camera = frame->camera,
-                     .features = seen.features,
-                     .track_weights = seen.track_weights,
-                     .map_weights = seen.map_weights,
-                     .landmarks = std::vector<LandmarkId>(seen.features->size(), kNoId)});
-  for (std::uint32_t f = 0; f < seen.features->size(); ++f) {
-    const cv::Point2f p = seen.features->keypoints[f].pt;
-    const float depth = seen.features->depth[f];
+void add(MapEdit& edit, KeyFrame keyframe) {
+  const KeyFrameId id = keyframe.id;
+  const FeaturesPtr features = keyframe.features;
+  const Pose world_from_camera = keyframe.world_from_camera;
+  const auto camera = keyframe.camera;
+  edit.add_keyframe(std::move(keyframe));
+  for (std::uint32_t f = 0; f < features->size(); ++f) {
+    const cv::Point2f p = features->keypoints[f].pt;
+    const float depth = features->depth[f];
     if (depth <= 0) continue;
     const LandmarkId landmark = edit.add_landmark(
-        {.position_in_world = world_from_camera * frame->camera->unproject(p.x, p.y, depth),
+        {.position_in_world = world_from_camera * camera->unproject(p.x, p.y, depth),
          .reference = id,
          .created_by = id});
     edit.add_observation(landmark, {id, f});
     refresh_landmark(edit, landmark);
   }
+}
+
+KeyFrame keyframe_of(const FramePtr& frame, KeyFrameId id, const Pose& world_from_camera) {
+  const ObservedFrame seen = observe(frame, OrbExtractor(OrbOptions{}).extract(frame->gray));
+  return {.id = id,
+          .frame = frame->index,
+          .time = frame->time,
+          .world_from_camera = world_from_camera,
+          .camera = frame->camera,
+          .features = seen.features,
+          .track_weights = seen.track_weights,
+          .map_weights = seen.map_weights,
+          .landmarks = std::vector<LandmarkId>(seen.features->size(), kNoId)};
 }
 
 // What was on one level of the pyramid is two levels higher or lower.
@@ -94,8 +101,8 @@ TEST(LoopMatch, IsFoundFromAnotherDistance) {
   const Pose drift = pose_at({0.1, 0.05, -0.1});
   for (const double z : {-1.0, 1.0}) {
     MapEdit edit{SparseMap{}};
-    add_keyframe(edit, scene.render(Pose::Identity(), 0), Pose::Identity());
-    add_keyframe(edit, scene.render(pose_at({0, 0, z}), 300), drift * pose_at({0, 0, z}));
+    add(edit, keyframe_of(scene.render(Pose::Identity(), 0), 0, Pose::Identity()));
+    add(edit, keyframe_of(scene.render(pose_at({0, 0, z}), 300), 1, drift * pose_at({0, 0, z})));
     const auto loop = match_loop(std::move(edit).finish(), 1, 0);
     ASSERT_TRUE(loop) << z;
     EXPECT_LT(metres_between(loop->world_from_camera, pose_at({0, 0, z})), 0.02);
@@ -121,21 +128,8 @@ TEST(LoopMatch, OnePosterIsNoPlace) {
   there.world_from_camera = pose_at({20, 0, 0});
 
   MapEdit edit{SparseMap{}};
-  KeyFrameId id = 0;
-  for (const View* view : {&std::as_const(here), &std::as_const(there)}) {
-    edit.add_keyframe(keyframe_of(*view, id));
-    for (std::uint32_t f = 0; f < view->features->size(); ++f) {
-      const cv::Point2f p = view->features->keypoints[f].pt;
-      const LandmarkId landmark = edit.add_landmark(
-          {.position_in_world = view->world_from_camera *
-                                view->camera->unproject(p.x, p.y, view->features->depth[f]),
-           .reference = id,
-           .created_by = id});
-      edit.add_observation(landmark, {id, f});
-      refresh_landmark(edit, landmark);
-    }
-    ++id;
-  }
+  add(edit, keyframe_of(here, 0));
+  add(edit, keyframe_of(there, 1));
   EXPECT_FALSE(match_loop(std::move(edit).finish(), 1, 0));
 }
 

@@ -109,7 +109,7 @@ TEST_F(Record, ARecordingOfARecordingIsTheSame) {
   EXPECT_EQ(trajectory_of_recording(), trajectory(pipeline_for(original)));
 }
 
-/// What follows this word at the begin of a line.
+/// What follows this word at the beginning of a line.
 std::string line_of(const std::string& text, const std::string& word) {
   const std::size_t begin = text.find(word + "   ");
   if (begin == std::string::npos) return "no line '" + word + "' in " + text;

@@ -30,18 +30,6 @@ void require_same_layout(std::string_view abi) {
               "(-march=native and -mavx change how Eigen lays out its objects)");
 }
 
-/// Until the end of a run, however it ends.
-class UntilEnd {
- public:
-  explicit UntilEnd(std::unique_ptr<FolderLock>& lock) : lock_(lock) {}
-  ~UntilEnd() { lock_.reset(); }
-  UntilEnd(const UntilEnd&) = delete;
-  UntilEnd& operator=(const UntilEnd&) = delete;
-
- private:
-  std::unique_ptr<FolderLock>& lock_;
-};
-
 }  // namespace
 
 void log_to_stderr(LogLevel level, std::string_view text) {
@@ -80,12 +68,12 @@ Engine::Engine(Engine&&) noexcept = default;
 FrameReportPtr Engine::process(Frame frame) { return pipeline_->push(std::move(frame)); }
 
 void Engine::run(std::stop_token stop) {
-  const UntilEnd locked(lock_);
+  const auto lock = std::move(lock_);  // released however the run ends
   pipeline_->run(std::move(stop));
 }
 
 void Engine::finish() {
-  const UntilEnd locked(lock_);
+  const auto lock = std::move(lock_);  // released however the run ends
   pipeline_->finish();
 }
 

@@ -130,7 +130,7 @@ ConfigNode load_pipeline_tree(const fs::path& file, const PipelineRequest& reque
     load_named_sections(written, faults, files);
   };
   ConfigNode tree = load_config_file(file, "pipelines", faults, with_sections, files);
-  if (is_of_orb_slam(tree, faults)) return {};
+  if (refuse_settings_of_orb_slam(tree, faults)) return {};
   const ConfigNode overlay = command_line_overlay(request, tree, faults, files);
 
   fs::path camera_file;

@@ -10,7 +10,7 @@
 
 namespace stillpoint {
 
-bool is_of_orb_slam(const ConfigNode& tree, FaultList& faults) {
+bool refuse_settings_of_orb_slam(const ConfigNode& tree, FaultList& faults) {
   const ConfigNode* focal_length = tree.find("Camera.fx");
   if (!focal_length) focal_length = tree.find("Camera1.fx");
   if (!focal_length) return false;
@@ -25,7 +25,7 @@ ConfigNode load_section(const std::filesystem::path& file, const std::string& na
   ConfigNode tree = load_config_file(file, name + "s", faults, {}, files);
   substitute_environment(tree, faults);
   remove_nulls(tree);
-  if (is_of_orb_slam(tree, faults)) return {};
+  if (refuse_settings_of_orb_slam(tree, faults)) return {};
   for (const ConfigNode& section : tree.children)
     if (section.key != name && section.key != "version")
       faults.add(section.key_location, "unknown section '" + section.key + "' in a " + name +

@@ -14,8 +14,8 @@ namespace stillpoint {
 ConfigNode load_section(const std::filesystem::path& file, const std::string& name,
                         FaultList& faults, ConfigFiles& files);
 
-/// Whether it is a settings file of ORB-SLAM2 or 3; that is a fault then.
-bool is_of_orb_slam(const ConfigNode& tree, FaultList& faults);
+/// Adds a fault for a settings file of ORB-SLAM2 or 3; false: it is none.
+bool refuse_settings_of_orb_slam(const ConfigNode& tree, FaultList& faults);
 
 /// Of a `camera:` section; empty: it says all it should.
 std::string warning_of_camera(const ConfigNode& camera);
