@@ -25,6 +25,7 @@ class DepthConsistency final : public MapChecker {
   MapEvidence check(const Frame& frame, std::span<const Pose> guesses,
                     const SparseMap& map) override;
   void remember(const TrackedFrame& frame) override;
+  void clear() override { memory_ = ViewMemory(options_.memory); }
 
  private:
   /// Those that have enough of the depth image in theirs, the one with most first.

@@ -51,6 +51,7 @@ class World {
     time += 1 / kRate;
     return evidence;
   }
+  void clear() { check_.clear(); }
   MapEvidence after(double seconds) {
     for (int i = 1; i < seconds * kRate; ++i) next();
     return next();
@@ -106,6 +107,14 @@ TEST(DepthConsistency, ACrowdDoesNotTakeTheCameraAlong) {
   ASSERT_FALSE(log_odds.empty());
   EXPECT_GT(share(log_odds > 3, crowd), 0.95);
   EXPECT_GT(share(log_odds <= -4, ~crowd), 0.75);
+}
+
+TEST(DepthConsistency, AMapThatWasClearedIsForgotten) {
+  World world;
+  world.after(3);
+  world.clear();
+  EXPECT_TRUE(world.next().log_odds.empty());
+  EXPECT_FALSE(world.after(1).log_odds.empty());
 }
 
 TEST(DepthConsistency, APoseThatDoesNotFitSaysNothing) {

@@ -140,6 +140,13 @@ void OctomapBackend::move(std::span<const MovedKeyFrame> moved) {
   rest_until_ = entries_.size() + fuse_again(far) / kScansPerKeyFrame;
 }
 
+void OctomapBackend::clear() {
+  tree_.clear();
+  entries_.clear();
+  index_.clear();
+  rest_until_ = 0;
+}
+
 void OctomapBackend::save(const std::filesystem::path& directory) {
   if (entries_.empty()) {
     log_(LogLevel::kWarning, "no key frame was mapped, so there is no dense map");

@@ -66,6 +66,7 @@ class OctomapBackend final : public MapBackend {
   /// Throws Error(kData) for a pose that is out of the octree's reach.
   void integrate(const DenseKeyFrame& keyframe) override;
   void move(std::span<const MovedKeyFrame> moved) override;
+  void clear() override;
   void save(const std::filesystem::path& directory) override;
   std::vector<LabelledPoint> occupied() const override { return occupied_points(tree_); }
 

@@ -95,6 +95,15 @@ TEST_F(OctomapBackendTest, AfterACorrectionItIsTheMapOfTheCorrectedPoses) {
   expect_same(map.tree(), map_at(pose_of).tree());
 }
 
+TEST_F(OctomapBackendTest, ClearedItIsANewMap) {
+  OctomapBackend map = map_at(drifted_pose_of);
+  map.clear();
+  EXPECT_TRUE(map.occupied().empty());
+  for (KeyFrameId id = 0; id < kKeyFrames; ++id) map.integrate(keyframe_at(id, pose_of(id)));
+  map.move(all_to(pose_of));
+  expect_same(map.tree(), map_at(pose_of).tree());
+}
+
 TEST_F(OctomapBackendTest, AfterSomeHaveMovedTheOthersStay) {
   const auto corrected_in_part = [](KeyFrameId id) {
     return id >= 5 && id < 8 ? pose_of(id) : drifted_pose_of(id);

@@ -28,6 +28,7 @@ class VoxelCloudBackend final : public MapBackend {
 
   void integrate(const DenseKeyFrame& keyframe) override;
   void move(std::span<const MovedKeyFrame> moved) override;
+  void clear() override { entries_.clear(); }
   void save(const std::filesystem::path& directory) override;
   std::vector<LabelledPoint> occupied() const override;
 

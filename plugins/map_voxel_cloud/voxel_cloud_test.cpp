@@ -103,6 +103,13 @@ TEST(VoxelCloudBackend, KeyFramesWithoutLabelsHaveNoSayInTheClass) {
     EXPECT_EQ(point.mean.label, point.mean.position.x() < 0 ? 3 : 0);
 }
 
+TEST(VoxelCloudBackend, ClearedItIsEmpty) {
+  VoxelCloudBackend map({}, context());
+  map.integrate(wall(0, Pose::Identity()));
+  map.clear();
+  EXPECT_TRUE(map.points().empty());
+}
+
 TEST(VoxelCloudBackend, FollowsItsKeyFrames) {
   VoxelCloudBackend map({}, context());
   map.integrate(wall(0, Pose::Identity()));

@@ -27,7 +27,7 @@ class BundleProblem {
       : map_(map), landmarks_(std::move(landmarks)), camera_of_(map.keyframe_id_end(), kUnknown) {
     // Fixed: the origin, and key frames whose pose depth rather than landmarks constrains.
     std::erase_if(moving, [&](KeyFrameId id) {
-      return id == 0 || observes_few_landmarks(*map.keyframe(id));
+      return id == map.keyframe_id_begin() || observes_few_landmarks(*map.keyframe(id));
     });
     for (const KeyFrameId id : moving) camera_of_[id] = add_camera(id, true);
     moving_ = std::move(moving);

@@ -56,7 +56,7 @@ void cull_landmarks(MapEdit& edit, KeyFrameId latest, std::vector<LandmarkId>& r
 void cull_keyframes(MapEdit& edit, KeyFrameId latest, double redundant_share) {
   const std::vector<Covisibility> covisible = edit.map().keyframe(latest)->covisible;
   for (const Covisibility& c : covisible) {
-    if (c.keyframe == 0) continue;  // the origin
+    if (c.keyframe == edit.map().keyframe_id_begin()) continue;  // the origin
     if (is_redundant(edit.map(), *edit.map().keyframe(c.keyframe), redundant_share))
       edit.remove_keyframe(c.keyframe);
   }

@@ -40,6 +40,7 @@ class DepthRegistration {
   void add_reference(KeyFrameId keyframe, const Pose& keyframe_from_camera = Pose::Identity()) {
     references_.add(keyframe, keyframe_from_camera, view());
   }
+  void forget_references() { references_ = {}; }
 
  private:
   const DepthView& view();

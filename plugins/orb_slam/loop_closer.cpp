@@ -83,6 +83,7 @@ std::optional<MapCorrection> OrbLoopCloser::close(const SparseMap& map, KeyFrame
 
 std::optional<MapCorrection> OrbLoopCloser::correct(const SparseMap& map, const LoopMatch& loop,
                                                     std::stop_token stop) {
+  std::erase_if(loops_, [&](const PoseEdge& edge) { return edge.a < map.keyframe_id_begin(); });
   loops_.push_back({loop.place, loop.keyframe,
                     map.world_from_keyframe(loop.place).inverse() * loop.world_from_camera});
   std::vector<MovedKeyFrame> moved = optimise_pose_graph(map, loops_, std::move(stop));

@@ -40,6 +40,25 @@ TEST_F(LoopCloserTest, ClosesTheLoopOnceThePlaceIsSeenAgain) {
             0.03);
 }
 
+TEST_F(LoopCloserTest, ALoopOfAMapThatWasClearedIsForgotten) {
+  const auto first = go();
+  ASSERT_TRUE(first);
+  MapEdit edit(map_);
+  edit.clear();
+  const SparseMap cleared = std::move(edit).finish();
+  const auto begin = static_cast<KeyFrameId>(cleared.keyframe_id_end());
+  std::optional<MapCorrection> second;
+  for (int i = 0; i < RoundTrip::kKeyFrames && !second; ++i) {
+    map_ = trip_.map(i + 1, cleared);
+    second = closer_.close(map_, begin + static_cast<KeyFrameId>(i), {});
+  }
+  ASSERT_TRUE(second);
+  ASSERT_EQ(second->moved.size(), first->moved.size());
+  for (std::size_t i = 0; i < second->moved.size(); ++i)
+    EXPECT_TRUE(second->moved[i].world_from_camera.isApprox(first->moved[i].world_from_camera))
+        << i;
+}
+
 TEST_F(LoopCloserTest, AdjustmentMakesTheMapConsistent) {
   const auto correction = go();
   ASSERT_TRUE(correction);

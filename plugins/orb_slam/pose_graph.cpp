@@ -84,7 +84,7 @@ class EdgeError {
 };
 
 KeyFrameId this_or_older(const SparseMap& map, KeyFrameId id) {
-  while (!map.keyframe(id)) --id;  // the first one is never removed
+  while (!map.keyframe(id)) --id;  // the oldest one is never removed
   return id;
 }
 

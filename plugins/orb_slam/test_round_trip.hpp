@@ -32,16 +32,19 @@ class RoundTrip {
     return truth(i) * exp_se3(drift_ * i * twist);
   }
 
-  // The first `count` key frames. A point that was out of sight for a while is not recognised.
-  SparseMap map(int count = kKeyFrames) const {
+  // The first `count` key frames, with ids that follow those of `before`. A point that was out of
+  // sight for a while is not recognised.
+  SparseMap map(int count = kKeyFrames, SparseMap before = {}) const {
     struct Known {
       LandmarkId landmark = kNoId;
       int last_seen = 0;
     };
     std::vector<Known> known(world_.points().size());
-    MapEdit edit{SparseMap{}};
+    const std::size_t first_landmark = before.landmark_id_end();
+    const auto first = static_cast<KeyFrameId>(before.keyframe_id_end());
+    MapEdit edit(std::move(before));
     for (int k = 0; k < count; ++k) {
-      const auto id = static_cast<KeyFrameId>(k);
+      const KeyFrameId id = first + static_cast<KeyFrameId>(k);
       View view = views_[static_cast<std::size_t>(k)];
       view.world_from_camera = drifted(k);
       edit.add_keyframe(keyframe_of(view, id));
@@ -56,8 +59,10 @@ class RoundTrip {
         edit.add_observation(point.landmark, {id, f});
       }
     }
-    for (LandmarkId id = 0; id < edit.map().landmark_id_end(); ++id) refresh_landmark(edit, id);
-    for (KeyFrameId id = 0; id < static_cast<KeyFrameId>(count); ++id) edit.update_covisibility(id);
+    for (auto id = static_cast<LandmarkId>(first_landmark); id < edit.map().landmark_id_end(); ++id)
+      refresh_landmark(edit, id);
+    for (KeyFrameId id = first; id < edit.map().keyframe_id_end(); ++id)
+      edit.update_covisibility(id);
     return std::move(edit).finish();
   }
 

@@ -20,10 +20,12 @@ constexpr double kMinMotionShare = 0.5;
 // place; unless the last frame, which was registered by depth, had no texture.
 constexpr int kManyFeatures = 500;
 constexpr double kMinMatchedShare = 0.1;
-constexpr double kRecentSeconds = 1.0;  // afterwards the camera may be anywhere
-constexpr double kSteadySeconds = 0.5;  // that a velocity may be taken to last
-constexpr double kViewInterval = 0.5;   // seconds between remembered views, while localising
-constexpr double kSettled = 0.2;        // seconds without a key frame after relocalisation
+constexpr double kRecentSeconds = 1.0;    // afterwards the camera may be anywhere
+constexpr double kSteadySeconds = 0.5;    // that a velocity may be taken to last
+constexpr double kViewInterval = 0.5;     // seconds between remembered views, while localising
+constexpr double kSettled = 0.2;          // seconds without a key frame after relocalisation
+constexpr double kYoungMap = 10.0;        // seconds; a map tracked for less may be given up
+constexpr double kLongestInterval = 0.2;  // seconds between frames; more is a gap in the recording
 
 /// Its features, with their depths.
 struct PreparedOrbFrame final : PreparedFrame {
@@ -56,9 +58,11 @@ TrackResult OrbTracker::track(PreparedFramePtr prepared, const StaticWeights& we
   if (!first_keyframe_) begin_with(map);
   depth_registration_.begin(current_.frame, weights);
   prediction_.reset();
-  if (map.empty())
-    return !hints.localise_only && start() ? tracked(map, hints)
-                                           : not_tracked(TrackState::kWaiting);
+  if (map.empty()) {
+    if (hints.localise_only || !can_start()) return not_tracked(TrackState::kWaiting);
+    start();
+    return tracked(map, hints);
+  }
 
   follow_map(map);
   const bool following = state_ == TrackState::kTracking;
@@ -67,7 +71,8 @@ TrackResult OrbTracker::track(PreparedFramePtr prepared, const StaticWeights& we
   if (!found && !following) found = relocalise(map);
   if (!found && (following || is_recent())) found = track_with_depth(map);
   if (!found && following) found = relocalise(map);
-  return found ? tracked(map, hints) : not_tracked(TrackState::kLost);
+  if (found) return tracked(map, hints);
+  return hints.may_begin_anew && is_hopeless() ? begun_anew(hints) : not_tracked(TrackState::kLost);
 }
 
 // With a map of an earlier run, or an empty one.
@@ -76,16 +81,49 @@ void OrbTracker::begin_with(const SparseMap& map) {
   first_keyframe_ = map.keyframe_id_end();
 }
 
-// The first key frame defines the world.
-bool OrbTracker::start() {
+bool OrbTracker::has_start_points() const {
   int points = 0;
   for (std::uint32_t i = 0; i < current_.features->size(); ++i)
     points += current_.features->depth[i] > 0 && current_.track_weights[i] >= kMinMapWeight &&
               current_.map_weights[i] >= kMinMapWeight;
+  return points >= options_.min_start_points;
+}
+
+bool OrbTracker::can_start() { return has_start_points() || surfaces_suffice(); }
+
+// The first key frame defines the world.
+void OrbTracker::start() {
   current_.world_from_camera = Pose::Identity();
   current_.reference = kNoId;
-  last_used_depth_ = points < options_.min_start_points;
-  return !last_used_depth_ || surfaces_suffice();
+  last_used_depth_ = !has_start_points();
+  begun_at_ = current_.frame->time;
+}
+
+// In a map that was tracked for a short time only, the camera was not found for longer: in images
+// that another map could begin with, not in darkness.
+bool OrbTracker::is_hopeless() {
+  const double tracked = last_.frame ? last_.frame->time - begun_at_ : kYoungMap;
+  if (tracked >= kYoungMap || !can_start()) return false;
+  searched_ += std::min(current_.frame->time - previous_time_, kLongestInterval);
+  return searched_ > std::max(kRecentSeconds, tracked);
+}
+
+TrackResult OrbTracker::begun_anew(TrackHints hints) {
+  current_.clear_matches();
+  start();
+  last_ = {};
+  last_keyframe_ = kNoId;
+  inliers_ = 0;
+  bridged_ = false;
+  visible_.clear();
+  evidence_.clear();
+  relocalised_at_.reset();
+  state_ = TrackState::kWaiting;
+  depth_registration_.discard();
+  depth_registration_.forget_references();
+  TrackResult result = tracked(SparseMap(), hints);
+  result.begins_anew = true;
+  return result;
 }
 
 // Whether the surfaces in view alone would constrain a pose.
@@ -278,7 +316,9 @@ TrackResult OrbTracker::tracked(const SparseMap& map, TrackHints hints) {
 
   update_velocity();
   state_ = TrackState::kTracking;
+  searched_ = 0;
   if (!map.empty()) last_used_depth_ = depth_registration_.refined();
+  previous_time_ = current_.frame->time;
   last_ = std::move(current_);
   return result;
 }
@@ -316,6 +356,7 @@ TrackResult OrbTracker::not_tracked(TrackState state) {
   current_.clear_matches();
   result.tracked = tracked_features(current_);
   state_ = state;
+  previous_time_ = current_.frame->time;
   velocity_.reset();
   return result;
 }

@@ -29,8 +29,11 @@ class OrbTracker final : public Tracker {
  private:
   int solve(const SparseMap& map, const PoseTerm& term = {});
   void begin_with(const SparseMap& map);
-  bool start();
+  bool has_start_points() const;
+  bool can_start();
+  void start();
   bool surfaces_suffice();
+  bool is_hopeless();
   void follow_map(const SparseMap& map);
   void predict_pose();
   double seconds_since_last() const;
@@ -47,6 +50,7 @@ class OrbTracker final : public Tracker {
   bool register_depth(const SparseMap& map);
 
   TrackResult tracked(const SparseMap& map, TrackHints hints);
+  TrackResult begun_anew(TrackHints hints);
   TrackResult not_tracked(TrackState state);
   void remember_view();
   PoseUncertainty uncertainty(const SparseMap& map) const;
@@ -70,6 +74,9 @@ class OrbTracker final : public Tracker {
   bool last_used_depth_ = false;
   PoseUncertainty last_uncertainty_;  // of this frame, once it is tracked; before, of `last_`
 
+  double begun_at_ = 0;                       // seconds, the map of this recording
+  double previous_time_ = 0;                  // seconds, the frame before, tracked or not
+  double searched_ = 0;                       // seconds since it was lost, of usable images
   std::optional<double> relocalised_at_;      // seconds, the last time; none: never
   std::optional<KeyFrameId> first_keyframe_;  // of this recording: others came with the map
   double last_keyframe_at_ = -1e300;          // seconds, the newest key frame of this recording

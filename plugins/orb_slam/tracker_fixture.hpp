@@ -20,8 +20,10 @@ class TrackerTest : public testing::Test {
  protected:
   TrackResult step(FramePtr frame, const StaticWeights& weights = {}) {
     const auto id = static_cast<KeyFrameId>(map_.keyframe_id_end());
-    TrackResult result = tracker_.track(tracker_.prepare(std::move(frame)), weights, map_,
-                                        {.next_keyframe = id, .localise_only = localise_only_});
+    TrackResult result = tracker_.track(
+        tracker_.prepare(std::move(frame)), weights, map_,
+        {.next_keyframe = id, .localise_only = localise_only_, .may_begin_anew = may_begin_anew_});
+    if (result.begins_anew) clear_map();
     if (result.keyframe) {
       EXPECT_EQ(result.keyframe->id, id);
       map_ = mapper_.insert(std::move(map_), *result.keyframe);
@@ -33,6 +35,11 @@ class TrackerTest : public testing::Test {
   }
   TrackResult step(const Pose& pose, const StaticWeights& weights = {}) {
     return step(scene_.render(pose, next_++), weights);
+  }
+  void clear_map() {
+    MapEdit edit(std::move(map_));
+    edit.clear();
+    map_ = std::move(edit).finish();
   }
   static void expect_at(const TrackResult& result, const Pose& truth, double metres = 0.006,
                         double radians = 0.003) {
@@ -63,6 +70,7 @@ class TrackerTest : public testing::Test {
   SparseMap map_;
   std::uint32_t next_ = 0;
   bool localise_only_ = false;
+  bool may_begin_anew_ = false;
 };
 
 }  // namespace stillpoint::orb_slam

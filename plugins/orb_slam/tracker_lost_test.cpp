@@ -122,6 +122,69 @@ TEST_F(LostCamera, UnknownViewIsLost) {
             TrackState::kLost);
 }
 
+// As where a hand was before the lens, or the camera was still being put into place.
+TEST_F(LostCamera, AMapThatIsLostAtOnceIsBegunAnew) {
+  may_begin_anew_ = true;
+  const TestScene elsewhere({{-6, -6, 15, 15, 2.7}});
+  constexpr int kTracked = 45, kAfterwards = 20;  // frames of 1/30 s
+  for (int i = 0; i < kTracked; ++i)
+    expect_at(step(elsewhere.render(pose_at({0.01 * i, 0, 0}), next_++)),
+              pose_at({0.01 * i, 0, 0}));
+  const std::size_t keyframes = map_.keyframe_id_end();
+
+  int lost = 0;
+  TrackResult result = step(pose_at({0, 0, 0}));
+  for (; result.state == TrackState::kLost && lost < 2 * kTracked; ++lost)
+    result = step(pose_at({0, 0, 0}));
+  EXPECT_NEAR(lost, kTracked, 2);
+  EXPECT_TRUE(result.begins_anew);
+  ASSERT_TRUE(result.keyframe);
+  EXPECT_EQ(result.keyframe->id, keyframes);
+  EXPECT_TRUE(result.keyframe->landmarks == std::vector(result.keyframe->landmarks.size(), kNoId));
+  for (int i = 0; i < kAfterwards; ++i) {
+    SCOPED_TRACE(i);
+    result = step(pose_at({0.03 * i, 0, 0.01 * i}));
+    expect_at(result, pose_at({0.03 * i, 0, 0.01 * i}));
+    EXPECT_FALSE(result.begins_anew);
+  }
+  EXPECT_EQ(map_.keyframe_id_begin(), keyframes);
+  EXPECT_GT(map_.keyframe_count(), 1u);
+  EXPECT_TRUE(map_.world_from_keyframe(map_.keyframe_id_begin()).isApprox(Pose::Identity()))
+      << "bundle adjustment leaves the origin where it is";
+}
+
+TEST_F(LostCamera, DarknessAndGapsAreNoReasonToGiveUpAMap) {
+  may_begin_anew_ = true;
+  for (int i = 0; i < 10; ++i) step(pose_at({0.01 * i, 0, 0}));
+  for (int i = 0; i < 90; ++i) EXPECT_EQ(step(scene_.black(next_++)).state, TrackState::kLost);
+  next_ += 300;
+  const TestScene elsewhere({{-6, -6, 15, 15, 2.7}});
+  for (int i = 0; i < 3; ++i)  // as with motion blur
+    EXPECT_EQ(step(elsewhere.render(pose_at({3, 3, 0}), next_++)).state, TrackState::kLost) << i;
+  TrackResult result;
+  for (int i = 0; i < 20 && result.state != TrackState::kTracking; ++i)
+    result = step(pose_at({0.05, 0, 0}));
+  expect_at(result, pose_at({0.05, 0, 0}));
+  EXPECT_FALSE(result.begins_anew);
+}
+
+TEST_F(LostCamera, AMapOfTenSecondsIsNeverGivenUp) {
+  may_begin_anew_ = true;
+  for (int i = 0; i <= 300; ++i) step(pose_at({0, 0, 0}));
+  const TestScene elsewhere({{-6, -6, 15, 15, 2.7}});
+  for (int i = 0; i < 400; i += 20) {
+    next_ += 20;
+    EXPECT_EQ(step(elsewhere.render(pose_at({3, 3, 0}), next_)).state, TrackState::kLost) << i;
+  }
+}
+
+TEST_F(LostCamera, ALoadedMapIsNeverGivenUp) {
+  for (int i = 0; i < 5; ++i) step(pose_at({0.02 * i, 0, 0}));
+  const TestScene elsewhere({{-6, -6, 15, 15, 2.7}});
+  for (int i = 0; i < 60; ++i)
+    EXPECT_EQ(step(elsewhere.render(pose_at({3, 3, 0}), next_++)).state, TrackState::kLost) << i;
+}
+
 TEST_F(LostCamera, JumpIsFoundByAppearance) {
   for (int i = 0; i < 6; ++i) step(pose_at({0.01 * i, 0, 0}));
   const Pose jump = pose_at({0.25, 0.1, 0.1}, {0.05, 0.15, 0.2});

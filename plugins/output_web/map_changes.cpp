@@ -11,9 +11,11 @@ namespace {
 
 constexpr double kLogOddsSteps = 8;  // of a landmark's byte, per unit
 
+enum class Presence : std::uint8_t { kRemoved, kPresent, kCleared };
+
 void write_keyframe(const KeyFrame& keyframe, MessageWriter& writer) {
   writer.number(keyframe.id);
-  writer.number(std::uint8_t{1});
+  writer.number(static_cast<std::uint8_t>(Presence::kPresent));
   writer.pose(keyframe.world_from_camera);
   writer.number(keyframe.frame);
   writer.number(keyframe.parent);
@@ -29,15 +31,17 @@ void write_keyframe(const KeyFrame& keyframe, MessageWriter& writer) {
   writer.set_count(count, edges);
 }
 
-// Frames may refer to it: it moves with the key frame under which it was removed.
-void write_removed(KeyFrameId id, const Pose& world_from_camera, MessageWriter& writer) {
+// Frames may refer to it: it moves with the key frame under which it was removed, if any.
+void write_absent(KeyFrameId id, Presence presence, const Pose& world_from_camera,
+                  MessageWriter& writer) {
   writer.number(id);
-  writer.number(std::uint8_t{0});
+  writer.number(static_cast<std::uint8_t>(presence));
   writer.pose(world_from_camera);
 }
 
 bool write_if_changed(KeyFrameId id, const SparseMap& before, const SparseMap& after,
                       MessageWriter& writer) {
+  if (id < before.keyframe_id_begin()) return false;
   const KeyFrame* old = before.keyframe(id);
   if (const KeyFrame* keyframe = after.keyframe(id)) {
     if (keyframe == old) return false;
@@ -45,9 +49,13 @@ bool write_if_changed(KeyFrameId id, const SparseMap& before, const SparseMap& a
     return true;
   }
   const Pose pose = after.world_from_keyframe(id);
+  if (id < after.keyframe_id_begin()) {
+    write_absent(id, Presence::kCleared, pose, writer);
+    return true;
+  }
   if (!old && id < before.keyframe_id_end() && pose.isApprox(before.world_from_keyframe(id)))
     return false;
-  write_removed(id, pose, writer);
+  write_absent(id, Presence::kRemoved, pose, writer);
   return true;
 }
 

@@ -65,6 +65,27 @@ TEST(MapChanges, AreWhatHasChangedOnly) {
   EXPECT_THAT(counts(changes(before, std::move(evidence).finish())), ::testing::ElementsAre(0, 0));
 }
 
+TEST(MapChanges, TellOnceThatTheMapWasCleared) {
+  const SparseMap before = map_of_three();
+  MapEdit edit(before);
+  edit.clear();
+  edit.add_keyframe({.id = 3,
+                     .camera = std::make_shared<const Camera>(),
+                     .features = std::make_shared<const Features>()});
+  const SparseMap anew = std::move(edit).finish();
+  for (const SparseMap& known : {before, SparseMap()}) {
+    Records records = changes(known, anew);
+    const std::string& keyframes = records[Record::kKeyFrames].at(0);
+    ASSERT_EQ(number_at<std::uint32_t>(keyframes, 0), 4u);
+    for (std::uint32_t id = 0; id < 3; ++id) {
+      EXPECT_EQ(number_at<std::uint32_t>(keyframes, 4 + 33 * id), id);
+      EXPECT_EQ(number_at<std::uint8_t>(keyframes, 4 + 33 * id + 4), 2);
+    }
+    EXPECT_EQ(number_at<std::uint8_t>(keyframes, 4 + 33 * 3 + 4), 1);
+  }
+  EXPECT_THAT(counts(changes(anew, anew)), ::testing::ElementsAre(0, 0));
+}
+
 TEST(MapChanges, TellWhereARemovedKeyFrameStandsAndThatALandmarkIsGone) {
   const SparseMap before = map_of_three();
   MapEdit edit(before);

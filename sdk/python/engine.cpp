@@ -230,6 +230,10 @@ void bind_report(py::module_& module) {
           "is_keyframe", [](const FrameReport& r) { return r.result.keyframe.has_value(); },
           "Whether the frame is kept in the map.")
       .def_property_readonly(
+          "begins_anew", [](const FrameReport& r) { return r.result.begins_anew; },
+          "Whether the map so far was given up: this frame is the origin of a new one, and frames\n"
+          "before have no pose in it.")
+      .def_property_readonly(
           "inliers", [](const FrameReport& r) { return r.result.inliers; },
           "Features that fit the pose.")
       .def_property_readonly(

@@ -111,6 +111,7 @@ constexpr Forgetful kForgetful[] = {
     {"map_backend", "empty_file", kUsual, "save() wrote an empty file, map.txt"},
     {"map_backend", "position", kUsual, "a point of occupied() has no finite position"},
     {"map_backend", "occupancy", kUsual, "a point of occupied() has occupancy 100"},
+    {"map_backend", "clear", kUsual, "clear() left 1 occupied cells"},
     {"output", "ids", kLargeIds, "no such key frame"},
     {"output", "steers", kUsual, "begin failed: the program has named no file"},
     {"output", "holds", "frames that a program gives", "it cannot be held up"},

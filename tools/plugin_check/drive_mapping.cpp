@@ -118,6 +118,13 @@ class MapBackendDrive final : public FrameDrive<MapBackend> {
     observer_.saw(points.size());
     points_ = points.size();
     save();  // a map may be saved more than once
+    call("clear", scenario_.inputs.size() - 1, [&] { stage_.clear(); });
+    const std::size_t left =
+        observer_.call("occupied", {}, [&] { return stage_.occupied().size(); });
+    if (left > 0)
+      throw Failure({"clear() left " + std::to_string(left) + " occupied cells",
+                     "a map that begins anew has its origin elsewhere: they would be ghosts",
+                     "forget all that integrate() was given"});
   }
   std::string remark() const override {
     return points_ > 0 ? std::to_string(points_) + " occupied cells" : "";

@@ -200,6 +200,7 @@ class MapCheckerDrive final : public FrameDrive<MapChecker> {
                          .reference_from_camera = now.world_from_camera,
                          .world_from_camera = now.world_from_camera};
     call("remember", i, [&] { stage_.remember(tracked); });
+    if (i % 10 == 9) call("clear", i, [&] { stage_.clear(); });
     if (map_.empty())
       map_ = inserted(saved_map(scenario_), scenario_.keyframe(i, scenario_.first_keyframe));
   }

@@ -214,6 +214,14 @@ void read_trajectory(RunData& run) {
   take_errors(run);
 }
 
+/// Those that were tracked in a map which the tracker gave up later.
+void mark_frames_without_pose(RunData& run) {
+  if (run.path.empty()) return;
+  constexpr double kRounding = 1e-5;  // seconds, of times in files
+  for (FrameRow& row : run.frame_rows)
+    if (row.time < run.path.front().time - kRounding) row.tracked = false;
+}
+
 }  // namespace
 
 bool is_run(const fs::path& folder) {
@@ -235,6 +243,7 @@ RunData read_run(const fs::path& folder, const std::string& name, const RunInput
   find_truth(run);
   try_to(run, [&] { read_trajectory(run); });
   try_to(run, [&] { run.frame_rows = read_frames(folder / "frames.csv"); });
+  mark_frames_without_pose(run);
   try_to(run, [&] { run.stages = read_stage_times(folder / "timings.csv"); });
   take_events(run);
   choose_pictures(run);

@@ -33,6 +33,7 @@ std::optional<PoseMessages> PoseSequence::next(double time, const TrackResult& r
     previous_.reset();
     return std::nullopt;
   }
+  if (result.begins_anew) previous_.reset();
   const Pose map_from_base = mounting_.map_from_base(result.world_from_camera);
   const Header header{time, mounting_.map};
   PoseMessages messages{.transform = {header, mounting_.base, map_from_base},

@@ -167,7 +167,7 @@ void MapEdit::remove_keyframe(KeyFrameId id) {
   if (!old) throw no_element("key frame", id);
   if (old->parent == kNoId)
     throw mistake("key frame " + std::to_string(id) + " is removed, but has no parent",
-                  "the first one stays; update_covisibility() gives the others a parent");
+                  "the oldest one stays; update_covisibility() gives the others a parent");
   for (const LandmarkId landmark : old->landmarks)
     if (landmark != kNoId) remove_observation(landmark, id);
   for (const Covisibility& c : old->covisible) set_edge(keyframe(c.keyframe).covisible, id, 0);
@@ -184,6 +184,19 @@ void MapEdit::remove_keyframe(KeyFrameId id) {
     const KeyFrameId heir = strongest_older(*other);
     keyframe(other->id).parent = heir != kNoId ? heir : old->parent;
   }
+}
+
+void MapEdit::clear() {
+  for (KeyFrameId id = map_.keyframe_id_begin_; id < map_.keyframe_id_end(); ++id) {
+    auto removed = std::make_shared<SparseMap::RemovedKeyFrame>();
+    removed->parent_from_keyframe = map_.world_from_keyframe(id);
+    map_.removed_[id] = std::move(removed);
+  }
+  std::ranges::fill(map_.keyframes_, nullptr);
+  std::ranges::fill(map_.landmarks_, nullptr);
+  std::ranges::fill(map_.successor_, kNoId);
+  map_.keyframe_count_ = map_.landmark_count_ = 0;
+  map_.keyframe_id_begin_ = static_cast<KeyFrameId>(map_.keyframe_id_end());
 }
 
 void MapEdit::update_covisibility(KeyFrameId id, int min_shared) {
@@ -209,10 +222,10 @@ void MapEdit::update_covisibility(KeyFrameId id, int min_shared) {
                    [](const auto& a, const auto& b) { return a.shared > b.shared; });
   KeyFrame& updated = keyframe(id);
   updated.covisible = std::move(edges);
-  if (updated.parent == kNoId && id > 0) {
+  if (updated.parent == kNoId && id > map_.keyframe_id_begin_) {
     const KeyFrameId parent = strongest_older(updated);
     KeyFrameId previous = id - 1;  // without anything in common: the one before it in time
-    while (previous > 0 && !map_.keyframes_[previous]) --previous;
+    while (!map_.keyframes_[previous]) --previous;  // the oldest one is never removed
     updated.parent = parent != kNoId ? parent : previous;
   }
 }

@@ -71,6 +71,7 @@ Pose SparseMap::world_from_keyframe(KeyFrameId id) const {
   while (removed_[id]) {
     parent_from_keyframe = removed_[id]->parent_from_keyframe * parent_from_keyframe;
     id = removed_[id]->parent;
+    if (id == kNoId) return parent_from_keyframe;
   }
   return keyframes_[id]->world_from_camera * parent_from_keyframe;
 }

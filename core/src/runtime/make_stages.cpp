@@ -76,7 +76,8 @@ Stages make_stages(const PipelineConfig& config, const std::filesystem::path& ou
                 .local_mapper = maker.make<LocalMapper>(config.local_mapper),
                 .loop_closer = maker.make<LoopCloser>(config.loop_closer),
                 .map_backend = maker.make<MapBackend>(config.map_backend),
-                .map_directory = output_directory.empty() ? "" : output_directory / "map"};
+                .map_directory = output_directory.empty() ? "" : output_directory / "map",
+                .log = log};
   if (output_directory.empty()) return stages;
   for (const OutputSpec& output : config.outputs)
     stages.outputs.push_back({maker.make<Output>(output.stage), output.options.when_full});

@@ -133,6 +133,22 @@ void check_changes(const SparseMap& map, const SparseMap& before) {
   }
 }
 
+void check_begin(const TrackResult& result, const TrackHints& hints) {
+  require_of_stage(hints.may_begin_anew, "it begins the map anew, but may not",
+                   "do it with TrackHints::may_begin_anew only");
+  require_of_stage(result.keyframe && result.reference == result.keyframe->id,
+                   "it begins the map anew without a key frame that is its reference",
+                   "give the first key frame of the new map");
+  require_of_stage(result.world_from_camera.isApprox(Pose::Identity(), kSamePose),
+                   "it begins the map anew elsewhere than at the origin",
+                   "the first key frame has the identity as its pose");
+  require_of_stage(std::ranges::count(result.keyframe->landmarks, kNoId) ==
+                           std::ssize(result.keyframe->landmarks) &&
+                       result.keyframe->evidence.empty(),
+                   "it begins the map anew with landmarks of the map before",
+                   "they are gone: give kNoId, and no evidence");
+}
+
 }  // namespace
 
 void check_prepared(const PreparedFrame* prepared, const Frame& frame) {
@@ -152,6 +168,7 @@ void check_tracking(const TrackResult& result, const Frame& frame, const SparseM
                      "a key frame needs a pose: make it with kTracking only");
     check_keyframe(*result.keyframe, frame, map, hints.next_keyframe);
   }
+  if (result.begins_anew) check_begin(result, hints);
   require_of_stage(result.features >= 0 && result.matches >= 0 && result.inliers >= 0,
                    "a number of features, matches or inliers is negative",
                    "leave them 0 where there are none");
@@ -170,7 +187,7 @@ void check_tracking(const TrackResult& result, const Frame& frame, const SparseM
           result.keyframe->world_from_camera.isApprox(result.world_from_camera, kSamePose),
       "the key frame has another pose than its frame", "world_from_camera is the same in both");
   const KeyFrameId end = hints.next_keyframe + (result.keyframe ? 1 : 0);
-  require_of_stage(result.reference < end,
+  require_of_stage(result.reference < end && result.reference >= map.keyframe_id_begin(),
                    "the reference is key frame " +
                        (result.reference == kNoId ? "kNoId" : std::to_string(result.reference)) +
                        " of " + std::to_string(end),
@@ -193,6 +210,8 @@ void check_refined(const SparseMap& map, const SparseMap& before) {
   require_of_stage(map.keyframe_id_end() >= before.keyframe_id_end() &&
                        map.landmark_id_end() >= before.landmark_id_end(),
                    "ids of the map are gone", "give the next version of the map it was given");
+  require_of_stage(map.keyframe_id_begin() == before.keyframe_id_begin(), "it cleared the map",
+                   "only a tracker may begin it anew");
   check_changes(map, before);
 }
 

@@ -17,7 +17,7 @@ constexpr std::size_t kDenseWaiting = 16;
 // Removed key frames included: the dense map keeps what they have seen.
 std::vector<MovedKeyFrame> moved_keyframes(const SparseMap& before, const SparseMap& after) {
   std::vector<MovedKeyFrame> moved;
-  for (KeyFrameId id = 0; id < before.keyframe_id_end(); ++id) {
+  for (KeyFrameId id = before.keyframe_id_begin(); id < before.keyframe_id_end(); ++id) {
     if (before.keyframe(id) && before.keyframe(id) == after.keyframe(id)) continue;
     const Pose pose = after.world_from_keyframe(id);
     if (pose.matrix() != before.world_from_keyframe(id).matrix()) moved.push_back({id, pose});
@@ -78,8 +78,10 @@ MappingSystem::MappingSystem(Stage<LocalMapper> local_mapper, Stage<LoopCloser> 
           [this](MappingItem item) {
             if (auto* keyframe = std::get_if<NewKeyFrame>(&item))
               map(std::move(*keyframe));
+            else if (const auto* correction = std::get_if<Correction>(&item))
+              correct(*correction);
             else
-              correct(std::get<Correction>(item));
+              clear_maps();
           },
           ThreadPriority::kMapping),
       loop_closing_(
@@ -105,7 +107,13 @@ void MappingSystem::push(NewKeyFrame keyframe) {
   ++next_keyframe_;
   local_mapping_.push(std::move(keyframe));
   if (waiting()) mapping_end_.request();
-  if (first) map_.wait_published(stop_.token());
+  if (first) map_.wait_begun(stop_.token());
+}
+
+bool MappingSystem::clear() {
+  mapping_end_.request();
+  local_mapping_.push(Clear{});
+  return local_mapping_.wait_idle() && snapshot()->empty();
 }
 
 void MappingSystem::end() {
@@ -189,15 +197,26 @@ void MappingSystem::map(NewKeyFrame item) {
 
 void MappingSystem::correct(const Correction& item) {
   const MapStore::Snapshot before = map_.snapshot();
-  map_.publish(loop_closer_.call("map_correct", item.frame, [&](LoopCloser&) {
-    SparseMap map = apply(item.correction, *before);
-    if (thorough_) check_thoroughly(map);
-    return map;
-  }));
-  send_moved(*before, *map_.snapshot());
+  const bool applies =
+      item.correction.keyframe_id_end > before->keyframe_id_begin();  // not cleared
+  if (applies) {
+    map_.publish(loop_closer_.call("map_correct", item.frame, [&](LoopCloser&) {
+      SparseMap map = apply(item.correction, *before);
+      if (thorough_) check_thoroughly(map);
+      return map;
+    }));
+    send_moved(*before, *map_.snapshot());
+  }
   if (!item.closes_loop) return;
-  ++loops_;
+  if (applies) ++loops_;
   loop_closing_.push_past_limit(AdjustRequest{item.frame});
+}
+
+void MappingSystem::clear_maps() {
+  MapEdit edit(*snapshot());
+  edit.clear();
+  map_.publish(std::move(edit).finish());
+  if (map_backend_.present()) dense_mapping_.push(Clear{});
 }
 
 void MappingSystem::close_loop(const LoopQuery& query) {
@@ -211,7 +230,9 @@ void MappingSystem::close_loop(const LoopQuery& query) {
 
 void MappingSystem::adjust(const AdjustRequest& request) {
   correction_pending_ = false;
-  auto correction = loop_closer_.call("loop_adjust", request.frame, adjustment, *map_.snapshot(),
+  const MapStore::Snapshot map = map_.snapshot();
+  if (map->empty()) return;
+  auto correction = loop_closer_.call("loop_adjust", request.frame, adjustment, *map,
                                       adjustment_end_.begin(threaded_ && stop_.requested()));
   if (correction) local_mapping_.push_past_limit(Correction{std::move(*correction), request.frame});
 }
@@ -223,9 +244,11 @@ void MappingSystem::map_densely(const DenseItem& item) {
     dense_frame_ = (*keyframe)->frame->index;
     map_backend_.call("dense", dense_frame_, &MapBackend::integrate, **keyframe);
     has_integrated_ = true;
+  } else if (const auto* moved = std::get_if<std::vector<MovedKeyFrame>>(&item)) {
+    map_backend_.call("dense", dense_frame_, &MapBackend::move, *moved);
   } else {
-    map_backend_.call("dense", dense_frame_, &MapBackend::move,
-                      std::get<std::vector<MovedKeyFrame>>(item));
+    map_backend_.call("dense", dense_frame_, &MapBackend::clear);
+    has_integrated_ = false;
   }
 }
 

@@ -31,6 +31,7 @@ class NullMapChecker final : public MapChecker {
  public:
   MapEvidence check(const Frame&, std::span<const Pose>, const SparseMap&) override { return {}; }
   void remember(const TrackedFrame&) override {}
+  void clear() override {}
 };
 
 class NullDecision final : public Decision {
@@ -74,6 +75,7 @@ class NullMapBackend final : public MapBackend {
  public:
   void integrate(const DenseKeyFrame&) override {}
   void move(std::span<const MovedKeyFrame>) override {}
+  void clear() override {}
   void save(const std::filesystem::path&) override {}
 };
 

@@ -83,6 +83,8 @@ Pipeline::Pipeline(Stages stages, const RuntimeOptions& runtime,
     : options_(runtime),
       map_directory_(std::move(stages.map_directory)),
       localise_only_(stages.localise_only),
+      may_begin_anew_(stages.known_map.empty() && !localise_only_),
+      log_(stages.log ? std::move(stages.log) : [](LogLevel, std::string_view) {}),
       before_outputs_(stages.before_outputs ? std::move(stages.before_outputs) : [] {}),
       map_saved_(std::move(stages.map_saved)),
       clock_(clock ? std::move(clock) : std::make_shared<SteadyClock>()),
@@ -198,10 +200,12 @@ FrameReportPtr Pipeline::process(const FramePtr& frame) {
       tracker_.call("track", index, track, std::move(prepared), *weights, *mapping_.snapshot(),
                     TrackHints{.next_keyframe = mapping_.next_keyframe(),
                                .mapping_waiting = mapping_.waiting(),
-                               .localise_only = localise_only_},
+                               .localise_only = localise_only_,
+                               .may_begin_anew = may_begin_anew_},
                     options_.validates_fully());
   const auto tracked = tracked_frame(frame, weights, result);
   moving_check_.tracked(tracked);
+  if (result.begins_anew && !begin_anew(*frame)) return nullptr;  // stopped
   if (result.keyframe) add(new_keyframe(*result.keyframe, frame, *labels, weights));
   map_check_.tracked(tracked, *mapping_.snapshot());
   const auto report = std::make_shared<const FrameReport>(
@@ -209,6 +213,24 @@ FrameReportPtr Pipeline::process(const FramePtr& frame) {
                   mapping_.snapshot(), mapping_.loops(), feed_ ? feed_->left_out() : 0});
   record(report);
   return report;
+}
+
+// What was tracked in the map that is cleared has no pose in the next one.
+bool Pipeline::begin_anew(const Frame& with) {
+  if (!mapping_.clear()) return false;
+  moving_check_.clear();
+  map_check_.clear();
+  int tracked = 0;
+  for (TrackedPose& pose : poses_) {
+    if (pose.state != TrackState::kTracking) continue;
+    pose = {.frame = pose.frame, .time = pose.time, .state = TrackState::kWaiting};
+    ++tracked;
+  }
+  log_(LogLevel::kWarning,
+       "the tracker gives up its map and begins a new one with frame " +
+           std::to_string(with.index) +
+           "; frames tracked before, which have no pose any more: " + std::to_string(tracked));
+  return true;
 }
 
 void Pipeline::add(NewKeyFrame keyframe) {

@@ -3,9 +3,11 @@
 #include <dlfcn.h>
 #include <execinfo.h>
 #include <link.h>
+#include <sched.h>
 #include <semaphore.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <cstring>
@@ -14,6 +16,15 @@
 #include "stillpoint/runtime/abnormal_end.hpp"
 
 namespace stillpoint {
+
+struct StoppedThreadWait::Slot {
+  Slot() { ::sem_init(&thread_was_stopped, 0, 0); }
+
+  std::atomic_flag taken;
+  std::atomic<pid_t> process{0};  // 0: a stopped thread is none of its business
+  sem_t thread_was_stopped{};
+};
+
 namespace {
 
 /// Where the libraries of plugins begin in memory: an array, since signal handlers read it.
@@ -26,8 +37,12 @@ struct StoppedThread {
   std::array<char, 1024> library{};
 };
 StoppedThread stopped_thread;
-sem_t thread_was_stopped{};
-std::atomic<pid_t> waiting_process{0};  // 0: nobody waits
+
+std::array<StoppedThreadWait::Slot, 64> slots;  // an array, since signal handlers read it
+
+bool somebody_waits() {
+  return std::ranges::any_of(slots, [](const auto& slot) { return slot.process == ::getpid(); });
+}
 
 const void* begin_of_object(const void* address) {
   dl_find_object object{};
@@ -55,8 +70,10 @@ const char* plugin_among_callers() {
     std::strncpy(stopped_thread.library.data(), library, stopped_thread.library.size() - 1);
     stopped_thread.what = what;
     start_time_to_save(std::array{"a thread of ", library, " failed"});
-    ::sem_post(&thread_was_stopped);
   }
+  while (stopped_thread.what == 0) ::sched_yield();  // another thread is just writing it
+  for (StoppedThreadWait::Slot& slot : slots)
+    if (slot.process == ::getpid()) ::sem_post(&slot.thread_was_stopped);
   for (;;) ::pause();
 }
 
@@ -73,7 +90,7 @@ void remember_plugin(const void* address) {
 void end_plugin_thread(int what, bool may_stop) {
   const char* const library = plugin_among_callers();
   if (!library) return;
-  if (may_stop && ::getpid() == waiting_process) stop_thread(library, what);
+  if (may_stop && somebody_waits()) stop_thread(library, what);
   write_to_stderr("error: ended by ");
   write_to_stderr(library);
   write_to_stderr("\n");
@@ -94,17 +111,28 @@ void prepare_for_plugin_threads() {
   stopped_thread.library.fill('\0');
 }
 
-void prepare_wait_for_threads() { ::sem_init(&thread_was_stopped, 0, 0); }
-
-void begin_wait_for_threads() { waiting_process = ::getpid(); }
-
-void end_wait_for_threads() {
-  waiting_process = 0;
-  ::sem_post(&thread_was_stopped);
+StoppedThreadWait::StoppedThreadWait() {
+  const auto free =
+      std::ranges::find_if(slots, [](Slot& slot) { return !slot.taken.test_and_set(); });
+  if (free == slots.end()) return;
+  slot_ = &*free;
+  while (::sem_trywait(&slot_->thread_was_stopped) == 0) {  // what was left for an earlier one
+  }
 }
 
-void wait_for_stopped_thread() {
-  while (::sem_wait(&thread_was_stopped) != 0) {
+StoppedThreadWait::~StoppedThreadWait() {
+  if (slot_) slot_->taken.clear();
+}
+
+void StoppedThreadWait::begin() { slot_->process = ::getpid(); }
+
+void StoppedThreadWait::end() {
+  slot_->process = 0;
+  ::sem_post(&slot_->thread_was_stopped);
+}
+
+void StoppedThreadWait::wait() {
+  while (::sem_wait(&slot_->thread_was_stopped) != 0) {
   }
 }
 

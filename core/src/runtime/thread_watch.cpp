@@ -26,8 +26,9 @@ std::optional<StageError> error_of_stopped_thread() {
   return StageError(ended->thread(), std::nullopt, &*ended);
 }
 
-void watch_threads(const std::stop_token& stop, const ThreadWatch::Ended& ended) {
-  wait_for_stopped_thread();
+void watch_threads(const std::stop_token& stop, StoppedThreadWait& for_threads,
+                   const ThreadWatch::Ended& ended) {
+  for_threads.wait();
   if (stop.stop_requested()) return;
   const auto end_of_thread = std::chrono::steady_clock::now();
   ended(std::make_exception_ptr(*error_of_stopped_thread()));
@@ -56,16 +57,18 @@ std::jthread without_signals(std::function<void(const std::stop_token&)> functio
 
 ThreadWatch::ThreadWatch(Ended ended) {
   if (!StageGuard::exists()) return;
-  prepare_wait_for_threads();
-  watcher_ = without_signals(
-      [ended = std::move(ended)](const std::stop_token& stop) { watch_threads(stop, ended); });
-  begin_wait_for_threads();
+  wait_ = std::make_unique<StoppedThreadWait>();
+  if (!wait_->possible()) return;
+  watcher_ = without_signals([this, ended = std::move(ended)](const std::stop_token& stop) {
+    watch_threads(stop, *wait_, ended);
+  });
+  wait_->begin();
 }
 
 ThreadWatch::~ThreadWatch() {
   if (!watcher_.joinable()) return;
   watcher_.request_stop();
-  end_wait_for_threads();
+  wait_->end();
 }
 
 std::string ThreadWatch::failure_text() {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <fstream>
 #include <numeric>
+#include <optional>
 #include <sstream>
 #include <string_view>
 #include <utility>
@@ -59,10 +60,11 @@ std::vector<StageStatistics::Row> StageStatistics::rows() const {
 TrackingStatistics tracking_statistics(const RunSummary& summary) {
   TrackingStatistics result{.frames = summary.poses.size() + summary.dropped_frames,
                             .processed = summary.poses.size()};
-  TrackState last = TrackState::kWaiting;
+  std::optional<TrackState> last;
   for (const TrackedPose& pose : summary.poses) {
     if (pose.state == TrackState::kTracking) ++result.tracked;
-    if (pose.state == TrackState::kLost && last == TrackState::kTracking) ++result.times_lost;
+    // Frames that were tracked in a map that was begun anew count as waiting.
+    if (pose.state == TrackState::kLost && last && last != TrackState::kLost) ++result.times_lost;
     result.depth_registered += pose.depth_registered ? 1 : 0;
     result.poorly_constrained += pose.poorly_constrained ? 1 : 0;
     last = pose.state;

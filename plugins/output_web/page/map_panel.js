@@ -230,7 +230,7 @@ export class MapPanel {
     const cloud = this.clouds.get(id);
     const keyframe = this.run.keyframes.get(id);
     if (!cloud) return;
-    cloud.points.visible = !!keyframe;
+    cloud.points.visible = !!keyframe && !keyframe.cleared;
     if (!keyframe) return;
     cloud.points.position.set(...keyframe.pose.p);
     cloud.points.quaternion.set(...keyframe.pose.q);

@@ -59,7 +59,8 @@ function frame(r) {
 }
 
 function keyframe(r) {
-  const k = {id: r.u32(), present: r.u8() === 1, pose: r.pose()};
+  const id = r.u32(), presence = r.u8();
+  const k = {id, present: presence === 1, cleared: presence === 2, pose: r.pose()};
   if (!k.present) return {...k, edges: []};
   return {...k, frame: r.u32(), parent: r.u32(), edges: r.counted(() => ({to: r.u32(), shared: r.u16()}))};
 }

@@ -50,9 +50,16 @@ export class Run {
     for (const frame of frames) {
       const before = this.frames.at(-1);
       if (frame.state === 'tracking') ++this.tracked;
-      if (frame.state === 'lost' && before?.state === 'tracking') ++this.timesLost;
+      if (frame.state === 'lost' && before && before.state !== 'lost') ++this.timesLost;
       this.frames.push(frame);
+      if (this.keyframes.get(frame.reference)?.cleared) this.loseMapOf(frame);
     }
+  }
+  /** The tracker has begun another map, in which the frame has no pose. */
+  loseMapOf(frame) {
+    if (frame.state !== 'tracking') return;
+    frame.state = 'waiting';
+    --this.tracked;
   }
   take_times(times) {
     for (const {frame, stage, ms} of times) {
@@ -70,6 +77,8 @@ export class Run {
     for (const keyframe of keyframes) {
       this.keyframeCount += (keyframe.present ? 1 : 0) - (this.keyframes.get(keyframe.id)?.present ? 1 : 0);
       this.keyframes.set(keyframe.id, keyframe);
+      if (keyframe.cleared)
+        for (const frame of this.frames) if (frame.reference === keyframe.id) this.loseMapOf(frame);
     }
   }
   take_landmarks(landmarks) {

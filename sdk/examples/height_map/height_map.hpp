@@ -26,6 +26,7 @@ class HeightMap final : public stillpoint::MapBackend {
 
   void integrate(const stillpoint::DenseKeyFrame& keyframe) override;
   void move(std::span<const stillpoint::MovedKeyFrame> moved) override;
+  void clear() override { views_.clear(); }
   /// Without a floor in view there is a warning, and no file.
   void save(const std::filesystem::path& directory) override;
 

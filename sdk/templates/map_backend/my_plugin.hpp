@@ -26,6 +26,7 @@ class MyPlugin final : public stillpoint::MapBackend {
 
   void integrate(const stillpoint::DenseKeyFrame& keyframe) override;
   void move(std::span<const stillpoint::MovedKeyFrame> moved) override;
+  void clear() override { views_.clear(); }
   void save(const std::filesystem::path& directory) override;
   std::vector<stillpoint::LabelledPoint> occupied() const override;
 

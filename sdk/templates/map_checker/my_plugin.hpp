@@ -31,6 +31,7 @@ class MyPlugin final : public stillpoint::MapChecker {
                                 std::span<const stillpoint::Pose> guesses,
                                 const stillpoint::SparseMap& map) override;
   void remember(const stillpoint::TrackedFrame& frame) override;
+  void clear() override { earlier_.clear(); }
 
  private:
   Options options_;

@@ -76,6 +76,33 @@ TEST(SparseMap, RemovedKeyFrameFollowsItsParent) {
   EXPECT_TRUE(map.world_from_keyframe(1).translation().isApprox(Eigen::Vector3d(1, 5, 0)));
 }
 
+TEST(SparseMap, AClearedMapBeginsAnewWithHigherIds) {
+  MapEdit edit(make_map());
+  edit.remove_keyframe(1);
+  edit.fuse_landmarks(10, 11);
+  edit.clear();
+  EXPECT_TRUE(edit.map().empty());
+  EXPECT_EQ(edit.map().landmark_count(), 0u);
+  EXPECT_EQ(edit.map().keyframe_id_begin(), 3u);
+  EXPECT_THROW(edit.keyframe(0), Error);
+
+  edit.add_keyframe(make_keyframe(3, {0, 11}));
+  EXPECT_EQ(edit.add_landmark({}), 20u);
+  edit.add_observation(20, {3, 0});
+  edit.update_covisibility(3);
+  edit.add_keyframe(make_keyframe(4, {20}));
+  edit.update_covisibility(4);
+  const SparseMap map = std::move(edit).finish();
+  EXPECT_EQ(map.check(), std::nullopt);
+  EXPECT_EQ(map.keyframe(3)->parent, kNoId);
+  EXPECT_EQ(map.keyframe(4)->parent, 3u);
+  EXPECT_EQ(map.current_id(11), kNoId);
+  for (const KeyFrameId id : {0u, 1u, 2u})
+    EXPECT_EQ(map.world_from_keyframe(id).translation().x(), id) << "where it was";
+  MapEdit second(map);
+  EXPECT_THROW(second.remove_keyframe(3), Error) << "the oldest";
+}
+
 TEST(SparseMap, FusionKeepsEveryObservationOnce) {
   MapEdit edit(make_map());
   const LandmarkId duplicate = edit.add_landmark({});
@@ -129,7 +156,7 @@ TEST(MapEdit, NamesWhatIsNotThere) {
   EXPECT_THAT(message([](MapEdit& e) { e.add_keyframe({.id = 3}); }),
               HasSubstr("without features"));
   EXPECT_THAT(message([](MapEdit& e) { e.fuse_landmarks(4, 4); }), HasSubstr("with itself"));
-  EXPECT_THAT(message([](MapEdit& e) { e.remove_keyframe(0); }), HasSubstr("the first one stays"));
+  EXPECT_THAT(message([](MapEdit& e) { e.remove_keyframe(0); }), HasSubstr("the oldest one stays"));
   EXPECT_THAT(message([](MapEdit& e) {
                 e.remove_landmark(4);
                 e.remove_landmark(4);

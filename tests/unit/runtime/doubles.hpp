@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "stillpoint/runtime/stage.hpp"
+#include "stillpoint/support/run_statistics.hpp"
 
 namespace stillpoint::testing {
 
@@ -147,6 +148,7 @@ class FakeMapChecker final : public MapChecker {
   void remember(const TrackedFrame& frame) override {
     calls_.write("remember", frame.frame->index);
   }
+  void clear() override { calls_.write("forget", 0); }
   std::vector<double> last_guesses;  // metres along x, of all calls
 
  private:
@@ -241,7 +243,7 @@ class FakeCloser final : public LoopCloser {
     return correction;
   }
   std::optional<MapCorrection> adjust(const SparseMap& map, std::stop_token) override {
-    calls_.write("adjust", map.keyframe(0)->frame);
+    calls_.write("adjust", map.keyframe(map.keyframe_id_begin())->frame);
     return std::nullopt;
   }
 
@@ -262,6 +264,10 @@ class FakeBackend final : public MapBackend {
   void move(std::span<const MovedKeyFrame> moved) override {
     for (const MovedKeyFrame& m : moved)
       if (poses.contains(m.keyframe)) poses[m.keyframe] = m.world_from_camera;
+  }
+  void clear() override {
+    calls_.write("clear", 0);
+    poses.clear();
   }
   void save(const std::filesystem::path& directory) override {
     calls_.write("save", 0);
@@ -293,6 +299,7 @@ class FakeOutput final : public Output {
     for (const StageTime& time : summary.times) times.push_back(time);
     map = summary.map;
     poses = summary.poses;
+    statistics = tracking_statistics(summary);
     source = summary.source;
     dropped = summary.dropped_frames;
     dropped_reports = summary.dropped_reports;
@@ -313,6 +320,7 @@ class FakeOutput final : public Output {
   std::vector<StageTime> times;
   SparseMap map;
   std::vector<TrackedPose> poses;
+  TrackingStatistics statistics;
   SourceReport source;
   int dropped = -1;
   int dropped_reports = -1;

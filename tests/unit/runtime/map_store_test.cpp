@@ -41,10 +41,11 @@ TEST(MapStore, ReadersSeeWholeVersionsInOrder) {
   }
 }
 
-TEST(MapStore, WaitsForTheFirstVersion) {
+TEST(MapStore, WaitsForTheFirstKeyFrame) {
   MapStore store;
+  store.publish(SparseMap());  // as cleared
   std::jthread writer([&] { store.publish(with_another_keyframe(*store.snapshot())); });
-  EXPECT_TRUE(store.wait_published({}));
+  EXPECT_TRUE(store.wait_begun({}));
   EXPECT_EQ(store.snapshot()->keyframe_count(), 1u);
 }
 
@@ -52,7 +53,7 @@ TEST(MapStore, AStopEndsTheWait) {
   MapStore store;
   std::stop_source stop;
   std::jthread stopper([&] { stop.request_stop(); });
-  EXPECT_FALSE(store.wait_published(stop.get_token()));
+  EXPECT_FALSE(store.wait_begun(stop.get_token()));
 }
 
 }  // namespace

@@ -57,6 +57,8 @@ INSTANTIATE_TEST_SUITE_P(
     ::testing::Values(
         TrackFault{"NanPose", [](TrackResult& r) { r.world_from_camera.translation().x() = kNan; },
                    "the pose is no rigid motion"},
+        TrackFault{"BegunAnew", [](TrackResult& r) { r.begins_anew = true; },
+                   "it begins the map anew, but may not"},
         TrackFault{"Scaled", [](TrackResult& r) { r.reference_from_camera.linear() *= 1.1; },
                    "the pose is no rigid motion"},
         TrackFault{"Mirrored", [](TrackResult& r) { r.world_from_camera.linear()(0, 0) = -1; },

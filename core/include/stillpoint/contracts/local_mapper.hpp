@@ -15,11 +15,12 @@ namespace stillpoint {
 class STILLPOINT_EXPORT LocalMapper {
  public:
   static constexpr const char* kKind = "local_mapper";
-  static constexpr std::uint32_t kApi = 1;  ///< see kPluginApi
+  static constexpr std::uint32_t kApi = 2;  ///< see kPluginApi
   virtual ~LocalMapper();
 
   /// Adds the key frame under its own id, which is map.keyframe_id_end(), with its landmarks.
-  /// Quick. `map` is the newest version, with corrections of loops that came since the last call.
+  /// Quick. `map` is the newest version, with corrections of loops that came since the last call,
+  /// or without an element where the tracker begins anew.
   virtual SparseMap insert(SparseMap map, KeyFrame keyframe) = 0;
 
   /// Triangulates, fuses, culls and adjusts around the key frame inserted last. `end_early` is

@@ -15,12 +15,13 @@ namespace stillpoint {
 class STILLPOINT_EXPORT LoopCloser {
  public:
   static constexpr const char* kKind = "loop_closer";
-  static constexpr std::uint32_t kApi = 1;  ///< see kPluginApi
+  static constexpr std::uint32_t kApi = 2;  ///< see kPluginApi
   virtual ~LoopCloser();
 
   /// Nothing when `latest` closes no loop or when `stop` is requested. Called for each key frame,
   /// in order, with the map as it was when that had been refined; refining may have removed it from
-  /// the map. Left out while a correction is on its way into the map.
+  /// the map. Left out while a correction is on its way into the map. What is kept of earlier calls
+  /// counts no more where map.keyframe_id_begin() has grown: the tracker began anew.
   virtual std::optional<MapCorrection> close(const SparseMap& map, KeyFrameId latest,
                                              std::stop_token stop) = 0;
 

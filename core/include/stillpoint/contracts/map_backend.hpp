@@ -17,7 +17,7 @@ namespace stillpoint {
 class STILLPOINT_EXPORT MapBackend {
  public:
   static constexpr const char* kKind = "map_backend";
-  static constexpr std::uint32_t kApi = 2;  ///< see kPluginApi
+  static constexpr std::uint32_t kApi = 3;  ///< see kPluginApi
   virtual ~MapBackend();
 
   /// Once per key frame, in order, after local mapping has refined it.
@@ -25,6 +25,8 @@ class STILLPOINT_EXPORT MapBackend {
   /// Key frames that were moved by mapping or a loop closure, with their new poses; also such as
   /// have left the sparse map meanwhile, and those of a loaded map, which were never integrated.
   virtual void move(std::span<const MovedKeyFrame> moved) = 0;
+  /// Forgets all key frames: a new map begins.
+  virtual void clear() = 0;
   /// Writes the map's files into an existing folder; may bring the map up to date before. Called on
   /// any thread, at the end of a run, also of one that failed or was stopped, and in between. Not
   /// after this back end itself crashed or hung.

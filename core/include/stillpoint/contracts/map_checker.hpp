@@ -27,11 +27,11 @@ struct TrackedFrame {
 };
 
 /// Compares with what it has been given to remember, or with the landmarks of the map. A
-/// TrackedFrame, and a copy of a frame or of the map, may be kept.
+/// TrackedFrame, and a copy of a frame or of the map, may be kept until clear().
 class STILLPOINT_EXPORT MapChecker {
  public:
   static constexpr const char* kKind = "map_checker";
-  static constexpr std::uint32_t kApi = 2;  ///< see kPluginApi
+  static constexpr std::uint32_t kApi = 3;  ///< see kPluginApi
   virtual ~MapChecker();
 
   /// Before a frame is tracked, when the frame before it was. `guesses` are poses it may have
@@ -42,6 +42,10 @@ class STILLPOINT_EXPORT MapChecker {
   /// After each frame that has been tracked, in order, before the next one is checked, on the same
   /// thread. Not for the last one.
   virtual void remember(const TrackedFrame& frame) = 0;
+
+  /// Where the tracker has begun the map anew: forgets all frames, whose poses are of the map
+  /// before. On the same thread.
+  virtual void clear() = 0;
 };
 
 }  // namespace stillpoint

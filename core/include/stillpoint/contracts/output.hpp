@@ -89,7 +89,7 @@ struct RunSummary {
 class STILLPOINT_EXPORT Output {
  public:
   static constexpr const char* kKind = "output";
-  static constexpr std::uint32_t kApi = 9;  ///< see kPluginApi
+  static constexpr std::uint32_t kApi = 10;  ///< see kPluginApi
   virtual ~Output();
 
   /// Before the first frame, on thread 1. The pointer may be kept.

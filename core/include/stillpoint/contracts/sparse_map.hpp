@@ -20,6 +20,9 @@ class STILLPOINT_EXPORT SparseMap {
  public:
   bool empty() const { return keyframe_count_ == 0; }
 
+  /// Of the oldest key frame, which is never removed; ids below are of a map that was cleared.
+  /// Equal to keyframe_id_end() while the map is empty.
+  KeyFrameId keyframe_id_begin() const { return keyframe_id_begin_; }
   /// One past the largest id ever given, removed elements included.
   std::size_t keyframe_id_end() const { return keyframes_.size(); }
   std::size_t landmark_id_end() const { return landmarks_.size(); }
@@ -43,7 +46,8 @@ class STILLPOINT_EXPORT SparseMap {
   LandmarkId current_id(LandmarkId id) const;
 
   /// Pose of a key frame, also of a removed one: it moves with the key frame it was removed under.
-  /// The id must be below keyframe_id_end().
+  /// The id must be below keyframe_id_end(). Below keyframe_id_begin(): where it was in the map
+  /// that was cleared, which says nothing about this one.
   Pose world_from_keyframe(KeyFrameId id) const;
 
   /// Verifies both directions of every observation, the covisibility graph and the spanning tree.
@@ -54,7 +58,7 @@ class STILLPOINT_EXPORT SparseMap {
   friend class MapEdit;
 
   struct RemovedKeyFrame {
-    KeyFrameId parent = kNoId;
+    KeyFrameId parent = kNoId;  // none: of a map that was cleared
     Pose parent_from_keyframe = Pose::Identity();
   };
 
@@ -64,6 +68,7 @@ class STILLPOINT_EXPORT SparseMap {
   std::vector<LandmarkId> successor_;  // by landmark id, kNoId = not fused
   std::size_t keyframe_count_ = 0;
   std::size_t landmark_count_ = 0;
+  KeyFrameId keyframe_id_begin_ = 0;
 };
 
 /// Makes the next version of a map: elements are cloned when first changed, so that every copy
@@ -96,8 +101,10 @@ class STILLPOINT_EXPORT MapEdit {
   /// Gives the observations of `gone` to `kept` and removes `gone`.
   void fuse_landmarks(LandmarkId kept, LandmarkId gone);
   /// Removes a key frame with its observations; its children go to its covisible relatives. The
-  /// first key frame cannot be removed.
+  /// oldest key frame cannot be removed.
   void remove_keyframe(KeyFrameId id);
+  /// Removes all elements. Ids go on from where they are: the next key frame begins a new map.
+  void clear();
 
   /// Counts shared landmarks anew for a key frame, on both sides of every edge. Edges of fewer than
   /// `min_shared` landmarks are left out, but the strongest one is kept. Sets the parent when there

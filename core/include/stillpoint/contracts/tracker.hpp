@@ -16,7 +16,11 @@
 
 namespace stillpoint {
 
-enum class TrackState { kWaiting /* no map yet and no start possible */, kTracking, kLost };
+enum class TrackState {
+  kWaiting,  ///< no map yet and no start possible; later, of frames before the map was begun anew
+  kTracking,
+  kLost
+};
 /// "waiting", "tracking" or "LOST", for messages.
 STILLPOINT_EXPORT const char* name_of(TrackState state);
 
@@ -42,6 +46,9 @@ struct TrackResult {
   bool depth_registered = false;               ///< landmarks alone did not constrain the pose
   std::vector<TrackedFeature> tracked;         ///< per feature
   std::optional<KeyFrame> keyframe;            ///< to be inserted
+  /// The map is cleared before `keyframe` is inserted, which begins a new one at the origin; the
+  /// frames before count as not tracked. For a map that is lost as soon as it has begun.
+  bool begins_anew = false;
 };
 
 /// What a tracker has found in a frame before it knows weights and map, features for instance. Each
@@ -61,6 +68,7 @@ struct TrackHints {
   KeyFrameId next_keyframe = 0;  ///< the id of the key frame, if this frame becomes one
   bool mapping_waiting = false;  ///< a key frame is already waiting for the local mapper
   bool localise_only = false;    ///< the map stays as it is: no key frames
+  bool may_begin_anew = false;   ///< the map is of this run: see TrackResult::begins_anew
 };
 
 /// Called for every frame, in order: prepare(), then track() with what it gave. When a run is
@@ -68,7 +76,7 @@ struct TrackHints {
 class STILLPOINT_EXPORT Tracker {
  public:
   static constexpr const char* kKind = "tracker";
-  static constexpr std::uint32_t kApi = 1;  ///< see kPluginApi
+  static constexpr std::uint32_t kApi = 2;  ///< see kPluginApi
   virtual ~Tracker();
 
   /// Everything that needs neither weights nor map; overlaps the network (paper III-D).

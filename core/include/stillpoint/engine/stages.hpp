@@ -5,6 +5,7 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "stillpoint/sdk.hpp"
@@ -47,6 +48,8 @@ struct Stages {
   std::filesystem::path map_directory;  ///< made for the dense map at the end; empty: not saved
   SparseMap known_map;                  ///< to begin with; empty: the first frame begins one
   bool localise_only = false;           ///< the map stays as it is
+  /// What the user of the run should know, from the thread that tracks. May be empty.
+  std::function<void(LogLevel, std::string_view)> log;
   /// Where outputs may have the sparse map saved while the run goes (LiveRun); empty: nowhere.
   std::filesystem::path map_file;
   /// Called once by the thread that tracks: when the first frame is through, before an output has

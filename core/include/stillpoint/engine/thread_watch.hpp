@@ -3,6 +3,7 @@
 
 #include <exception>
 #include <functional>
+#include <memory>
 #include <string>
 #include <thread>
 
@@ -10,11 +11,13 @@
 
 namespace stillpoint {
 
+class StoppedThreadWait;
+
 /// While it lives, and a StageGuard, a thread that ends the process by a crash, an exception or
 /// std::exit() ends the run instead, if code of a plugin is among its callers: the plugin has made
 /// it, or a pool for it. It is stopped where it is, for the rest of the process. Not recognised are
 /// a stack that overflows there, and threads of a library that run none of the plugin's own code.
-/// One watch at a time; a child of the process (fork) is not watched.
+/// Of several watches all are told, 64 at most; a child of the process (fork) is not watched.
 class STILLPOINT_EXPORT ThreadWatch {
  public:
   /// Called on the watch's thread, once, with a StageError: "a thread of PLUGIN failed: it crashed:
@@ -31,7 +34,8 @@ class STILLPOINT_EXPORT ThreadWatch {
   static std::string failure_text();
 
  private:
-  std::jthread watcher_;
+  std::unique_ptr<StoppedThreadWait> wait_;
+  std::jthread watcher_;  // last: it uses the other
 };
 
 }  // namespace stillpoint

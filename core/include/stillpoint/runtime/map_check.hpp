@@ -20,12 +20,15 @@ class MapCheck {
   /// The frame that check() was called for last, once it has been tracked; nothing: it was not.
   /// Before check() is called for the next one.
   void tracked(const std::optional<TrackedFrame>& frame, const SparseMap& map);
+  /// Forgets all frames, as their map is cleared.
+  void clear();
 
  private:
   StageCaller<MapChecker> checker_;
   const bool thorough_;
   PosePrediction prediction_;
   std::optional<TrackedFrame> to_remember_;
+  bool to_clear_ = false;
 };
 
 }  // namespace stillpoint

@@ -29,22 +29,20 @@ class MapStore {
     {
       const std::lock_guard lock(mutex_);
       map_.swap(next);
-      published_ = true;
     }
     changed_.notify_all();
   }  // the last version is freed here, outside the lock, when nobody else holds it
 
-  /// Waits for the first version. False after a stop.
-  bool wait_published(std::stop_token stop) const {
+  /// Waits until there is a key frame. False after a stop.
+  bool wait_begun(std::stop_token stop) const {
     std::unique_lock lock(mutex_);
-    return changed_.wait(lock, std::move(stop), [this] { return published_; });
+    return changed_.wait(lock, std::move(stop), [this] { return !map_->empty(); });
   }
 
  private:
   mutable std::mutex mutex_;
   mutable std::condition_variable_any changed_;
-  Snapshot map_;  // guarded by mutex_, like the next
-  bool published_ = false;
+  Snapshot map_;  // guarded by mutex_
 };
 
 }  // namespace stillpoint

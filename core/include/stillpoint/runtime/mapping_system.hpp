@@ -36,9 +36,12 @@ class MappingSystem {
   MapStore::Snapshot snapshot() const { return map_.snapshot(); }
   /// The id that the next key frame pushed has to have.
   KeyFrameId next_keyframe() const { return next_keyframe_; }
-  /// Waits while too many key frames are waiting, and until the very first one is in the map:
+  /// Waits while too many key frames are waiting, and until the first one of a map is in it:
   /// nothing can be tracked before.
   void push(NewKeyFrame keyframe);
+  /// Clears both maps, after the key frames that wait: the next one begins new ones. False, and
+  /// nothing cleared, after a stop.
+  bool clear();
   /// Whether a key frame has to wait for local mapping.
   bool waiting() const { return local_mapping_.waiting(); }
   /// Finishes what is under way and ends the threads; after a stop, at once.
@@ -62,8 +65,10 @@ class MappingSystem {
     std::uint32_t frame = 0;
     bool closes_loop = false;
   };
-  using MappingItem = std::variant<NewKeyFrame, Correction>;
-  using DenseItem = std::variant<std::shared_ptr<const DenseKeyFrame>, std::vector<MovedKeyFrame>>;
+  struct Clear {};
+  using MappingItem = std::variant<NewKeyFrame, Correction, Clear>;
+  using DenseItem =
+      std::variant<std::shared_ptr<const DenseKeyFrame>, std::vector<MovedKeyFrame>, Clear>;
   // With the map as it was when the key frame had come: later, the key frame may have been removed.
   struct LoopQuery {
     MapStore::Snapshot map;
@@ -78,6 +83,7 @@ class MappingSystem {
   void save_locked(const std::filesystem::path& directory);
   void map(NewKeyFrame item);
   void correct(const Correction& item);
+  void clear_maps();
   void close_loop(const LoopQuery& query);
   void adjust(const AdjustRequest& request);
   void map_densely(const DenseItem& item);

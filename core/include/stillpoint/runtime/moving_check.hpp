@@ -22,6 +22,8 @@ class MovingCheck {
   void tracked(const std::optional<TrackedFrame>& frame) { previous_tracked_ = frame; }
   /// The same frame, when it became a key frame.
   void keyframe(const DenseKeyFrame& keyframe);
+  /// Forgets the key frames, as their map is cleared.
+  void clear() { keyframes_.clear(); }
 
  private:
   TrackingHistory history(const SparseMap& map) const;

@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 #include <stop_token>
+#include <string_view>
 #include <vector>
 
 #include "stillpoint/engine/pace_clock.hpp"
@@ -45,6 +46,7 @@ class Pipeline {
   void add_outputs(std::vector<OutputSetup> setups);
   void begin_outputs();
   FrameReportPtr process(const FramePtr& frame);
+  bool begin_anew(const Frame& with);
   void add(NewKeyFrame keyframe);
   void record(const FrameReportPtr& report);
   void end_threads();
@@ -59,6 +61,8 @@ class Pipeline {
   const RuntimeOptions options_;
   const std::filesystem::path map_directory_;
   const bool localise_only_;
+  const bool may_begin_anew_;
+  const std::function<void(LogLevel, std::string_view)> log_;
   const std::function<void()> before_outputs_;
   const std::function<void(const std::vector<std::filesystem::path>&)> map_saved_;
   const std::shared_ptr<PaceClock> clock_;

@@ -23,12 +23,26 @@ void prepare_for_plugin_threads();
 /// Of the first thread that was stopped. std::nullopt: none was.
 std::optional<EndedCall> end_of_stopped_thread();
 
-/// Before a thread waits.
-void prepare_wait_for_threads();
-/// Once it does: until end_wait_for_threads(), threads of this process may be stopped.
-void begin_wait_for_threads();
-void end_wait_for_threads();
-/// Returns after a thread was stopped, or the wait has ended.
-void wait_for_stopped_thread();
+/// Waits for a thread to be stopped. There may be 64 at a time, and all are told.
+class StoppedThreadWait {
+ public:
+  struct Slot;
+
+  StoppedThreadWait();
+  ~StoppedThreadWait();
+  StoppedThreadWait(const StoppedThreadWait&) = delete;
+  StoppedThreadWait& operator=(const StoppedThreadWait&) = delete;
+
+  /// False when there are too many.
+  bool possible() const { return slot_ != nullptr; }
+  /// Once a thread is in wait(): until end(), threads of this process may be stopped.
+  void begin();
+  void end();
+  /// Returns after a thread was stopped, or after end().
+  void wait();
+
+ private:
+  Slot* slot_ = nullptr;
+};
 
 }  // namespace stillpoint

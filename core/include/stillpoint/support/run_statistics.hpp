@@ -48,7 +48,7 @@ struct TrackingStatistics {
   std::size_t frames = 0;  ///< of the recording that were read: processed or dropped
   std::size_t processed = 0;
   std::size_t tracked = 0;
-  std::size_t times_lost = 0;          ///< changes from tracking to lost
+  std::size_t times_lost = 0;          ///< changes to lost
   std::size_t depth_registered = 0;    ///< of those tracked
   std::size_t poorly_constrained = 0;  ///< of those tracked
   double coverage() const {

@@ -10,7 +10,7 @@ namespace stillpoint {
 
 /// The camera's pose from the current pose of its reference key frame; the pose at the time of
 /// tracking when that key frame is not in the map (not yet, or never, after a stop). Nothing when
-/// the frame was not tracked.
+/// the frame was not tracked, or only in a map that was cleared.
 STILLPOINT_EXPORT std::optional<Pose> world_from_camera(const SparseMap& map,
                                                         const TrackedPose& pose);
 
