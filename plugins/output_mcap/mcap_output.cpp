@@ -56,10 +56,10 @@ void McapOutput::write_map_so_far(const FrameReport& report) {
     next_map_ = time + map_period_;
   }
   if (!run_ || time < *next_dense_map_) return;
-  if (const auto points = run_->dense_map()) {  // or with the next frame
-    if (!points->empty()) write_dense_map(*points, header);
-    next_dense_map_ = time + map_period_;
-  }
+  const auto points = run_->dense_map();
+  if (!points || points->empty()) return;  // with a later frame
+  write_dense_map(*points, header);
+  next_dense_map_ = time + map_period_;
 }
 
 void McapOutput::write_pose(double time, const TrackResult& result) {
