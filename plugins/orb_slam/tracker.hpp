@@ -33,7 +33,7 @@ class OrbTracker final : public Tracker {
   bool can_start();
   void start();
   bool surfaces_suffice();
-  bool is_hopeless();
+  bool gives_up_map();
   void follow_map(const SparseMap& map);
   void predict_pose();
   double seconds_since_last() const;
