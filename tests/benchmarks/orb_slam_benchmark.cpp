@@ -124,7 +124,7 @@ BENCHMARK(match_anywhere_1000_by_1000)->Unit(benchmark::kMicrosecond);
 void local_bundle_adjustment_15_keyframes(benchmark::State& state) {
   TestWorld world;
   std::vector<View> views;
-  for (int i = 0; i < 15; ++i) views.push_back(world.see(walk(i)));
+  for (int i = 0; i < 15; ++i) views.push_back(world.render(walk(i)));
   MapEdit disturbed(known_map(world, views).map);
   for (KeyFrameId id = 1; id < 15; ++id) {
     Pose& pose = disturbed.keyframe(id).world_from_camera;
@@ -144,7 +144,7 @@ SparseMap map_of_20000_landmarks() {
   TestWorld world(2000);
   MapEdit edit{SparseMap{}};
   for (KeyFrameId id = 0; id < 50; ++id) {
-    const View view = world.see(Pose::Identity());
+    const View view = world.render(Pose::Identity());
     edit.add_keyframe(keyframe_of(view, id));
     for (std::uint32_t i = 0; i < 400; ++i)
       edit.add_observation(edit.add_landmark({.created_by = id}), {id, i});

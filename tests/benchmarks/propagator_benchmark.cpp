@@ -23,6 +23,7 @@ using segmenter_label_images::LabelImageSegmenter;
 using source_tum::TumSource;
 
 constexpr int kPerson = 15;
+constexpr double kFps = 30;  // of the recordings
 
 struct LabelledRecording {
   std::vector<FramePtr> frames;
@@ -75,9 +76,9 @@ void propagation(benchmark::State& state, const std::string& name, bool propagat
   LabelImageSegmenter::Options labels;
   labels.errors.miss_rate = static_cast<double>(state.range(1)) / 100;
   labels.errors.outline_error = static_cast<double>(state.range(2));
-  const int latency = static_cast<int>(state.range(0));
   SegmentationOptions schedule{.schedule = SegmentationOptions::Schedule::kLatest,
-                               .latency = latency};
+                               .interval_seconds = 0,
+                               .latency_seconds = static_cast<double>(state.range(0)) / kFps};
   Overlap overlap;
   double seconds = 0, longest = 0;
   for (auto _ : state) {
@@ -95,7 +96,7 @@ void propagation(benchmark::State& state, const std::string& name, bool propagat
         std::move(propagator), schedule, RuntimeOptions::Mode::kInline, stop, times);
     for (std::size_t i = 0; i < input.frames.size(); ++i) {
       stage.offer(input.frames[i]);
-      const SegmentationPtr carried = stage.at(input.frames[i]);
+      const SegmentationPtr carried = stage.labels_for(input.frames[i]);
       for (const StageTime& time : times.take())
         if (time.stage == "propagate") {
           seconds += time.cpu_ms / 1000;
