@@ -1,6 +1,9 @@
 #include "map_checks/depth_cells.hpp"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <opencv2/imgproc.hpp>
 
@@ -8,6 +11,25 @@ namespace stillpoint::map_checks {
 namespace {
 
 constexpr float kSurfaceEdge = 0.06F;  // of the depth, between neighbouring cells of one surface
+constexpr float kCellEdge = 0.03F;     // of the depth, within a cell on one surface
+
+/// The median of a cell that is on one surface; 0 where it is not, or has depth in less than half
+/// of it. Beside a depth edge, the median would move the edge. `u`, `v`: the cell's first pixel.
+float median_of_cell(const cv::Mat& depth, int u, int v) {
+  std::array<float, kCell * kCell> measured;
+  auto end = measured.begin();
+  for (int y = v; y < v + kCell; ++y) {
+    const auto* row = depth.ptr<float>(y);
+    end = std::copy_if(row + u, row + u + kCell, end, [](float z) { return z > 0; });
+  }
+  const auto count = end - measured.begin();
+  if (2 * count < std::ssize(measured)) return 0;
+  const auto [near, far] = std::minmax_element(measured.begin(), end);
+  if (*far - *near > kCellEdge * *near) return 0;
+  const auto middle = measured.begin() + count / 2;
+  std::nth_element(measured.begin(), middle, end);
+  return *middle;
+}
 
 }  // namespace
 
@@ -23,7 +45,10 @@ cv::Mat sample_depth(const cv::Mat& depth) {
   for (int y = 0; y < cells.rows; ++y) {
     const auto* in = depth.ptr<float>(y * kCell + kCellMiddle) + kCellMiddle;
     auto* out = cells.ptr<float>(y);
-    for (int x = 0; x < cells.cols; ++x) out[x] = in[x * kCell];
+    for (int x = 0; x < cells.cols; ++x) {
+      const float middle = in[x * kCell];
+      out[x] = middle > 0 ? middle : median_of_cell(depth, x * kCell, y * kCell);
+    }
   }
   return cells;
 }

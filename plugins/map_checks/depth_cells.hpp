@@ -19,7 +19,9 @@ struct CellCamera {
   }
 };
 
-/// CV_32FC1: the depth in the middle of each cell, metres, 0 = none.
+/// CV_32FC1: the depth in the middle of each cell, metres. Stereo and time of flight leave
+/// scattered holes: where the middle has none, it is the median of the cell if at least half of it
+/// has depth and is on one surface; else 0.
 cv::Mat sample_depth(const cv::Mat& depth);
 
 /// CV_32FC2: the nearest and the farthest depth of a cell and its eight neighbours, so that an

@@ -28,11 +28,22 @@ double share(const cv::Mat& condition, const cv::Mat& mask) {
   return cv::countNonZero(condition & mask) / static_cast<double>(cv::countNonZero(mask));
 }
 
+/// The frame with a share of its pixels, drawn at random, without depth.
+std::shared_ptr<const Frame> with_holes(const Frame& frame, double share) {
+  auto result = std::make_shared<Frame>(frame);
+  cv::Mat random(frame.depth.size(), CV_32F);
+  cv::RNG(frame.index + 1).fill(random, cv::RNG::UNIFORM, 0, 1);
+  result->depth = frame.depth.clone();
+  result->depth.setTo(0, random < share);
+  return result;
+}
+
 /// A check whose frames are tracked where the camera truly is.
 class World {
  public:
   TestRoom room;
   StaticWeights weights;
+  double holes = 0;  // share of the pixels without depth
   double time = 0;
 
   explicit World(const DepthConsistency::Options& options = {}, cv::Size size = {320, 240})
@@ -42,7 +53,7 @@ class World {
   Pose way() const { return pose(0.1 * std::sin(time), 0, 0, 2 * std::cos(time)); }
 
   MapEvidence next(std::optional<std::vector<Pose>> guesses = std::nullopt) {
-    const auto frame = room.render(way(), time);
+    const auto frame = with_holes(*room.render(way(), time), holes);
     const std::vector<Pose> poses = guesses ? *guesses : std::vector<Pose>{way()};
     const MapEvidence evidence = check_.check(*frame, poses, map_);
     check_.remember({.frame = frame,
@@ -80,6 +91,18 @@ TEST(DepthConsistency, WhoComesInIsSeenAtOnce) {
   const cv::Mat log_odds = world.next().log_odds;
   EXPECT_GT(share(log_odds > 3, person), 0.95);
   EXPECT_LT(share(log_odds > 0, ~person), 0.01);
+}
+
+// As stereo and time-of-flight cameras leave them.
+TEST(DepthConsistency, ScatteredHolesInDepthHideNobody) {
+  World world;
+  world.holes = 0.15;
+  world.after(3);
+  world.room.boxes.push_back(kPerson);
+  const cv::Mat person = world.room.cells_of(kPerson, world.way(), kCell);
+  const cv::Mat log_odds = world.next().log_odds;
+  EXPECT_GT(share(log_odds > 3, person), 0.95);
+  EXPECT_GT(share(log_odds <= -4, ~person), 0.8);
 }
 
 TEST(DepthConsistency, WhereSomebodyWasTheRoomIsStatic) {
