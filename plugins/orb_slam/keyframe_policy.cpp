@@ -10,8 +10,8 @@
 namespace stillpoint::orb_slam {
 namespace {
 
-// Inliers, of the matches of the reference: with fewer, tracking may be lost before mapping is
-// free.
+// Inliers, of the landmarks in view of the reference: with fewer, tracking may be lost before
+// mapping is free.
 constexpr double kUrgentRatio = 0.25;
 // Between two key frames where depth gives the pose: unstable corners would ask for one every time.
 constexpr double kMinSecondsBetweenByDepth = 0.15;
@@ -55,7 +55,8 @@ void KeyFrameOptions::visit(OptionVisitor& v) {
     {.min = 0,
      .max = 1,
      .help = "while the camera stands still, a new key frame is made when less than this share of "
-             "the reference key frame's landmarks is tracked; larger: more key frames"});
+             "the landmarks in view of the reference key frame is tracked: those that it shares "
+             "with others, or the most tracked with it so far; larger: more key frames"});
   v("keyframe_moved", moved,
     {.min = 0,
      .help = "motion since the reference key frame from which the camera counts as moved: "
@@ -81,11 +82,17 @@ void KeyFrameOptions::visit(OptionVisitor& v) {
              "than this; larger: fewer key frames"});
 }
 
+int MostInliers::update(KeyFrameId reference, int inliers) {
+  most_ = reference == reference_ ? std::max(most_, inliers) : inliers;
+  reference_ = reference;
+  return most_;
+}
+
 TrackingQuality tracking_quality(const ObservedFrame& frame, const SparseMap& map, int inliers,
                                  double seconds_since_last, const KeyFrameOptions& options) {
   TrackingQuality quality{.inliers = inliers, .seconds_since_last = seconds_since_last};
   if (const KeyFrame* reference = map.keyframe(frame.reference)) {
-    quality.reference_matches = established_landmarks(*reference, map);
+    quality.established = established_landmarks(*reference, map);
     quality.motion = motion_since(*reference, frame);
   }
   for (std::uint32_t i = 0; i < frame.features->size(); ++i) {
@@ -108,9 +115,13 @@ bool needs_keyframe(const TrackingQuality& q, TrackHints hints, const KeyFrameOp
   // If the camera has not moved, landmarks are missing because a person occludes them.
   const double least =
       q.motion < options.moved ? options.min_tracked_ratio : options.moved_tracked_ratio;
-  const bool view_changed = q.inliers < least * q.reference_matches;
+  // ORB-SLAM2 takes the established landmarks alone. Of a part of the room not seen before the
+  // reference shares few with other key frames, so that the next one would come late, share fewer
+  // still, and so on.
+  const int in_view = std::max(q.established, q.most_inliers);
+  const bool view_changed = q.inliers < least * in_view;
   if (!needs_close && !view_changed) return false;
-  const bool nearly_lost = q.inliers < kUrgentRatio * q.reference_matches;
+  const bool nearly_lost = q.inliers < kUrgentRatio * in_view;
   const bool urgent =
       nearly_lost || (needs_close && q.seconds_since_last >= kMinSecondsBetweenWhileWaiting);
   return urgent || q.seconds_since_last >= options.max_seconds_between || !hints.mapping_waiting;

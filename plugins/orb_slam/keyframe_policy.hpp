@@ -22,15 +22,27 @@ struct KeyFrameOptions {
 
 /// What the key frame decision depends on.
 struct TrackingQuality {
-  int inliers = 0;            ///< landmarks of the map that are inliers to the pose
-  int reference_matches = 0;  ///< landmarks the reference key frame sees, of those well established
-  int close_tracked = 0;      ///< features with near depth and an inlier landmark
-  int close_untracked = 0;    ///< features with near depth and none, which could become one
+  int inliers = 0;                ///< landmarks of the map that are inliers to the pose
+  int established = 0;            ///< landmarks that the reference key frame shares with others
+  int most_inliers = 0;           ///< of a frame with this reference key frame, see MostInliers
+  int close_tracked = 0;          ///< features with near depth and an inlier landmark
+  int close_untracked = 0;        ///< features with near depth and none, which could become one
   double seconds_since_last = 0;  ///< since the last key frame of this recording
   double motion = 0;  ///< since the reference: translation in median depths + rotation in radians
   bool depth_registered = false;  ///< the pose does not depend on landmarks
 };
 
+/// The most inliers of a frame since this key frame is the reference.
+class MostInliers {
+ public:
+  int update(KeyFrameId reference, int inliers);
+
+ private:
+  KeyFrameId reference_ = kNoId;
+  int most_ = 0;
+};
+
+/// `most_inliers` and `depth_registered` are the caller's.
 TrackingQuality tracking_quality(const ObservedFrame& frame, const SparseMap& map, int inliers,
                                  double seconds_since_last, const KeyFrameOptions& options);
 

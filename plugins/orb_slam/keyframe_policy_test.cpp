@@ -9,10 +9,10 @@ namespace {
 
 constexpr TrackHints kIdle{.mapping_waiting = false}, kBusy{.mapping_waiting = true};
 
-// Everything the reference sees is tracked, far and near.
+// Everything in view of the reference is tracked, far and near.
 TrackingQuality good(const KeyFrameOptions& options) {
   return {.inliers = 400,
-          .reference_matches = 400,
+          .most_inliers = 400,
           .close_tracked = options.min_close + 100,
           .close_untracked = 0,
           .seconds_since_last = 0.1};
@@ -26,17 +26,27 @@ TEST(NeedsKeyFrame, NotWhileTheViewIsKnown) {
 TEST(NeedsKeyFrame, WhenTheViewHasChanged) {
   const KeyFrameOptions options;
   TrackingQuality quality = good(options);
-  quality.inliers = static_cast<int>(options.min_tracked_ratio * quality.reference_matches) - 5;
+  quality.inliers = static_cast<int>(options.min_tracked_ratio * quality.most_inliers) - 5;
   EXPECT_TRUE(needs_keyframe(quality, kIdle, options));
   quality.inliers += 10;
   EXPECT_FALSE(needs_keyframe(quality, kIdle, options));
+}
+
+TEST(NeedsKeyFrame, InUnseenRoomTheReferenceSharesFewLandmarks) {
+  const KeyFrameOptions options;
+  TrackingQuality quality = good(options);
+  quality.established = quality.most_inliers / 2;
+  quality.inliers = static_cast<int>(options.min_tracked_ratio * quality.most_inliers) - 5;
+  EXPECT_TRUE(needs_keyframe(quality, kIdle, options));
+  std::swap(quality.established, quality.most_inliers);
+  EXPECT_TRUE(needs_keyframe(quality, kIdle, options)) << "what others see may be in view again";
 }
 
 TEST(NeedsKeyFrame, WhenTheViewHasChangedALittleAndTheCameraHasMoved) {
   const KeyFrameOptions options;
   ASSERT_GT(options.moved_tracked_ratio, options.min_tracked_ratio);
   TrackingQuality quality = good(options);
-  quality.inliers = static_cast<int>(options.moved_tracked_ratio * quality.reference_matches) - 5;
+  quality.inliers = static_cast<int>(options.moved_tracked_ratio * quality.most_inliers) - 5;
   quality.motion = 0.9 * options.moved;
   EXPECT_FALSE(needs_keyframe(quality, kIdle, options));
   quality.motion = 1.1 * options.moved;
@@ -72,7 +82,7 @@ TEST(NeedsKeyFrame, NeverFromAPoorPose) {
 TEST(NeedsKeyFrame, BusyMapperIsSparedUnlessItIsUrgentOrLongAgo) {
   const KeyFrameOptions options;
   TrackingQuality quality = good(options);
-  quality.inliers = static_cast<int>(options.min_tracked_ratio * quality.reference_matches) - 5;
+  quality.inliers = static_cast<int>(options.min_tracked_ratio * quality.most_inliers) - 5;
   EXPECT_FALSE(needs_keyframe(quality, kBusy, options));
   quality.seconds_since_last = options.max_seconds_between;
   EXPECT_TRUE(needs_keyframe(quality, kBusy, options));
@@ -121,7 +131,7 @@ TEST_F(TrackingQualityTest, CountsWellEstablishedLandmarksOfTheReference) {
   for (const LandmarkId id : known_.map.keyframe(0)->landmarks)
     established += id != kNoId && known_.map.landmark(id)->observations.size() >= 2;
   const TrackingQuality quality = tracking_quality(frame_, known_.map, 0, 0, options_);
-  EXPECT_EQ(quality.reference_matches, established);
+  EXPECT_EQ(quality.established, established);
   EXPECT_LT(established, static_cast<int>(view_.features->size()));
 }
 
@@ -140,7 +150,19 @@ TEST_F(TrackingQualityTest, MotionIsTheWayInDepthsPlusTheRotation) {
 }
 
 TEST_F(TrackingQualityTest, WithoutReferenceThereIsNothingToCompareWith) {
-  EXPECT_EQ(tracking_quality(frame_, SparseMap{}, 0, 0, options_).reference_matches, 0);
+  const TrackingQuality quality = tracking_quality(frame_, SparseMap{}, 0, 0, options_);
+  EXPECT_EQ(quality.established, 0);
+  EXPECT_EQ(quality.motion, 0);
+}
+
+TEST(MostInliers, GrowWithOneReferenceAndBeginAnewWithTheNext) {
+  MostInliers most;
+  EXPECT_EQ(most.update(kNoId, 100), 100);
+  EXPECT_EQ(most.update(3, 80), 80);
+  EXPECT_EQ(most.update(3, 120), 120);
+  EXPECT_EQ(most.update(3, 90), 120);
+  EXPECT_EQ(most.update(4, 60), 60);
+  EXPECT_EQ(most.update(3, 70), 70) << "now seen from elsewhere";
 }
 
 }  // namespace

@@ -230,6 +230,7 @@ TrackResult OrbTracker::tracked(const SparseMap& map, TrackHints hints) {
 
   TrackingQuality quality = tracking_quality(
       current_, map, inliers_, current_.frame->time - last_keyframe_at_, options_.keyframe);
+  quality.most_inliers = most_inliers_.update(current_.reference, inliers_);
   quality.depth_registered = depth_registration_.refined();
   const bool unknown_view = (bridged_ || depth_registration_.shows_new_surfaces()) &&
                             last_keyframe_ == kNoId;  // the last one is in the map

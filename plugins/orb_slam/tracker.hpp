@@ -68,7 +68,8 @@ class OrbTracker final : public Tracker {
   std::optional<Pose> prediction_;    // of this frame's pose; none where it failed
   ConstantVelocity velocity_;
   TrackState state_ = TrackState::kWaiting;
-  int inliers_ = 0;       // landmarks
+  int inliers_ = 0;  // landmarks
+  MostInliers most_inliers_;
   bool bridged_ = false;  // the pose of this frame needed temporary points
   DepthRegistration depth_registration_;
   bool last_used_depth_ = false;

@@ -22,6 +22,24 @@ TEST_F(TrackerTest, FollowsAFlatWall) {
   track_along([](double t) { return pose_at({0.8 * t, 0, 0.1 * t}, {0, -0.3 * t, 0}); }, 25);
 }
 
+// A new key frame in room not seen before shares few landmarks with others; that must not delay the
+// next one.
+TEST_F(TrackerTest, KeyFramesComeEvenlyInUnseenRoom) {
+  scene_ = TestScene({{-2, -2, 11, 4, 2.5}});
+  constexpr double kStep = 0.06;  // metres
+  double last = 0, farthest = 0;
+  for (int i = 0; i < 100; ++i) {
+    const Pose pose = pose_at({kStep * i, 0, 0});
+    const TrackResult result = step(pose);
+    expect_at(result, pose, 0.02, 0.01);
+    if (!result.keyframe) continue;
+    farthest = std::max(farthest, kStep * i - last);
+    last = kStep * i;
+  }
+  EXPECT_LT(farthest, 0.7) << "the view is 3 m wide";
+  EXPECT_GT(farthest, 2 * kStep) << "nor all the time";
+}
+
 TEST_F(TrackerTest, FirstFrameIsTheOrigin) {
   const TrackResult result = step(Pose::Identity());
   EXPECT_EQ(result.state, TrackState::kTracking);
